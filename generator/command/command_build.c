@@ -51,8 +51,7 @@ static int build_law(const char *path, const char *output, bool no_physics) {
 /* What the deck's lattices are made of, with their options decided, and the tables of the deck's
    loads. */
 typedef struct deck_law {
-  const deck_lattice *lattice;
-  const deck_material *material;
+  const deck_interaction *of;
   model model;
   bool opened;
   c_text choices; /* ";option=choice;..." */
@@ -72,11 +71,10 @@ static void list_choices(const law *l, c_text *out) {
     c_text_add(out, "%s=%s;", l->options.items[k]->name, l->chosen[k]);
 }
 
-static bool open_deck_law(const deck *k, int lattice, const char *deck_path, deck_law *l,
-                          diagnostics *said) {
-  l->lattice = &k->lattices[lattice];
-  l->material = deck_material_of(k, lattice);
-  const bool good = material_law_open(l->material, l->lattice, deck_path, &l->model, said);
+static bool open_deck_law(const deck_interaction *of, const deck_lattice *lattice,
+                          const char *deck_path, deck_law *l, diagnostics *said) {
+  l->of = of;
+  const bool good = material_law_open(of->material, lattice, deck_path, &l->model, said);
   l->opened = l->model.memory != NULL;
   if (good) list_choices(l->model.law, &l->choices);
   return good;
@@ -91,10 +89,12 @@ static bool open_deck_laws(const char *deck_path, const char *deck_text, deck_la
   const deck *k = deck_read(out->memory, &out->sources, file, NULL, 0, &said);
   bool good = k != NULL;
   out->deck = k;
-  out->count = k ? k->lattice_count : 0;
+  out->count = k ? k->interaction_count : 0;
   out->items = must_calloc((size_t)out->count + 1, sizeof *out->items);
   for (int n = 0; n < out->count; n++)
-    good = open_deck_law(k, n, deck_path, &out->items[n], &said) && good;
+    good = open_deck_law(&k->interactions[n], &k->lattices[k->interactions[n].lattice], deck_path,
+                         &out->items[n], &said) &&
+           good;
   if (!good) diag_print(&said, stderr);
   diag_clear(&said);
   return good;
@@ -124,7 +124,7 @@ static void put_string_of(c_text *out, const char *name, int number, const char 
 
 static const char solver_types[] =
     "typedef struct pl_law pl_law;\n"
-    "typedef struct built_in_law {\n  const char *lattice, *model;\n  const pl_law *law;\n"
+    "typedef struct built_in_law {\n  const char *interaction, *model;\n  const pl_law *law;\n"
     "  const char *law_text, *c_text;\n  const char *choices;\n"
     "  const char *compiler, *flags;\n} built_in_law;\n"
     "typedef struct built_in_file {\n  const char *path, *text;\n} built_in_file;\n"
@@ -136,7 +136,7 @@ static void put_main(c_text *out, int laws) {
   c_text_add(out, "int main(int argc, char **argv) {\n  const built_in_law laws[] = {\n");
   for (int n = 0; n < laws; n++)
     c_text_add(out,
-               "      {solver_lattice_%d, solver_model_%d, perilat_kernel_%d(), "
+               "      {solver_interaction_%d, solver_model_%d, perilat_kernel_%d(), "
                "solver_law_text_%d,\n       solver_kernel_text_%d, solver_choices_%d, "
                "solver_compiler, solver_flags},\n",
                n, n, n, n, n, n);
@@ -165,8 +165,8 @@ static void put_files(c_text *out, const deck_laws *l) {
 
 static void put_law(c_text *out, int n, deck_law *l) {
   c_text_add(out, "const pl_law *perilat_kernel_%d(void);\n", n);
-  put_string_of(out, "solver_lattice", n, l->lattice->name);
-  put_string_of(out, "solver_model", n, l->material->model);
+  put_string_of(out, "solver_interaction", n, l->of->name);
+  put_string_of(out, "solver_model", n, l->of->material->model);
   put_string_of(out, "solver_law_text", n, l->model.sources.items[0].text);
   put_string_of(out, "solver_kernel_text", n, model_c_text(&l->model));
   put_string_of(out, "solver_choices", n, l->choices.text);

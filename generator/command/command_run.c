@@ -148,14 +148,15 @@ static int check_path(const run_options *o) {
   return status;
 }
 
-static int dump_lattice(const deck *k, int lattice, const char *deck_path, const char *stage,
-                        diagnostics *said) {
-  const char *name = k->lattices[lattice].name;
-  const deck_material *m = deck_material_of(k, lattice);
+static int dump_law(const deck *k, int interaction, const char *deck_path, const char *stage,
+                    diagnostics *said) {
+  const deck_interaction *of = &k->interactions[interaction];
   model opened = {.memory = NULL};
-  const bool good = material_law_open(m, &k->lattices[lattice], deck_path, &opened, said);
+  const bool good =
+      material_law_open(of->material, &k->lattices[of->lattice], deck_path, &opened, said);
   if (opened.memory) diag_print(&opened.said, stderr);
-  if (good && k->lattice_count > 1) printf("%s/* lattice `%s` */\n", lattice ? "\n" : "", name);
+  if (good && k->interaction_count > 1)
+    printf("%s/* lattice `%s` */\n", interaction ? "\n" : "", of->name);
   const int status = good ? dump_stage(&opened, stage) : 1;
   if (opened.memory) model_close(&opened);
   return status;
@@ -175,8 +176,8 @@ static int dump_deck(const run_options *o, const char *stage) {
   const int file = source_add(&c.sources, o->deck_path, text, length);
   const deck *k = deck_read(c.memory, &c.sources, file, o->overrides, o->override_count, &c.said);
   int status = k ? 0 : 1;
-  for (int n = 0; k && n < k->lattice_count && !status; n++)
-    status = dump_lattice(k, n, o->deck_path, stage, &c.said);
+  for (int n = 0; k && n < k->interaction_count && !status; n++)
+    status = dump_law(k, n, o->deck_path, stage, &c.said);
   diag_print(&c.said, stderr);
   diag_clear(&c.said);
   source_clear(&c.sources);

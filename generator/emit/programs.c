@@ -60,7 +60,7 @@ static void write_loops(emitter *e, const family_pass *p) {
   say(e, rows ? SAY_OVER_ROWS : SAY_ONE_RUN);
   say(e, SAY_OVER_CHUNKS);
   const bool seldom = p == e->plan->losses.passes && e->plan->loses_by_own_fields;
-  if (seldom) say(e, SAY_IF_CHANGED);
+  if (seldom) say(e, SAY_IF_FIELDS_CHANGED);
   for (int k = 0; k < p->segment_count; k++)
     forms[p->segments[k].kind](e, &p->segments[k]);
   if (seldom) say(e, SAY_END, "    ");

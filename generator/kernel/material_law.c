@@ -307,8 +307,10 @@ bool material_law_plan(const deck_material *m, const deck_lattice *l, model *out
   law_variation v;
   if (!take_setting(m, l, out, said) || !suits_section(m, l, out->law, said)) return false;
   if (!find_variation(m, out, &v, said)) return false;
-  return l && needs_families(l, out->law) ? model_plan_of_families(out, &v)
-                                          : model_plan_varying(out, &v);
+  v.shares = m->beside && out->law->tree->law == LAW_STATE;
+  return l && (m->beside ? out->law->tree->law != LAW_STATE : needs_families(l, out->law))
+             ? model_plan_of_families(out, &v)
+             : model_plan_varying(out, &v);
 }
 
 bool material_law_open(const deck_material *m, const deck_lattice *l, const char *deck_path,

@@ -95,11 +95,13 @@ static void take_threads(run *r) {
 }
 
 /* A solver's law was checked when it was built. A law that breaks mechanics has no step. */
-static int check_physics(run *r, int lattice) {
-  simulation_law *l = &r->laws[lattice];
+static int check_physics(run *r, int interaction) {
+  const int lattice = r->deck->interactions[interaction].lattice;
+  simulation_law *l = &r->laws[interaction];
   const bool known =
       r->lattices[lattice] || !deck_lattice_is_irregular(&r->deck->lattices[lattice]);
-  if (r->options->laws || r->options->no_physics || !known || obeys_mechanics(r, lattice)) return 0;
+  if (r->options->laws || r->options->no_physics || !known || obeys_mechanics(r, interaction))
+    return 0;
   free(l->parameters);
   l->parameters = NULL;
   return INPUT_WRONG;
@@ -108,7 +110,7 @@ static int check_physics(run *r, int lattice) {
 /* The worst that has become of one. */
 static int load_laws(run *r) {
   int status = 0;
-  for (int k = 0; k < r->deck->lattice_count; k++) {
+  for (int k = 0; k < r->deck->interaction_count; k++) {
     int failed = load_law(r, k);
     if (!failed) failed = check_physics(r, k);
     status = failed > status ? failed : status;
@@ -142,11 +144,12 @@ static bool has_lattices(run *r) {
    wrong elsewhere. */
 static int set_up(run *r) {
   if (!load_deck(r)) return INPUT_WRONG;
-  const size_t lattices = (size_t)r->deck->lattice_count + 1;
+  const size_t lattices = (size_t)r->deck->lattice_count + 1,
+               laws = (size_t)r->deck->interaction_count + 1;
   r->models = must_calloc((size_t)r->deck->material_count + 1, sizeof *r->models);
-  r->laws = must_calloc(lattices, sizeof *r->laws);
-  r->built_in = must_calloc(lattices, sizeof *r->built_in);
-  r->model_of = must_calloc(lattices, sizeof *r->model_of);
+  r->laws = must_calloc(laws, sizeof *r->laws);
+  r->built_in = must_calloc(laws, sizeof *r->built_in);
+  r->model_of = must_calloc(laws, sizeof *r->model_of);
   r->lattices = must_calloc(lattices, sizeof *r->lattices);
   choose_paths(r);
   if (!r->options->check_only) result_can_be_written(r);
@@ -171,7 +174,7 @@ static void tell_all(const run *r) {
 static void let_go(run *r) {
   if (r->result) result_close(r->result);
   if (r->simulation) simulation_free(r->simulation);
-  for (int k = 0; r->laws && k < r->deck->lattice_count; k++)
+  for (int k = 0; r->laws && k < r->deck->interaction_count; k++)
     free_parameters(&r->laws[k]);
   for (int k = 0; k < r->open_models; k++)
     model_close(&r->models[k]);
@@ -308,7 +311,7 @@ static int execute(run *r) {
 static bool check_kernels(const run *r) {
   enum { STATES = 100000 };
   bool good = true;
-  for (int k = 0; k < r->deck->lattice_count; k++) {
+  for (int k = 0; k < r->deck->interaction_count; k++) {
     const simulation_law *l = &r->laws[k];
     if (!r->model_of[k] || l->law->context) {
       printf("kernel check: nothing to compare %s with: %s\n", l->law->name,
@@ -316,7 +319,7 @@ static bool check_kernels(const run *r) {
                              : "a stand-alone solver has no interpreter");
       continue;
     }
-    const rows *w = simulation_rows(r->simulation, k);
+    const rows *w = simulation_law_rows(r->simulation, k);
     const int classes = l->law->kind == PL_STATE ? 2 * w->directions : 1;
     pl_bond_class bonds[ROWS_MAX_NEIGHBOURS];
     for (int n = 0; n < classes; n++)

@@ -16,8 +16,8 @@ C_LINKAGE_BEGIN
 
 /* A law that is already compiled into the program (stand-alone solvers). */
 typedef struct built_in_law {
-  const char *lattice; /* that it was built for */
-  const char *model;   /* as the deck names it */
+  const char *interaction; /* of the deck, that it was built for */
+  const char *model;       /* as the deck names it */
   const pl_law *law;
   const char *law_text, *c_text;
   const char *choices; /* "onset=rankine;..." decided when it was built */

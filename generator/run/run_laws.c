@@ -13,9 +13,10 @@
 
 /* --- laws ------------------------------------------------------------------------------------- */
 
-static const built_in_law *find_built_in(const run_options *o, const deck_material *m) {
+static const built_in_law *find_built_in(const run_options *o, const deck_material *m,
+                                         const char *name) {
   for (int k = 0; k < o->law_count; k++)
-    if (strcmp(o->laws[k].model, m->model) == 0 && strcmp(o->laws[k].lattice, m->lattice) == 0)
+    if (strcmp(o->laws[k].model, m->model) == 0 && strcmp(o->laws[k].interaction, name) == 0)
       return &o->laws[k];
   return NULL;
 }
@@ -77,12 +78,12 @@ static deck_lattice lattice_like(const deck_lattice *d, const rows *w) {
   return like;
 }
 
-bool obeys_mechanics(run *r, int lattice) {
-  const deck_lattice like = lattice_like(&r->deck->lattices[lattice], r->lattices[lattice]);
-  const simulation_law *l = &r->laws[lattice];
-  model *opened = r->model_of[lattice];
-  bool good = run_law_obeys(opened, &like, l->parameters,
-                            deck_where(&deck_material_of(r->deck, lattice)->item, "model"),
+bool obeys_mechanics(run *r, int interaction) {
+  const deck_interaction *of = &r->deck->interactions[interaction];
+  const deck_lattice like = lattice_like(&r->deck->lattices[of->lattice], r->lattices[of->lattice]);
+  const simulation_law *l = &r->laws[interaction];
+  model *opened = r->model_of[interaction];
+  bool good = run_law_obeys(opened, &like, l->parameters, deck_where(&of->material->item, "model"),
                             &opened->said, &r->said);
   for (int k = 0; k < l->regional_count && good; k++)
     good =
@@ -93,16 +94,16 @@ bool obeys_mechanics(run *r, int lattice) {
 
 /* --- opening ---------------------------------------------------------------------------------- */
 
-static bool take_built_in(run *r, const deck_material *m, int lattice, deck_material *values) {
-  const built_in_law *b = find_built_in(r->options, m);
+static bool take_built_in(run *r, const deck_material *m, int interaction, deck_material *values) {
+  const built_in_law *b = find_built_in(r->options, m, r->deck->interactions[interaction].name);
   if (!b) {
     diag_report(&r->said, DIAG_FILE, deck_where(&m->item, "model"),
                 "this solver was built without the model `%s`", m->model);
     return false;
   }
   if (!drop_built_in_choices(r, m, b, values)) return false;
-  r->laws[lattice].law = b->law;
-  r->built_in[lattice] = b;
+  r->laws[interaction].law = b->law;
+  r->built_in[interaction] = b;
   return true;
 }
 
@@ -114,7 +115,8 @@ static bool is_worth_compiling(const rows *w, const model *opened) {
 }
 
 /* 0, or an exit status. */
-static int take_model(run *r, const deck_material *m, int lattice, deck_material *values) {
+static int take_model(run *r, const deck_material *m, int interaction, deck_material *values) {
+  const int lattice = r->deck->interactions[interaction].lattice;
   char error[4 * ERROR_LENGTH];
   const char *note;
   model *opened = &r->models[r->open_models];
@@ -122,14 +124,14 @@ static int take_model(run *r, const deck_material *m, int lattice, deck_material
       material_law_open(m, &r->deck->lattices[lattice], r->options->deck_path, opened, &r->said);
   r->open_models += opened->memory != NULL;
   if (!good) return INPUT_WRONG;
-  r->model_of[lattice] = opened;
+  r->model_of[interaction] = opened;
   *values = opened->values;
   const bool interpret =
       r->options->interpret ||
       (r->options->check_only && !is_worth_compiling(r->lattices[lattice], opened));
-  r->laws[lattice].law = model_kernel(opened, interpret, &note, error, sizeof error);
+  r->laws[interaction].law = model_kernel(opened, interpret, &note, error, sizeof error);
   if (note) fprintf(stderr, "perilat: warning: %s\n", note);
-  if (r->laws[lattice].law) return 0;
+  if (r->laws[interaction].law) return 0;
   say_error("%s", error);
   return RUN_FAILED;
 }
@@ -142,23 +144,24 @@ static double *parameters_of(run *r, const deck_material *values, const pl_law *
 }
 
 /* Of a region; its options are those of the lattice. */
-static bool take_regional(run *r, int lattice, const deck_material *m, regional_values *out) {
+static bool take_regional(run *r, int interaction, const deck_material *m, regional_values *out) {
   deck_material values;
-  const bool good = r->options->laws ? drop_built_in_choices(r, m, r->built_in[lattice], &values)
-                                     : material_law_regional(m, r->model_of[lattice], r->memory,
-                                                             &values, &r->said);
-  *out = (regional_values){m, good ? parameters_of(r, &values, r->laws[lattice].law) : NULL};
+  const bool good =
+      r->options->laws
+          ? drop_built_in_choices(r, m, r->built_in[interaction], &values)
+          : material_law_regional(m, r->model_of[interaction], r->memory, &values, &r->said);
+  *out = (regional_values){m, good ? parameters_of(r, &values, r->laws[interaction].law) : NULL};
   return out->parameters != NULL;
 }
 
 static bool take_parameters(run *r, const deck_material *m, const deck_material *values,
-                            int lattice) {
-  simulation_law *l = &r->laws[lattice];
+                            int interaction) {
+  simulation_law *l = &r->laws[interaction];
   double *parameters = parameters_of(r, values, l->law);
   bool good = parameters != NULL;
   l->regional = must_calloc((size_t)m->regional_count + 1, sizeof *l->regional);
   for (int k = 0; k < m->regional_count; k++)
-    good = take_regional(r, lattice, m->regional[k], &l->regional[l->regional_count++]) && good;
+    good = take_regional(r, interaction, m->regional[k], &l->regional[l->regional_count++]) && good;
   if (good)
     l->parameters = parameters;
   else
@@ -173,15 +176,15 @@ void free_parameters(simulation_law *l) {
   free(l->parameters);
 }
 
-int load_law(run *r, int lattice) {
-  const deck_material *m = deck_material_of(r->deck, lattice);
+int load_law(run *r, int interaction) {
+  const deck_material *m = r->deck->interactions[interaction].material;
   deck_material values;
   if (!m) return INPUT_WRONG; /* said already */
-  const int status = !r->options->laws                       ? take_model(r, m, lattice, &values)
-                     : take_built_in(r, m, lattice, &values) ? 0
-                                                             : INPUT_WRONG;
+  const int status = !r->options->laws ? take_model(r, m, interaction, &values)
+                     : take_built_in(r, m, interaction, &values) ? 0
+                                                                 : INPUT_WRONG;
   if (status) return status;
-  return take_parameters(r, m, &values, lattice) ? 0 : INPUT_WRONG;
+  return take_parameters(r, m, &values, interaction) ? 0 : INPUT_WRONG;
 }
 
 bool check_law_alone(run *r, const deck_material *m) {

@@ -4,10 +4,10 @@
 
 #include "generator/run/run_state.h"
 
-/* Opens and compiles the law of a lattice and reads its parameters; what is wrong with them leaves
+/* Opens and compiles the law of an interaction and reads its parameters; what is wrong with them leaves
    them NULL. 0, or an exit status. What a law's own file has to answer for stays in
    models[].said. */
-int load_law(run *r, int lattice);
+int load_law(run *r, int interaction);
 /* Of the simulation_law that it filled in. */
 void free_parameters(simulation_law *l);
 /* Only says what is wrong with the law's file and its options: of a material whose lattice is not
@@ -15,6 +15,6 @@ void free_parameters(simulation_law *l);
 bool check_law_alone(run *r, const deck_material *m);
 /* The physics checks with the deck's parameters, also those of regions, on its lattice, which must
    have been built where particles stand on none. */
-bool obeys_mechanics(run *r, int lattice);
+bool obeys_mechanics(run *r, int interaction);
 
 #endif

@@ -43,7 +43,7 @@ static double triad(int threads) {
    share marks; where bonds add to both ends, their fields are hardly touched. */
 static double bytes_in(const run *r, int number) {
   const pl_law *kernel = r->laws[number].law;
-  const sweep *w = simulation_state(r->simulation, number);
+  const sweep *w = simulation_law_state(r->simulation, number);
   const rows *g = w->body->lattice;
   const double one = sizeof(double);
   double both = 2.0 * kernel->dof, read = 0;
@@ -67,7 +67,7 @@ static double operations_in(const run *r, int number) {
   const pl_law *kernel = r->laws[number].law;
   const double ends = kernel->kind == PL_STATE ? 2 : 1;
   return ends * (kernel->flops_per_bond + kernel->divisions_per_bond) *
-         (double)simulation_rows(r->simulation, number)->bond_count;
+         (double)simulation_law_rows(r->simulation, number)->bond_count;
 }
 
 static double particles_of(const run *r) {
@@ -77,19 +77,19 @@ static double particles_of(const run *r) {
   return sum;
 }
 
-/* A mean over the particles of all bodies. */
+/* Of all laws, over the particles of all bodies. */
 static double mean_over_particles(const run *r, double (*in)(const run *, int number)) {
   double sum = 0;
-  for (int b = 0; b < simulation_bodies(r->simulation); b++)
-    sum += in(r, b);
+  for (int n = 0; n < r->deck->interaction_count; n++)
+    sum += in(r, n);
   return sum / particles_of(r);
 }
 
 /* Of the law with the most; of laws of bonds one. */
 static int most_passes(const run *r) {
   int most = 1;
-  for (int b = 0; b < simulation_bodies(r->simulation); b++) {
-    const pl_law *kernel = r->laws[b].law;
+  for (int n = 0; n < r->deck->interaction_count; n++) {
+    const pl_law *kernel = r->laws[n].law;
     if (kernel->kind == PL_STATE && kernel->step.pass_count > most) most = kernel->step.pass_count;
   }
   return most;

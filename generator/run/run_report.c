@@ -28,11 +28,12 @@ static void print_quantity(const char *text, double value, const char *unit_name
 }
 
 /* Irregular particles have no lattice that implies anything: they are asked. */
-static void announce_uniform_strain(const run *r, int lattice) {
+static void announce_uniform_strain(const run *r, int interaction) {
+  const int lattice = r->deck->interactions[interaction].lattice;
   const rows *w = simulation_rows(r->simulation, lattice);
   const bool plane_strain = strcmp(r->deck->lattices[lattice].setting, "plane_strain") == 0;
-  const simulation_law *l = &r->laws[lattice];
-  const parameter_planes *f = simulation_planes(r->simulation, lattice);
+  const simulation_law *l = &r->laws[interaction];
+  const parameter_planes *f = simulation_planes(r->simulation, interaction);
   uniform_response u;
   if (!uniform_strain_response(l->law, l->parameters, f ? f->value : NULL, w, plane_strain, &u)) {
     printf(": no stiffness\n");
@@ -55,8 +56,9 @@ static double modulus_asked(const simulation_law *l) {
 }
 
 /* In plane strain a body is stiffer than its E. */
-static void announce_modulus(const run *r, int lattice, double implied) {
-  const double difference = 0.02, asked = modulus_asked(&r->laws[lattice]);
+static void announce_modulus(const run *r, int interaction, double implied) {
+  const int lattice = r->deck->interactions[interaction].lattice;
+  const double difference = 0.02, asked = modulus_asked(&r->laws[interaction]);
   const rows *w = simulation_rows(r->simulation, lattice);
   const bool plane_strain = strcmp(r->deck->lattices[lattice].setting, "plane_strain") == 0;
   print_quantity(rows_are_chain(w) ? ": along this chain E = " : ": on this lattice E = ", implied,
@@ -65,23 +67,27 @@ static void announce_modulus(const run *r, int lattice, double implied) {
   print_quantity(" (E = ", asked, "Pa was asked for)");
 }
 
-static void announce_law(const run *r, int lattice) {
-  const rows *w = simulation_rows(r->simulation, lattice);
-  const pl_law *kernel = r->laws[lattice].law;
+static void announce_law(const run *r, int interaction) {
+  const deck_interaction *of = &r->deck->interactions[interaction];
+  const rows *w = simulation_rows(r->simulation, of->lattice);
+  const pl_law *kernel = r->laws[interaction].law;
   implied_elasticity e;
   printf("  law        %s", kernel->name);
-  if (r->model_of[lattice] && r->model_of[lattice]->path) {
-    const char *path = r->model_of[lattice]->path;
+  if (r->model_of[interaction] && r->model_of[interaction]->path) {
+    const char *path = r->model_of[interaction]->path;
     printf(" (%s)", strncmp(path, "./", 2) == 0 ? path + 2 : path);
   }
+  if (of->material->beside)
+    printf(" of %ld bonds as `%s`", simulation_law_rows(r->simulation, interaction)->bond_count,
+           of->name);
   if (w->list) {
-    announce_uniform_strain(r, lattice);
+    announce_uniform_strain(r, interaction);
     return;
   }
-  if (implied_elastic(kernel, r->laws[lattice].parameters, w, &e)) {
-    announce_modulus(r, lattice, e.E[0]);
+  if (implied_elastic(kernel, r->laws[interaction].parameters, w, &e)) {
+    announce_modulus(r, interaction, e.E[0]);
     if (!rows_are_chain(w)) printf(", nu = %.4f", e.nu[0]);
-    double strength = implied_strength(kernel, r->laws[lattice].parameters, w, 0, NULL);
+    double strength = implied_strength(kernel, r->laws[interaction].parameters, w, 0, NULL);
     if (isfinite(strength))
       print_quantity(", largest stress ", strength, "Pa under uniform strain along x, sides held");
   }
@@ -95,11 +101,11 @@ static double lost_bonds(const rows *w) {
 
 /* Where edges lack bonds, the body is softer than its lattice: said from 1 % on. With few bonds
    lost it cannot be. */
-static void announce_body(const run *r, int lattice) {
+static void announce_body(const run *r, int lattice, int interaction) {
   const double few = 0.3, many = 5e6, difference = 0.01; /* %, bonds, of the modulus */
   const rows *w = simulation_rows(r->simulation, lattice);
-  const simulation_law *l = &r->laws[lattice];
-  const parameter_planes *f = simulation_planes(r->simulation, lattice);
+  const simulation_law *l = &r->laws[interaction];
+  const parameter_planes *f = simulation_planes(r->simulation, interaction);
   implied_elasticity e;
   double E[3];
   if (w->list || lost_bonds(w) < few || !implied_elastic(l->law, l->parameters, w, &e)) return;
@@ -159,9 +165,9 @@ static void announce_notches(const run *r, int lattice) {
 }
 
 /* "S_t differs from bond to bond: 1.02e-4 to 1.33e-4, mean 1.18e-4": random fields, regions. */
-static void announce_planes(const run *r, int lattice) {
-  const parameter_planes *f = simulation_planes(r->simulation, lattice);
-  const simulation_law *l = &r->laws[lattice];
+static void announce_planes(const run *r, int interaction) {
+  const parameter_planes *f = simulation_planes(r->simulation, interaction);
+  const simulation_law *l = &r->laws[interaction];
   const bool particles = l->law->varying_place == PL_ON_PARTICLE;
   for (int k = 0; f && k < f->count; k++) {
     const pl_parameter *p = &l->law->parameters[l->law->varying[k]];
@@ -222,6 +228,17 @@ static void announce_increments(const run *r) {
   fputs("  steps      of ", stdout);
 }
 
+/* Those at work on a lattice. Of several the body as a whole is not what one of them implies. */
+static void announce_laws(const run *r, int lattice) {
+  const deck *k = r->deck;
+  for (int n = 0; n < k->interaction_count; n++) {
+    if (k->interactions[n].lattice != lattice) continue;
+    announce_law(r, n);
+    if (!k->interactions[n].material->beside) announce_body(r, lattice, n);
+    announce_planes(r, n);
+  }
+}
+
 void announce(const run *r) {
   const deck_simulation *s = &r->deck->simulation;
   const step_limit *limit = simulation_step_limit(r->simulation);
@@ -232,9 +249,7 @@ void announce(const run *r) {
     else
       announce_lattice(r, k);
     announce_notches(r, k);
-    announce_law(r, k);
-    announce_body(r, k);
-    announce_planes(r, k);
+    announce_laws(r, k);
   }
   if (r->deck->relaxation.increments > 0)
     announce_increments(r);
@@ -291,8 +306,9 @@ void describe_monitors(const run *r, char *text, size_t size) {
 static void write_bad_bond(const run *r, const bad_state *b) {
   char path[4200], error[ERROR_LENGTH + 4200];
   bad_bond_path(r->result_path, path, sizeof path);
-  if (bad_bond_write(path, r->options->deck_path, r->model_of[b->body], &r->laws[b->body],
-                     simulation_rows(r->simulation, b->body), b, error, sizeof error))
+  if (bad_bond_write(path, r->options->deck_path, r->model_of[b->interaction],
+                     &r->laws[b->interaction], simulation_rows(r->simulation, b->body), b, error,
+                     sizeof error))
     fprintf(stderr, "  this bond alone: perilat drive %s\n", path);
   else
     fprintf(stderr, "  %s\n", error);
@@ -306,7 +322,7 @@ static void print_fields(const pl_law *kernel, const double *values, bool on_par
 
 /* What the particle's law read: its family. */
 static void print_family(const run *r, const bad_state *b) {
-  const pl_law *kernel = r->laws[b->body].law;
+  const pl_law *kernel = r->laws[b->interaction].law;
   fprintf(stderr, "  the particle has %d bonds", b->family_count);
   print_fields(kernel, b->own_fields, true);
   fputc('\n', stderr);
@@ -370,8 +386,8 @@ void report_bad(const run *r) {
             "%.6g\n",
             b.bond_particle, b.stretch, b.stretch_rate, b.theta_i, b.theta_j);
     const pl_bond_class bonds = rows_bond_class(simulation_rows(r->simulation, b.body), 0);
-    if (r->model_of[b.body])
-      explain_bad(r->model_of[b.body]->plan, b.parameters, &bonds, &b, stderr);
+    if (r->model_of[b.interaction])
+      explain_bad(r->model_of[b.interaction]->plan, b.parameters, &bonds, &b, stderr);
     write_bad_bond(r, &b);
   }
   fprintf(stderr,

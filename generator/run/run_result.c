@@ -117,21 +117,22 @@ bool result_spares_inputs(run *r) {
 }
 
 /* That of the compiled kernel, also where the law is interpreted. */
-static const char *kernel_key(run *r, int lattice) {
-  return r->built_in[lattice] ? r->laws[lattice].law->key : model_key(r->model_of[lattice]);
+static const char *kernel_key(run *r, int interaction) {
+  return r->built_in[interaction] ? r->laws[interaction].law->key
+                                  : model_key(r->model_of[interaction]);
 }
 
 /* One after the other. */
 static const char *all_kernel_keys(run *r) {
   const char *keys = kernel_key(r, 0);
-  for (int k = 1; k < r->deck->lattice_count; k++)
+  for (int k = 1; k < r->deck->interaction_count; k++)
     keys = arena_printf(r->memory, "%s %s", keys, kernel_key(r, k));
   return keys;
 }
 
 void fingerprint(run *r) {
   char *text = arena_printf(r->memory, "perilat %s\n", perilat_version);
-  for (int k = 0; k < r->deck->lattice_count; k++)
+  for (int k = 0; k < r->deck->interaction_count; k++)
     text = arena_printf(r->memory, "%slaw %s, kernel %s\n", text, r->laws[k].law->name,
                         kernel_key(r, k));
   for (int k = 0; k < r->deck->file_count; k++) { /* a file may have changed */
@@ -149,18 +150,18 @@ void fingerprint(run *r) {
 
 /* --- result ----------------------------------------------------------------------------------- */
 
-/* Two lattices may have one law: its text is kept once. Kernels of one law for other lattices
+/* Two interactions may have one law: its text is kept once. Kernels of one law for other lattices
    differ. */
-static const char *text_name(run *r, const result_text *texts, int lattice) {
-  const char *name = r->laws[lattice].law->name;
-  for (int k = 0; k < lattice; k++)
-    if (strcmp(texts[k].name, name) == 0 && strcmp(texts[k].text, texts[lattice].text) != 0)
-      return arena_printf(r->memory, "%s.%s", name, r->deck->lattices[lattice].name);
+static const char *text_name(run *r, const result_text *texts, int interaction) {
+  const char *name = r->laws[interaction].law->name;
+  for (int k = 0; k < interaction; k++)
+    if (strcmp(texts[k].name, name) == 0 && strcmp(texts[k].text, texts[interaction].text) != 0)
+      return arena_printf(r->memory, "%s.%s", name, r->deck->interactions[interaction].name);
   return name;
 }
 
 static result_text *collect_texts(run *r, bool c_text, int *count) {
-  *count = r->deck->lattice_count;
+  *count = r->deck->interaction_count;
   result_text *texts = arena_alloc(r->memory, (size_t)*count * sizeof *texts);
   for (int k = 0; k < *count; k++) {
     const built_in_law *b = r->built_in[k];
@@ -232,7 +233,7 @@ static void particle_table(run *r, result_header *h) {
   h->resolved = irregular ? all.resolved : NULL;
 }
 
-/* Of a body whose particles begin at `first`. */
+/* Of bonds of a body whose particles begin at `first`. */
 static const int32_t *pairs_of(run *r, const rows *w, int32_t first) {
   rows_bond *bonds = rows_bonds(w);
   int32_t *pairs = arena_alloc(r->memory, 2 * (size_t)w->bond_count * sizeof *pairs);
@@ -246,12 +247,15 @@ static const int32_t *pairs_of(run *r, const rows *w, int32_t first) {
 
 static void bond_table(run *r, result_header *h) {
   int32_t first = 0;
-  h->interaction_count = simulation_bodies(r->simulation);
+  int lattice = 0;
+  h->interaction_count = r->deck->interaction_count;
   result_bonds *bonds = arena_alloc(r->memory, (size_t)h->interaction_count * sizeof *bonds);
   for (int b = 0; b < h->interaction_count; b++) {
-    const rows *w = simulation_rows(r->simulation, b);
-    bonds[b] = (result_bonds){r->deck->lattices[b].name, w->bond_count, pairs_of(r, w, first)};
-    first += (int32_t)w->particle_count;
+    const deck_interaction *of = &r->deck->interactions[b];
+    const rows *w = simulation_law_rows(r->simulation, b);
+    if (of->lattice > lattice)
+      first += (int32_t)simulation_rows(r->simulation, lattice++)->particle_count;
+    bonds[b] = (result_bonds){of->name, w->bond_count, pairs_of(r, w, first)};
   }
   h->bonds = bonds;
 }
@@ -273,7 +277,7 @@ static void frame_table(run *r, result_header *h) {
     const frame_field *f = &offered[k];
     fields[k] = (result_field){f->name,
                                f->unit,
-                               f->on_bonds ? h->bonds[f->body].name : NULL,
+                               f->on_bonds ? h->bonds[f->interaction].name : NULL,
                                f->components,
                                f->count,
                                f->kind,

@@ -18,11 +18,11 @@ typedef struct run {
   const deck *deck;
   model *models; /* [material_count] */
   int open_models;
-  model **model_of; /* [lattice_count] of these; NULL where it is built in or not known */
+  model **model_of; /* [interaction_count] of these; NULL where it is built in or not known */
   /* [lattice_count] the simulation's, when there is one; NULL where it is not known */
   rows **lattices;
-  simulation_law *laws;          /* [lattice_count] */
-  const built_in_law **built_in; /* [lattice_count], NULL entries otherwise */
+  simulation_law *laws;          /* [interaction_count] */
+  const built_in_law **built_in; /* [interaction_count], NULL entries otherwise */
   simulation *simulation;
   result *result;
   char *result_path, *checkpoint_path;

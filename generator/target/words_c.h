@@ -359,7 +359,7 @@
     "    bits |= changed_plane(family->old_field[$1] + first + k*family->plane,\n"                 \
     "                          family->new_field[$1] + first + k*family->new_plane, lanes);\n")    \
   X(CHANGES_END, "  return bits;\n}\n\n")                                                          \
-  X(IF_CHANGED, "    if (changes(family, first, lanes) != 0) {\n")                                 \
+  X(IF_FIELDS_CHANGED, "    if (changes(family, first, lanes) != 0) {\n")                          \
                                                                                                    \
   /* --- before all: what the compiler is told --- */                                              \
   /* gcc would ask one question of a case several times, and of strips keep what it had better     \

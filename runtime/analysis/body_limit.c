@@ -39,24 +39,27 @@ static double *vector_of(const stiffness *b) {
   return must_calloc((size_t)b->length, sizeof(double));
 }
 
-static stiffness stiffness_new(const pl_law *law, const double *parameters, double *const *varying,
-                               const rows *w) {
+static int threads_for(const rows *w) {
   const long offered = omp_get_max_threads(), sensible = 1 + w->bond_count / BONDS_A_THREAD;
-  const int threads = (int)(offered < sensible ? offered : sensible);
-  stiffness b = {.size = w->size, .length = law->dof * w->size, .stiffer = 1};
-  b.sweep = interaction_new(w, law, parameters, nominal_step, threads, false, true);
-  b.body = b.sweep->body;
-  b.sweep->parameter = varying;
+  return (int)(offered < sensible ? offered : sensible);
+}
+
+static stiffness stiffness_new(sweep *of) {
+  const rows *w = of->body->lattice;
+  stiffness b = {.sweep = of,
+                 .body = of->body,
+                 .size = w->size,
+                 .length = of->body->dof * w->size,
+                 .stiffer = 1};
   b.scale = vector_of(&b);
   b.probe = vector_of(&b);
-  for (int d = 0; d < law->dof; d++)
+  for (int d = 0; d < b.body->dof; d++)
     for (long q = 0; q < w->size; q++)
       if (w->present[q]) b.scale[d * w->size + q] = 1 / sqrt(body_mass(b.body, d, q));
   return b;
 }
 
 static void stiffness_free(stiffness *b) {
-  sweep_free(b->sweep);
   free(b->scale);
   free(b->probe);
 }
@@ -306,9 +309,8 @@ static bool find_limit(lanczos *l, step_limit *out) {
   return !is_damped(l->matrix, out->omega_max) || find_damped(l, out->omega_max, known, out);
 }
 
-void body_limit(const pl_law *law, const double *parameters, double *const *varying, const rows *w,
-                step_limit *out) {
-  stiffness b = stiffness_new(law, parameters, varying, w);
+static void limit_of(sweep *of, step_limit *out) {
+  stiffness b = stiffness_new(of);
   lanczos l = {.matrix = &b, .now = vector_of(&b), .before = vector_of(&b), .next = vector_of(&b)};
   out->omega_max = NAN;
   out->damping_ratio = out->least = 0;
@@ -318,4 +320,20 @@ void body_limit(const pl_law *law, const double *parameters, double *const *vary
   free(l.before);
   free(l.next);
   stiffness_free(&b);
+}
+
+void body_limit(const pl_law *law, const double *parameters, double *const *varying, const rows *w,
+                step_limit *out) {
+  sweep *of = interaction_new(w, law, parameters, nominal_step, threads_for(w), false, true);
+  of->parameter = varying;
+  limit_of(of, out);
+  sweep_free(of);
+}
+
+void body_limit_joint(const interaction_law *laws, int count, const rows *w, step_limit *out) {
+  sweep **parts = must_calloc((size_t)count, sizeof(sweep *));
+  sweep *of = interaction_joint(w, laws, count, nominal_step, threads_for(w), false, parts);
+  limit_of(of, out);
+  sweep_free(of);
+  free(parts);
 }

@@ -21,5 +21,9 @@
    threads the result is the same. A law that gives no finite forces has limit 0. */
 void body_limit(const pl_law *law, const double *parameters, double *const *varying, const rows *w,
                 step_limit *out);
+struct interaction_law;
+/* The same of several laws at work on the particles. */
+void body_limit_joint(const struct interaction_law *laws, int count, const rows *w,
+                      step_limit *out);
 
 #endif

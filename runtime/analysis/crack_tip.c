@@ -26,18 +26,20 @@ static void add(crack_tip *t, double way, int64_t index, bool inside) {
   if (way > 0 && inside) t->places[t->count++] = (tip_place){way, index};
 }
 
-crack_tip crack_tip_new(const sweep *state, const rows_bond *bonds, const double at[3],
-                        const double direction[3], double above, const unsigned char *inside) {
-  const rows *g = state->body->lattice;
+crack_tip crack_tip_new(const damage_law *of, const double at[3], const double direction[3],
+                        double above, const unsigned char *inside) {
+  const rows *g = of->of->lattice;
+  const rows_bond *bonds = of->bonds;
   crack_tip t = {
-      .state = state, .bonds = bonds, .on_bonds = damage_on_bonds(state->law), .above = above};
-  const long most = t.on_bonds ? g->bond_count : g->particle_count;
+      .state = of->of, .bonds = bonds, .on_bonds = damage_on_bonds(of->of->law), .above = above};
+  const long most = t.on_bonds ? of->bond_count : g->particle_count;
   t.places = must_calloc((size_t)most + 1, sizeof *t.places);
   for (long k = 0; k < most; k++) {
     const long i = g->particle_site[t.on_bonds ? bonds[k].i : k],
                j = t.on_bonds ? g->particle_site[bonds[k].j] : i;
     add(&t, 0.5 * (way_to(g, i, at, direction) + way_to(g, j, at, direction)), t.on_bonds ? k : i,
-        !inside || inside[i] || inside[j]);
+        (!inside || inside[i] || inside[j]) &&
+            (!of->of->share || of->of->share[i] > 0 || of->of->share[j] > 0));
   }
   qsort(t.places, (size_t)t.count, sizeof *t.places, by_way);
   return t;
@@ -47,7 +49,8 @@ void crack_tip_free(crack_tip *t) {
   free(t->places);
 }
 
-double crack_tip_way(const crack_tip *t, double *const *field) {
+double crack_tip_way(const crack_tip *t, bool late) {
+  double *const *field = late ? t->state->field : t->state->new_field;
   for (long k = 0; k < t->count; k++) {
     const double damage = t->on_bonds
                               ? damage_of_bond_in(t->state, field, &t->bonds[t->places[k].index])

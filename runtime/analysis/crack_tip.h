@@ -3,7 +3,7 @@
 #ifndef PERILAT_RUNTIME_CRACK_TIP_H
 #define PERILAT_RUNTIME_CRACK_TIP_H
 
-#include "runtime/interaction/sweep.h"
+#include "runtime/interaction/damage.h"
 
 typedef struct tip_place { /* where damage may be */
   double way;              /* m from the start, along the direction */
@@ -12,7 +12,7 @@ typedef struct tip_place { /* where damage may be */
 
 typedef struct crack_tip {
   const sweep *state;
-  const rows_bond *bonds; /* of the lattice, not owned */
+  const rows_bond *bonds; /* of the law, not owned */
   bool on_bonds;
   double above;      /* more damage than this counts */
   tip_place *places; /* [count] the furthest first; none behind the start */
@@ -21,10 +21,11 @@ typedef struct crack_tip {
 
 /* From `at` along `direction` (of any length), only where one end of the bond is `inside` ([size];
    NULL: everywhere). To be freed by crack_tip_free. */
-crack_tip crack_tip_new(const sweep *state, const rows_bond *bonds, const double at[3],
-                        const double direction[3], double above, const unsigned char *inside);
+crack_tip crack_tip_new(const damage_law *of, const double at[3], const double direction[3],
+                        double above, const unsigned char *inside);
 void crack_tip_free(crack_tip *t);
-/* m; 0 where nothing is damaged. `field`: of the state, [law's fields]. */
-double crack_tip_way(const crack_tip *t, double *const *field);
+/* m; 0 where nothing is damaged. In the state observed, or `late` in that which the last step has
+   left. */
+double crack_tip_way(const crack_tip *t, bool late);
 
 #endif

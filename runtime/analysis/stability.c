@@ -167,6 +167,13 @@ void stability_limit(const pl_law *law, const double *parameters, const paramete
   out->limit = stability_rounded(out->limit);
 }
 
+void stability_limit_joint(const struct interaction_law *laws, int count, const rows *w,
+                           step_limit *out) {
+  *out = (step_limit){0};
+  body_limit_joint(laws, count, w, out);
+  out->limit = stability_rounded(out->limit);
+}
+
 double stability_omega(const pl_law *law, const double *parameters, const rows *w, double kx,
                        double ky) {
   bool definite;

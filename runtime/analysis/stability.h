@@ -22,6 +22,11 @@
 void stability_limit(const pl_law *law, const double *parameters, const parameter_planes *fields,
                      const rows *w, step_limit *out);
 
+struct interaction_law;
+/* The same of several laws at work on one body (joint.h): always of the body as it stands. */
+void stability_limit_joint(const struct interaction_law *laws, int count, const rows *w,
+                           step_limit *out);
+
 /* A virgin body with a smaller eigenvalue, over the largest, flies apart; what rounding leaves of
    rigid motions is larger. */
 #define STABILITY_LEAST (-1e-6)

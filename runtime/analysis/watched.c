@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/base/elementary.h"
 #include "runtime/analysis/crack_tip.h"
 #include "runtime/analysis/particle_tensors.h"
 #include "runtime/analysis/section.h"
@@ -17,7 +18,8 @@ struct watched_part {
   /* of the kind that they are for */
   section section;
   tensor_region region;
-  crack_tip tip;
+  crack_tip *tips; /* [tip_count] of each law that has damage */
+  int tip_count;
 };
 
 bool watched_needs_forces(const deck_monitor *m) {
@@ -80,11 +82,18 @@ static bool open_section(watched_part *w, diagnostics *d) {
   return false;
 }
 
-static bool open_tip(watched_part *w, const rows_bond *bonds, diagnostics *d) {
+static bool open_tips(watched_part *w, const damage_law *laws, int count, diagnostics *d) {
   unsigned char *inside = inside_of(w);
-  w->tip = crack_tip_new(w->state, bonds, w->deck->at, w->deck->direction, w->deck->above, inside);
+  long places = 0;
+  w->tips = must_calloc((size_t)count, sizeof *w->tips);
+  for (int n = 0; n < count; n++) {
+    if (!damage_on_bonds(laws[n].of->law) && !damage_on_particles(laws[n].of->law)) continue;
+    crack_tip *t = &w->tips[w->tip_count++];
+    *t = crack_tip_new(&laws[n], w->deck->at, w->deck->direction, w->deck->above, inside);
+    places += t->count;
+  }
   free(inside);
-  if (w->tip.count > 0) return true;
+  if (places > 0) return true;
   diag_report(d, DIAG_EMPTY_REGION, deck_where(&w->deck->item, "direction"),
               "no bond lies in this direction from `at`: the way of the crack would always be 0");
   return false;
@@ -104,13 +113,13 @@ static bool open_tensor(watched_part *w, diagnostics *d) {
   return false;
 }
 
-static bool open_kind(watched_part *w, const rows_bond *bonds, diagnostics *d) {
+static bool open_kind(watched_part *w, const damage_law *laws, int count, diagnostics *d) {
   switch (w->deck->kind) {
   case MONITOR_FORCE:
     return open_section(w, d);
   case MONITOR_TIP:
   case MONITOR_TIP_SPEED:
-    return open_tip(w, bonds, d);
+    return open_tips(w, laws, count, d);
   case MONITOR_STRESS:
   case MONITOR_STRAIN:
     return open_tensor(w, d);
@@ -126,12 +135,12 @@ static bool open_kind(watched_part *w, const rows_bond *bonds, diagnostics *d) {
 }
 
 watched_part *watched_new(const deck_monitor *m, const int32_t *sites, long count, sweep *state,
-                          const rows_bond *bonds, diagnostics *d) {
+                          const damage_law *laws, int law_count, diagnostics *d) {
   watched_part *w = must_calloc(1, sizeof *w);
   *w = (watched_part){.deck = m, .state = state, .of = state->body, .count = count};
   w->sites = must_calloc((size_t)count + 1, sizeof *w->sites);
   memcpy(w->sites, sites, (size_t)count * sizeof *sites);
-  if (open_kind(w, bonds, d)) return w;
+  if (open_kind(w, laws, law_count, d)) return w;
   watched_free(w);
   return NULL;
 }
@@ -140,7 +149,9 @@ void watched_free(watched_part *w) {
   if (!w) return;
   section_free(&w->section);
   tensor_region_free(&w->region);
-  crack_tip_free(&w->tip);
+  for (int n = 0; n < w->tip_count; n++)
+    crack_tip_free(&w->tips[n]);
+  free(w->tips);
   free(w->sites);
   free(w);
 }
@@ -194,6 +205,13 @@ static double tensor(const watched_part *w, const watch_instant *at) {
   return t[w->deck->component];
 }
 
+static double way_of_tip(const watched_part *w, bool late) {
+  double way = 0;
+  for (int n = 0; n < w->tip_count; n++)
+    way = pl_fmax(way, crack_tip_way(&w->tips[n], late));
+  return way;
+}
+
 double watched_value(const watched_part *w, const watch_instant *at) {
   const moving_particles m = moving(w, at);
   switch (w->deck->kind) {
@@ -209,7 +227,7 @@ double watched_value(const watched_part *w, const watch_instant *at) {
     return force(w, at->forces);
   case MONITOR_TIP:
   case MONITOR_TIP_SPEED:
-    return crack_tip_way(&w->tip, at->field);
+    return way_of_tip(w, at->late);
   default:
     return tensor(w, at);
   }
@@ -246,7 +264,7 @@ static const char *tensor_words(const watched_part *w) {
 static char *tip_words(const watched_part *w, arena *a) {
   const bool speed = w->deck->kind == MONITOR_TIP_SPEED;
   return arena_printf(a, "%s of the furthest %s with more damage than %.6g from %s on",
-                      speed ? "speed" : "way", w->tip.on_bonds ? "bond" : "particle",
+                      speed ? "speed" : "way", w->tips[0].on_bonds ? "bond" : "particle",
                       w->deck->above, place_words(w, w->deck->at, a));
 }
 

@@ -8,23 +8,24 @@
 #include "runtime/body/momentum.h"
 #include "runtime/deck/deck.h"
 #include "runtime/interaction/bond_forces.h"
+#include "runtime/interaction/damage.h"
 
 typedef struct watched_part watched_part;
 
 typedef struct watch_instant { /* the state looked at, which was observed */
   velocities_of *velocity;
   const void *velocities;
-  bond_forces *forces;  /* found; NULL unless asked for */
-  double *const *field; /* [law's fields] */
-  double *scratch;      /* [size] */
+  bond_forces *forces; /* found; NULL unless asked for */
+  bool late;           /* fields are those that the last step has left, not those observed */
+  double *scratch;     /* [size] */
 } watch_instant;
 
 /* Whether the bonds' forces are asked for. */
 bool watched_needs_forces(const deck_monitor *m);
-/* Sites of the region, or of all particles. NULL with a diagnostic where nothing is there to watch,
+/* Sites of the region, or of all particles; `laws`: all at work on these. NULL with a diagnostic where nothing is there to watch,
    and for what monitors watch by themselves. */
 watched_part *watched_new(const deck_monitor *m, const int32_t *sites, long count, sweep *state,
-                          const rows_bond *bonds, diagnostics *d);
+                          const damage_law *laws, int law_count, diagnostics *d);
 void watched_free(watched_part *w);
 double watched_value(const watched_part *w, const watch_instant *at);
 /* Of an acceleration: the mean velocity half a step before, m/s. */

@@ -64,19 +64,30 @@ typedef struct deck_assignment { /* parameter = value in a &material */
 
 typedef struct deck_material {
   deck_item item;
-  const char *lattice; /* name */
-  const char *region;  /* name; NULL: of the whole lattice, but for what regions say */
-  const char *model;   /* name in models/ or a path ending in .plm */
+  const char *lattice;    /* name */
+  const char *region;     /* name; NULL: of the whole lattice, but for what others say */
+  const char *between[2]; /* names of regions; NULL: not of the bonds between two */
+  const char *model;      /* name in models/ or a path ending in .plm */
   deck_assignment *assignments;
   int assignment_count;
   /* [varying_count] parameters that a &field makes differ in space */
   const char **varying;
   const span *varying_where;
   int varying_count;
-  /* [regional_count] the materials of regions of the same lattice; none for these themselves */
+  /* [regional_count] the materials of regions of the same lattice that have the same law; none for
+     these themselves */
   const struct deck_material **regional;
   int regional_count;
+  bool beside; /* other laws are at work on the lattice, too */
 } deck_material;
+
+/* A law at work on a lattice: that of its material without region first, then those of regions with
+   another law, and of bonds between regions. */
+typedef struct deck_interaction {
+  const char *name; /* the lattice's; "plate.core", "plate.left-right" of the others */
+  int lattice;
+  const deck_material *material; /* NULL where the lattice has none */
+} deck_interaction;
 
 typedef enum field_kind { FIELD_UNIFORM, FIELD_NORMAL, FIELD_LOGNORMAL, FIELD_WEIBULL } field_kind;
 
@@ -323,6 +334,8 @@ typedef struct deck {
                            without comments, title, number of threads and checkpoints */
   deck_file *files;     /* each once */
   int file_count;
+  const deck_interaction *interactions; /* lattice by lattice */
+  int interaction_count;
   unsigned lacks;    /* groups of which items were left out: see deck_lacks */
   deck_names *names; /* of what deck_find_... finds; NULL: few, looked at one by one */
 #define ONE(group) deck_##group group;
@@ -352,8 +365,7 @@ bool deck_lacks(const deck *k, const char *group);
 int deck_find_region(const deck *k, const char *name);
 int deck_find_lattice(const deck *k, const char *name);
 int deck_find_monitor(const deck *k, const char *name);
-/* Index of the first &material of a lattice, or -1. */
-/* That without region. */
+/* Index of the first &material of a lattice that is of the whole of it, or -1. */
 int deck_find_material(const deck *k, const char *lattice);
 /* That of lattice number `lattice`; NULL without one. */
 const deck_material *deck_material_of(const deck *k, int lattice);

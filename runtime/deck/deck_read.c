@@ -282,28 +282,50 @@ static void check_quasi_static(deck_reader *r) {
                 "a quasi-static run begins at rest: no `&initial_velocity` with `&relaxation`");
 }
 
-/* Other values of the same law, in a region of the same lattice. */
-static void check_regional(deck_reader *r, const deck_material *m) {
-  const int region =
-      deck_item_region_known(r, &m->item, m->region) ? deck_find_region(r->k, m->region) : -1;
-  if (region < 0 || !m->lattice || !m->model) return;
-  const char *of = r->k->regions[region].lattice;
-  if (of && strcmp(of, m->lattice) != 0)
-    diag_report(r->d, DIAG_CONFLICT, deck_where(&m->item, "region"),
-                "the region `%s` is of the lattice `%s`, not of `%s`",
-                deck_shown(r->memory, m->region), deck_shown(r->memory, of),
+/* A region that a material is for is one of its lattice. */
+static void check_region_of(deck_reader *r, const deck_material *m, const char *key,
+                            const char *name) {
+  const span where = deck_where(&m->item, key);
+  const int region = deck_region_known(r, where, name) ? deck_find_region(r->k, name) : -1;
+  const char *of = region < 0 ? NULL : r->k->regions[region].lattice;
+  if (of && m->lattice && strcmp(of, m->lattice) != 0)
+    diag_report(r->d, DIAG_CONFLICT, where, "the region `%s` is of the lattice `%s`, not of `%s`",
+                deck_shown(r->memory, name), deck_shown(r->memory, of),
                 deck_shown(r->memory, m->lattice));
-  const int whole = deck_find_material(r->k, m->lattice);
-  if (whole < 0 || deck_same_name(r->k->materials[whole].model, m->model)) return;
-  diag_report(r->d, DIAG_NOT_SUPPORTED, deck_where(&m->item, "model"),
-              "a region has the law of its lattice, with other values");
-  diag_note(r->d, deck_where(&r->k->materials[whole].item, "model"), "the lattice's law");
+}
+
+/* The second material of the same bonds or particles. */
+static void check_once(deck_reader *r, const deck_material *m) {
+  for (const deck_material *other = r->k->materials; other < m; other++) {
+    const bool same = deck_same_name(other->lattice, m->lattice);
+    const bool region = m->region && deck_same_name(other->region, m->region);
+    const bool bonds = m->between[0] && other->between[0] &&
+                       ((deck_same_name(other->between[0], m->between[0]) &&
+                         deck_same_name(other->between[1], m->between[1])) ||
+                        (deck_same_name(other->between[0], m->between[1]) &&
+                         deck_same_name(other->between[1], m->between[0])));
+    if (!same || !(region || bonds)) continue;
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&m->item, region ? "region" : "between"),
+                region ? "the region `%s` has a material already"
+                       : "the bonds between `%s` and `%s` have a material already",
+                deck_shown(r->memory, region ? m->region : m->between[0]),
+                region ? "" : deck_shown(r->memory, m->between[1]));
+    diag_note(r->d, other->item.where, "it is given here");
+    return;
+  }
 }
 
 static void check_regional_materials(deck_reader *r) {
-  const deck *k = r->k;
-  for (int i = 0; i < k->material_count; i++)
-    if (k->materials[i].region) check_regional(r, &k->materials[i]);
+  for (int i = 0; i < r->k->material_count; i++) {
+    const deck_material *m = &r->k->materials[i];
+    if (m->region) check_region_of(r, m, "region", m->region);
+    for (int end = 0; end < 2 && m->between[end]; end++)
+      check_region_of(r, m, "between", m->between[end]);
+    if (m->between[0] && deck_same_name(m->between[0], m->between[1]))
+      diag_report(r->d, DIAG_BAD_VALUE, deck_where(&m->item, "between"),
+                  "a bond `between` joins two regions; the material of one is given by `region`");
+    check_once(r, m);
+  }
 }
 
 /* The material of the lattice whose region `m` is for; -1: nothing fits. */
@@ -328,16 +350,58 @@ static void inherit_density(deck_material *m, const deck_material *whole) {
   m->assignments[m->assignment_count++] = *density; /* there is room: for `region` */
 }
 
+/* The deck is still being read. */
+static deck_material *material_read(const deck *k, int material) {
+  return (deck_material *)(uintptr_t)&k->materials[material];
+}
+
 /* The lattice's material knows those of its regions. */
 static void link_regional(arena *a, deck *k) {
   for (int i = 0; i < k->material_count; i++) {
     const int whole = lattice_material(k, &k->materials[i]);
     if (whole < 0) continue;
-    deck_material *of = (deck_material *)(uintptr_t)&k->materials[whole]; /* still being read */
+    deck_material *of = material_read(k, whole);
     of->regional = arena_room(a, of->regional, of->regional_count, sizeof *of->regional);
     of->regional[of->regional_count++] = &k->materials[i];
-    inherit_density((deck_material *)(uintptr_t)&k->materials[i], of);
+    inherit_density(material_read(k, i), of);
   }
+}
+
+/* A law of its own in a part of the lattice. */
+static bool is_law_beside(const deck *k, int material, const char *lattice) {
+  const deck_material *m = &k->materials[material];
+  return deck_same_name(m->lattice, lattice) && (m->region || m->between[0]) && m->model &&
+         lattice_material(k, m) < 0;
+}
+
+static deck_interaction law_beside(arena *a, const deck *k, int lattice, int material) {
+  const deck_material *m = &k->materials[material];
+  const char *of = k->lattices[lattice].name;
+  return (deck_interaction){
+      .name = m->region ? arena_printf(a, "%s.%s", of, m->region)
+                        : arena_printf(a, "%s.%s-%s", of, m->between[0], m->between[1]),
+      .lattice = lattice,
+      .material = m};
+}
+
+/* The laws at work on each lattice. */
+static void list_interactions(arena *a, deck *k) {
+  deck_interaction *all =
+      arena_alloc(a, ((size_t)k->lattice_count + (size_t)k->material_count + 1) * sizeof *all);
+  int count = 0;
+  for (int n = 0; n < k->lattice_count; n++) {
+    const char *name = k->lattices[n].name;
+    const int whole = name ? deck_find_material(k, name) : -1;
+    all[count++] = (deck_interaction){
+        .name = name, .lattice = n, .material = whole < 0 ? NULL : &k->materials[whole]};
+    for (int m = 0; m < k->material_count && whole >= 0; m++)
+      if (is_law_beside(k, m, name)) {
+        material_read(k, m)->beside = material_read(k, whole)->beside = true;
+        all[count++] = law_beside(a, k, n, m);
+      }
+  }
+  k->interactions = all;
+  k->interaction_count = count;
 }
 
 /* Middle of the box that holds what a material is for; NaN where no shape says. */
@@ -443,6 +507,7 @@ const deck *deck_read_what_is_right(arena *a, source_set *sources, int file,
   leave_out_all_faulty(k);
   k->names = deck_names_new(a); /* others have moved up */
   link_regional(a, k);
+  list_interactions(a, k);
   return k;
 }
 

@@ -297,8 +297,13 @@ static const deck_key_info material_keys[] = {
      .type = DECK_NAME,
      .fallback = "= the whole lattice",
      DECK_AT(material, region),
-     .doc = "other values of parameters in a part of the lattice, which has a material without "
-            "`region`, too"},
+     .doc = "other values of parameters, or another law, in a part of the lattice, which has a "
+            "material without `region`, too"},
+    {.name = "between",
+     .type = DECK_NAMES,
+     DECK_AT(material, between),
+     .doc = "two regions: the material of the bonds that join one with the other, such as those "
+            "across a weak plane; for laws of bonds"},
 };
 
 /* One that reads no place is a number. */
@@ -354,7 +359,8 @@ static void check_material(deck_reader *r, const namelist_group *from, void *int
   deck_assignments_read(r->memory, from, item, r->d);
   if (!deck_lattice_known(r, &item->item, item->lattice)) return;
   const int first = deck_find_material(r->k, item->lattice);
-  if (first < 0 || item->region) return;
+  deck_refuse_both(r, from, "region", "between");
+  if (first < 0 || item->region || item->between[0]) return;
   diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "lattice"),
               "the lattice `%s` has a material already", deck_shown(r->memory, item->lattice));
   diag_note(r->d, r->k->materials[first].item.where, "it is given here");

@@ -6,9 +6,12 @@
 #include "dsl/base/arena.h"
 #include "runtime/body/motion.h"
 #include "runtime/interaction/family_forces.h"
+#include "runtime/interaction/joint.h"
 #include "runtime/interaction/pairwise.h"
 
 struct bond_forces {
+  bond_forces **parts; /* [part_count] of several laws at work together; nothing else then */
+  int part_count;
   sweep *w;
   family_forces *families; /* NULL of laws of bonds, which use what follows */
   double **field, **force; /* [field_count][pitch], [force_planes][pitch]: of a strip */
@@ -19,11 +22,23 @@ struct bond_forces {
 static double **planes_new(sweep *w, int count) {
   double **planes = must_calloc((size_t)count + 1, sizeof *planes);
   for (int k = 0; k < count; k++)
-    planes[k] = body_doubles(w->body, w->body->lattice->pitch);
+    planes[k] = body_doubles(w->body, w->lattice->pitch);
   return planes;
 }
 
+static bond_forces *forces_of_parts(sweep *const *parts, int count) {
+  bond_forces *f = must_calloc(1, sizeof *f);
+  f->part_count = count;
+  f->parts = must_calloc((size_t)count, sizeof(bond_forces *));
+  for (int k = 0; k < count; k++)
+    f->parts[k] = bond_forces_new(parts[k]);
+  return f;
+}
+
 bond_forces *bond_forces_new(sweep *w) {
+  int count;
+  sweep *const *parts = joint_parts(w, &count);
+  if (parts) return forces_of_parts(parts, count);
   bond_forces *f = must_calloc(1, sizeof *f);
   f->w = w;
   f->found_step = -1;
@@ -39,6 +54,9 @@ bond_forces *bond_forces_new(sweep *w) {
 
 void bond_forces_free(bond_forces *f) {
   if (!f) return;
+  for (int k = 0; k < f->part_count; k++)
+    bond_forces_free(f->parts[k]);
+  free(f->parts);
   family_forces_free(f->families);
   free(f->field);
   free(f->force);
@@ -47,6 +65,8 @@ void bond_forces_free(bond_forces *f) {
 }
 
 void bond_forces_find(bond_forces *f, int64_t step) {
+  for (int k = 0; k < f->part_count; k++)
+    bond_forces_find(f->parts[k], step);
   if (step >= 0 && f->found_step == step) return;
   if (f->families) family_forces_find(f->families);
   f->found_step = step;
@@ -58,8 +78,8 @@ void bond_forces_find(bond_forces *f, int64_t step) {
 static void evaluate(const bond_forces *f, row_part at, int direction) {
   const sweep *w = f->w;
   const long near = body_start(w->body, at.row) + at.first,
-             far = near + rows_offset(w->body->lattice, at.row, direction),
-             slot = direction * w->body->lattice->size + near;
+             far = near + rows_offset(w->lattice, at.row, direction),
+             slot = direction * w->lattice->size + near;
   pl_strip s = {.size = sizeof s,
                 .count = at.end - at.first,
                 .direction = direction,
@@ -85,7 +105,7 @@ static void evaluate(const bond_forces *f, row_part at, int direction) {
 /* Force planes as pl_law says. Particles get the opposite of end moments. */
 static bond_force force_at(const bond_forces *f, long site, int direction, long q) {
   bond_force b = {.owner = site,
-                  .partner = rows_partner(f->w->body->lattice, site, direction),
+                  .partner = rows_partner(f->w->lattice, site, direction),
                   .direction = direction};
   for (int d = 0; d < 2; d++) {
     b.on_owner[d] = f->force[d][q];
@@ -130,6 +150,9 @@ static void each_of_strips(bond_forces *f, const uint64_t *wanted, bond_force_us
 }
 
 void bond_forces_each(bond_forces *f, const uint64_t *wanted, bond_force_use *use, void *to) {
+  for (int k = 0; k < f->part_count; k++)
+    bond_forces_each(f->parts[k], wanted, use, to);
+  if (f->part_count > 0) return;
   if (f->families)
     family_forces_each(f->families, wanted, use, to);
   else

@@ -3,6 +3,8 @@
    velocities and the fields that the last step has left, as those that are observed (sweep.h):
    their sums are the forces of the state observed, to rounding.
 
+   Of several laws at work together (joint.h) a bond comes once for each that has a part in it.
+
    Of laws of bonds the law is asked strip by strip. The bonds of a law of families
    (family_forces.h) may depend on their families, and only the last pass of a step knows forces: it
    is run once more for every direction, twice, with bonds of which no two meet in a particle. */

@@ -58,28 +58,40 @@ const double *damage_of_all_bonds(const sweep *w) {
   return only;
 }
 
-static void mean_over_bonds(const sweep *w, const rows_bond *bonds, double *values) {
-  const rows *g = w->body->lattice;
-  int32_t *count = must_calloc((size_t)g->particle_count, sizeof *count);
-  memset(values, 0, (size_t)g->particle_count * sizeof *values);
-  for (long b = 0; b < g->bond_count; b++) {
-    const int32_t ends[2] = {bonds[b].i, bonds[b].j};
-    const double damage = damage_of_bond(w, &bonds[b]);
+/* The particle is one of the law, where several are at work. */
+static bool is_of_law(const sweep *w, long site) {
+  return !w->share || w->share[site] > 0;
+}
+
+/* Adds up the damage of the bonds of each particle, and counts these. */
+static void add_bonds(const damage_law *l, double *sum, int32_t *count) {
+  const rows *g = l->of->lattice;
+  for (long b = 0; b < l->bond_count; b++) {
+    const int32_t ends[2] = {l->bonds[b].i, l->bonds[b].j};
+    const double damage = damage_of_bond(l->of, &l->bonds[b]);
     for (int e = 0; e < 2; e++) {
-      values[ends[e]] += damage;
+      if (!is_of_law(l->of, g->particle_site[ends[e]])) continue;
+      sum[ends[e]] += damage;
       count[ends[e]]++;
     }
   }
-  for (long p = 0; p < g->particle_count; p++)
-    if (count[p]) values[p] /= count[p];
-  free(count);
 }
 
-void damage_of_particles(const sweep *w, const rows_bond *bonds, double *values) {
-  if (!damage_on_particles(w->law)) {
-    mean_over_bonds(w, bonds, values);
-    return;
-  }
-  for (long p = 0; p < w->body->lattice->particle_count; p++)
-    values[p] = damage_of_site(w, w->body->lattice->particle_site[p]);
+static void take_particles(const sweep *w, double *values) {
+  for (long p = 0; p < w->lattice->particle_count; p++)
+    if (is_of_law(w, w->lattice->particle_site[p]))
+      values[p] = damage_of_site(w, w->lattice->particle_site[p]);
+}
+
+void damage_of_particles(const damage_law *laws, int count, double *values) {
+  const long particles = laws[0].of->lattice->particle_count;
+  int32_t *bonds = must_calloc((size_t)particles, sizeof *bonds);
+  memset(values, 0, (size_t)particles * sizeof *values);
+  for (int n = 0; n < count; n++)
+    if (!damage_on_particles(laws[n].of->law)) add_bonds(&laws[n], values, bonds);
+  for (long p = 0; p < particles; p++)
+    if (bonds[p]) values[p] /= bonds[p];
+  for (int n = 0; n < count; n++)
+    if (damage_on_particles(laws[n].of->law)) take_particles(laws[n].of, values);
+  free(bonds);
 }

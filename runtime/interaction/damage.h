@@ -20,7 +20,13 @@ const double *damage_of_all_bonds(const sweep *w);
 /* Of those on particles; 0 without. */
 double damage_of_site(const sweep *w, long site);
 double damage_of_site_in(const sweep *w, double *const *field, long site);
-/* values[particle_count]; `bonds` are all bonds of the lattice. */
-void damage_of_particles(const sweep *w, const rows_bond *bonds, double *values);
+/* A law at work on the particles, with the bonds it has a part in. */
+typedef struct damage_law {
+  const sweep *of;
+  const rows_bond *bonds;
+  long bond_count;
+} damage_law;
+/* values[particle_count]: of all laws at work on a body. */
+void damage_of_particles(const damage_law *laws, int count, double *values);
 
 #endif

@@ -80,8 +80,7 @@ static uint64_t *const *marks_at(marks *m, int count, long site) {
 static planes new_fields(sweep *w) {
   planes p = planes_new(w->law->field_count);
   for (int k = 0; k < p.count; k++)
-    p.all[k] =
-        body_doubles(w->body, sweep_planes(w, w->law->fields[k].place) * w->body->lattice->size);
+    p.all[k] = body_doubles(w->body, sweep_planes(w, w->law->fields[k].place) * w->lattice->size);
   return p;
 }
 
@@ -98,9 +97,10 @@ static void find_shared(family_forces *f) {
   f->shown = planes_new(f->bond_link.count);
   for (int k = 0; k < f->bond_link.count; k++) {
     f->shared[k] = is_shared(&f->w->law->step, k);
-    f->shown.all[k] = f->shared[k] ? body_doubles(f->w->body, sweep_planes(f->w, PL_ON_NEIGHBOUR) *
-                                                                  f->w->body->lattice->size)
-                                   : f->bond_link.all[k];
+    f->shown.all[k] =
+        f->shared[k]
+            ? body_doubles(f->w->body, sweep_planes(f->w, PL_ON_NEIGHBOUR) * f->w->lattice->size)
+            : f->bond_link.all[k];
   }
 }
 
@@ -110,7 +110,7 @@ static bool has_run(const family_forces *f, long site, int direction) {
 
 /* From one bond to the next of that direction, to the end or round to where it began. */
 static void share_out_chain(family_forces *f, long first, int direction) {
-  const rows *g = f->w->body->lattice;
+  const rows *g = f->w->lattice;
   const uint64_t bit = UINT64_C(1) << direction;
   long q = first, last = first;
   int run = 1;
@@ -127,7 +127,7 @@ static void share_out_chain(family_forces *f, long first, int direction) {
 
 /* Chains that begin somewhere, then rings. */
 static void share_out(family_forces *f) {
-  const rows *g = f->w->body->lattice;
+  const rows *g = f->w->lattice;
   for (int r = 0; r < RUNS; r++)
     f->run[r] = must_calloc((size_t)g->size, sizeof *f->run[r]);
   for (int rings = 0; rings < 2; rings++)
@@ -138,7 +138,7 @@ static void share_out(family_forces *f) {
 
 /* Whatever is marked as 0 or settled is looked at all the same. */
 static void set_marks(family_forces *f) {
-  const size_t words = (size_t)(f->w->body->lattice->size / PL_LANES);
+  const size_t words = (size_t)(f->w->lattice->size / PL_LANES);
   for (int k = 0; k < f->field.count; k++) {
     if (!f->filled.all[k]) continue;
     memset(f->filled.all[k], 0xff, words * sizeof(uint64_t));
@@ -147,7 +147,7 @@ static void set_marks(family_forces *f) {
 }
 
 family_forces *family_forces_new(sweep *w) {
-  const rows *g = w->body->lattice;
+  const rows *g = w->lattice;
   const long size = g->size, values = sweep_planes(w, PL_ON_NEIGHBOUR) * size;
   family_forces *f = must_calloc(1, sizeof *f);
   f->w = w;
@@ -212,7 +212,7 @@ static void run_part(family_forces *f, int pass, row_part at, const uint64_t *bo
 
 void family_forces_find(family_forces *f) {
   const body *of = f->w->body;
-  const rows *g = of->lattice;
+  const rows *g = f->w->lattice;
   set_marks(f);
   for (int pass = 0; pass + 1 < f->w->law->step.pass_count; pass++) {
     for (int row = 0; row < g->row_count; row++)
@@ -226,7 +226,7 @@ void family_forces_find(family_forces *f) {
 
 /* The bond of a site in that direction is seen from now on, or no longer. */
 static void show(family_forces *f, long site, int direction, bool seen) {
-  const rows *g = f->w->body->lattice;
+  const rows *g = f->w->lattice;
   const uint64_t bit = UINT64_C(1) << direction;
   const long partner = rows_partner(g, site, direction);
   f->seen[site] = seen ? bit : 0;
@@ -258,7 +258,7 @@ static row_part part_seen(const family_forces *f, int row) {
 static void use_force(const family_forces *f, long site, int direction, bond_force_use *use,
                       void *to) {
   bond_force b = {.owner = site,
-                  .partner = rows_partner(f->w->body->lattice, site, direction),
+                  .partner = rows_partner(f->w->lattice, site, direction),
                   .direction = direction};
   for (int d = 0; d < f->force.count; d++) {
     b.on_owner[d] = f->force.all[d][b.owner];
@@ -269,8 +269,7 @@ static void use_force(const family_forces *f, long site, int direction, bond_for
 
 static void each_of_run(family_forces *f, const uint64_t *wanted, int direction, int run,
                         bond_force_use *use, void *to) {
-  const body *of = f->w->body;
-  const rows *g = of->lattice;
+  const rows *g = f->w->lattice;
   bool any = false;
   for (long q = 0; q < g->size; q++) {
     if (!is_of_run(f, wanted, q, direction, run)) continue;
@@ -288,7 +287,7 @@ static void each_of_run(family_forces *f, const uint64_t *wanted, int direction,
 }
 
 void family_forces_each(family_forces *f, const uint64_t *wanted, bond_force_use *use, void *to) {
-  for (int k = 0; k < f->w->body->lattice->directions; k++)
+  for (int k = 0; k < f->w->lattice->directions; k++)
     for (int run = 0; run < RUNS; run++)
       each_of_run(f, wanted, k, run, use, to);
 }

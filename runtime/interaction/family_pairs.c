@@ -95,7 +95,7 @@ void family_pairs_fields_set(const sweep *w) {
 
 /* Rows from which bonds reach a held particle, or that have one. */
 static unsigned char *rows_near_held(const sweep *w, int reach) {
-  const rows *g = w->body->lattice;
+  const rows *g = w->lattice;
   unsigned char *near = must_calloc((size_t)g->row_count + 1, sizeof *near);
   for (int row = 0; row < g->row_count; row++) {
     const int first = row > reach ? row - reach : 0;
@@ -115,10 +115,10 @@ family_pairs *family_pairs_new(sweep *w, const family *f) {
   p->old_filled = pair_marks_new(w);
   p->new_filled = pair_marks_new(w);
   p->settled = pair_marks_new(w);
-  p->unusual = must_calloc((size_t)(w->body->lattice->size / PL_LANES) + 1, sizeof *p->unusual);
+  p->unusual = must_calloc((size_t)(w->lattice->size / PL_LANES) + 1, sizeof *p->unusual);
   p->constant_sum = must_calloc((size_t)w->law->constant_sum_count + 1, sizeof *p->constant_sum);
   for (int k = 0; k < w->law->constant_sum_count; k++)
-    p->constant_sum[k] = body_doubles(w->body, w->body->lattice->size);
+    p->constant_sum[k] = body_doubles(w->body, w->lattice->size);
   p->blocks = must_calloc((size_t)w->body->block_count, sizeof *p->blocks);
   for (int k = 0; k < w->body->block_count; k++) {
     pairs_block *b = &p->blocks[k];

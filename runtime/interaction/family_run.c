@@ -15,7 +15,7 @@ static void point_at_fields(const sweep *w, family_block *b, long start) {
   for (int k = 0; k < SHAPE_PLANES && f->shape[k]; k++)
     b->shape[k] = f->shape[k] + start;
   for (int d = 0; d < w->body->dof; d++)
-    b->force[d] = w->body->force[d] + start;
+    b->force[d] = w->force[d] + start;
 }
 
 /* Where the neighbours of the run's particles are. */
@@ -39,9 +39,9 @@ void family_run_begin(const sweep *w, const pl_program *program, int block, pl_f
   family_block *b = &f->blocks[block];
   b->observing = program == &w->law->observe;
   *run = (pl_family){.size = sizeof *run,
-                     .row_stride = FAMILY_ROWS_ALIKE * w->body->lattice->pitch,
+                     .row_stride = FAMILY_ROWS_ALIKE * w->lattice->pitch,
                      .neighbours = f->neighbours,
-                     .plane = w->body->lattice->size,
+                     .plane = w->lattice->size,
                      .parameter = b->parameter,
                      .shape = b->shape,
                      .old_field = b->old_field,
@@ -59,16 +59,16 @@ void family_run_part(const sweep *w, int block, row_part at, pl_family *run) {
   point_at_fields(w, &family_of(w)->blocks[block], start);
   run->count = at.end - at.first;
   run->rows = 1;
-  run->new_plane = w->body->lattice->size;
-  run->bonds = w->body->lattice->bonds + start;
-  run->held = w->body->lattice->held + start;
+  run->new_plane = w->lattice->size;
+  run->bonds = w->lattice->bonds + start;
+  run->held = w->lattice->held + start;
   if (w->law->reads_share) run->share = (w->share ? w->share : family_of(w)->whole) + start;
   if (w->lost_state) {
-    const bool aside = family_of(w)->blocks[block].aside;
+    const bool aside = w->body->blocks[block].aside;
     run->lost[PL_LOST_TO_STATES] = (aside ? w->lost_state : w->dissipated_state) + start;
     run->lost[PL_LOST_TO_RATES] = (aside ? w->lost_rate : w->dissipated_rate) + start;
   }
-  point_at_neighbours(w->body->lattice, at.row, start, run);
+  point_at_neighbours(w->lattice, at.row, start, run);
   for (int d = 0; d < w->body->dof; d++) {
     run->displacement[d] = w->body->displacement[d] + start;
     run->velocity[d] = w->body->velocity[d] + start;

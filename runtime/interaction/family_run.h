@@ -13,7 +13,6 @@ enum { FAMILY_ROWS_ALIKE = 2 }; /* rows to the next in which neighbours may stan
 
 typedef struct family_block { /* pointers to the run at hand, for the law */
   bool observing; /* the observe program reads the fields that the step program has just found */
-  bool aside; /* the passes at hand are not a step's: what is lost is so in the state observed */
   const double **old_field;
   double **new_field, **link, **bond_link, **observed;
   const double **parameter;

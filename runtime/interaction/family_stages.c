@@ -5,7 +5,7 @@
 /* The row after the last that goes on in memory as this one begins, with neighbours at the same
    offsets: together they are one long row, with absent sites in between. */
 static int end_of_alike(const sweep *w, int row, int last) {
-  const unsigned char *kind = w->body->lattice->row_class + w->body->lattice->margin;
+  const unsigned char *kind = w->lattice->row_class + w->lattice->margin;
   int end = row + 1;
   while (end < last && w->body->count[row] > 0 && w->body->count[end] > 0 && kind[end] == kind[row])
     end++;
@@ -33,7 +33,7 @@ static void inner_rows(const sweep *w, int block, int pass, int *first, int *las
   const body_block *b = &w->body->blocks[block];
   const int lost = pass * family_of(w)->reach;
   *first = b->first == 0 ? 0 : b->first + lost;
-  *last = b->last == w->body->lattice->row_count ? b->last : b->last - lost;
+  *last = b->last == w->lattice->row_count ? b->last : b->last - lost;
   if (*last < *first) *last = *first = b->last;
 }
 
@@ -42,8 +42,7 @@ static void inner_rows(const sweep *w, int block, int pass, int *first, int *las
 static void run_inner(const sweep *w, const pl_program *program, int block) {
   enum { ROWS_AT_A_TIME = 16 };
   enum { FARTHEST = 100 }; /* rows between passes that a cache may still hold */
-  const int at_a_time =
-      family_of(w)->reach > FARTHEST ? w->body->lattice->row_count : ROWS_AT_A_TIME;
+  const int at_a_time = family_of(w)->reach > FARTHEST ? w->lattice->row_count : ROWS_AT_A_TIME;
   int next[FAMILY_MOST_PASSES], last[FAMILY_MOST_PASSES];
   const int passes = program->pass_count;
   for (int p = 0; p < passes; p++)

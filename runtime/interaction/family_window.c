@@ -100,8 +100,8 @@ static bool suits(const sweep *w, const family *f) {
   enum {
     MOST_NEIGHBOURS = 39
   }; /* of more, links fill no cache, and later passes may read new fields */
-  const int least = w->body->lattice->row_count / w->body->block_count;
-  return !w->body->lattice->list && f->neighbours <= MOST_NEIGHBOURS &&
+  const int least = w->lattice->row_count / w->body->block_count;
+  return !w->lattice->list && f->neighbours <= MOST_NEIGHBOURS &&
          (w->body->block_count == 1 ||
           least >= ROWS_TO_HALO * most(halo(f, f->march), halo(f, &w->law->observe)));
 }
@@ -128,11 +128,11 @@ static void open_planes(sweep *w, const family *f, family_window *v) {
   const pl_law *law = w->law;
   const int forces = w->body->forces ? 0 : w->body->dof;
   const long planes = law->link_count + (long)law->bond_link_count * f->neighbours + forces;
-  v->plane = distance_of_planes(v, w->body->lattice->pitch);
+  v->plane = distance_of_planes(v, w->lattice->pitch);
   v->memory = body_doubles(w->body, planes * v->plane);
   v->link = must_calloc((size_t)law->link_count + 1, sizeof *v->link);
   v->bond_link = must_calloc((size_t)law->bond_link_count + 1, sizeof *v->bond_link);
-  double *next = v->memory + w->body->lattice->pitch;
+  double *next = v->memory + w->lattice->pitch;
   for (int k = 0; k < law->link_count; k++, next += v->plane)
     v->link[k] = next;
   for (int k = 0; k < law->bond_link_count; k++, next += f->neighbours * v->plane)
@@ -145,7 +145,7 @@ static double **scratch_rows(sweep *w, const pl_field *fields, int count, int mo
   double **rows_of = must_calloc((size_t)(more + count) + 1, sizeof *rows_of);
   for (int k = 0; k < more + count; k++)
     rows_of[k] = body_doubles(w->body, (k < more ? 1 : sweep_planes(w, fields[k - more].place)) *
-                                           w->body->lattice->pitch);
+                                           w->lattice->pitch);
   return rows_of;
 }
 
@@ -166,12 +166,12 @@ static void find_straight(family_window *v, int neighbours) {
 static void find_inner(const sweep *w, const family *f, const body_block *b, family_window *v) {
   const int lost = halo(f, f->march);
   v->inner = b->first == 0 ? 0 : b->first + lost;
-  v->inner_end = b->last == w->body->lattice->row_count ? b->last : b->last - lost;
+  v->inner_end = b->last == w->lattice->row_count ? b->last : b->last - lost;
 }
 
 static void open_window(sweep *w, const family *f, const body_block *b, family_window *v) {
   const pl_law *law = w->law;
-  const rows *g = w->body->lattice;
+  const rows *g = w->lattice;
   find_inner(w, f, b, v);
   choose_runs(v, law, g->pitch);
   v->rows = v->at_a_time + most(rows_kept(f, f->march), rows_kept(f, &law->observe));
@@ -219,7 +219,7 @@ static double *shared_planes(const sweep *w, const family_window *v, int s) {
 
 static void clear_sites(const sweep *w, const family_window *v, uint64_t shared, int here,
                         sites of) {
-  const long first = here * w->body->lattice->pitch + of.begin;
+  const long first = here * w->lattice->pitch + of.begin;
   if (of.begin >= of.end) return;
   for (int s = 0; s < 64; s++)
     for (int k = 0; k < family_of(w)->neighbours / 2 && (shared >> s & 1); k++)
@@ -250,7 +250,7 @@ static void point_at_links(const sweep *w, int block, int row, pl_family *run) {
   family_block *b = &family_of(w)->blocks[block];
   family_window *v = &family_of(w)->windows[block];
   const int here = row % v->rows;
-  const long pitch = w->body->lattice->pitch, start = here * pitch + w->body->begin[row];
+  const long pitch = w->lattice->pitch, start = here * pitch + w->body->begin[row];
   for (int k = 0; k < w->law->link_count; k++)
     b->link[k] = v->link[k] + start;
   for (int k = 0; k < w->law->bond_link_count; k++)
@@ -274,7 +274,7 @@ static void write_nowhere(const sweep *w, int block, int row, pl_family *run) {
     b->observed[k] = v->observed[k] + w->body->begin[row];
   for (int k = 0; k < PL_LOSSES && w->lost_state; k++)
     run->lost[k] = v->lost[k] + w->body->begin[row];
-  run->new_plane = w->body->lattice->pitch;
+  run->new_plane = w->lattice->pitch;
 }
 
 static bool moves_at_once(const family_window *v, int row) {
@@ -282,14 +282,13 @@ static bool moves_at_once(const family_window *v, int row) {
 }
 
 static double *force_place(const sweep *w, const family_window *v, int row, int component) {
-  return v->force[component] + (row % v->rows) * w->body->lattice->pitch + w->body->begin[row];
+  return v->force[component] + (row % v->rows) * w->lattice->pitch + w->body->begin[row];
 }
 
 const double *family_window_force(const sweep *w, int block, int row, int component) {
   const family_window *v = &family_of(w)->windows[block];
-  return w->body->forces || !moves_at_once(v, row)
-             ? w->body->force[component] + body_start(w->body, row)
-             : force_place(w, v, row, component);
+  return w->body->forces || !moves_at_once(v, row) ? w->force[component] + body_start(w->body, row)
+                                                   : force_place(w, v, row, component);
 }
 
 /* The end of the rows that a run may take from `row` on, step by step: as many as need no other
@@ -297,7 +296,7 @@ const double *family_window_force(const sweep *w, int block, int row, int compon
 static int end_of_run(const sweep *w, int block, int row, int last) {
   const body_block *b = &w->body->blocks[block];
   const family_window *v = &family_of(w)->windows[block];
-  const unsigned char *kind = w->body->lattice->row_class + w->body->lattice->margin;
+  const unsigned char *kind = w->lattice->row_class + w->lattice->margin;
   int next = row + v->step;
   if (v->step == 1 || row < b->first || row >= b->last) return next;
   const int edges[] = {b->last, v->inner, v->inner_end, row + v->straight[row % v->rows]};
@@ -348,7 +347,7 @@ static void find_spans(const sweep *w, const pl_program *program, int block, int
   const int passes = program->pass_count, behind = rows_behind(f, program, passes - 1);
   for (int p = 0; p < passes; p++) {
     next[p] = most(b->first - rows_before(f, program, p), 0);
-    last[p] = least(b->last + behind - rows_behind(f, program, p), w->body->lattice->row_count);
+    last[p] = least(b->last + behind - rows_behind(f, program, p), w->lattice->row_count);
   }
 }
 

@@ -8,7 +8,7 @@
 /* --- sums ------------------------------------------------------------------------------------- */
 
 pair_sums pair_sums_new(sweep *w, const body_block *b, int reach) {
-  const rows *g = w->body->lattice;
+  const rows *g = w->lattice;
   pair_sums s = {.before = b->first > reach ? b->first - reach : 0, .last = b->last};
   s.base = rows_start(g, s.before);
   s.size = rows_start(g, b->last + reach) + g->pitch - s.base;
@@ -32,7 +32,7 @@ double *const *pair_sums_at(const sweep *w, pair_sums *s, long start) {
 }
 
 void pair_sums_clear_ahead(const sweep *w, pair_sums *s) {
-  const long own = rows_start(w->body->lattice, s->last) - s->base;
+  const long own = rows_start(w->lattice, s->last) - s->base;
   for (int k = 0; k < w->law->sum_count && own < s->size; k++)
     memset(s->sum[k] + own, 0, (size_t)(s->size - own) * sizeof(double));
 }
@@ -44,7 +44,7 @@ uint64_t **pair_marks_new(sweep *w) {
   uint64_t **marks = must_calloc((size_t)law->field_count + 1, sizeof *marks);
   for (int f = 0; f < law->field_count; f++) {
     if (law->fields[f].place == PL_ON_PARTICLE) continue;
-    const size_t words = (size_t)(w->body->lattice->size / PL_LANES) + 1;
+    const size_t words = (size_t)(w->lattice->size / PL_LANES) + 1;
     marks[f] = must_calloc(words, sizeof **marks);
     w->body->bytes += words * sizeof **marks;
   }
@@ -71,7 +71,7 @@ static bool is_settled(const double *values, const double *others) {
 
 static void find_marks(const sweep *w, double *const *field, double *const *other, marker has,
                        uint64_t **marks) {
-  const rows *g = w->body->lattice;
+  const rows *g = w->lattice;
   for (int f = 0; f < w->law->field_count; f++)
     for (long q = 0; marks[f] && q + PL_LANES <= g->size; q += PL_LANES) {
       uint64_t word = 0;

@@ -432,7 +432,7 @@ static void observe_row(sweep *w, int block, int row, const row_forces *here,
   motion_observe(w->body, b, row);
   if (!w->body->ledger) return;
   w->body->observed[row].stored = stored_in_row(w, &own(w)->blocks[block], row);
-  sweep_sum_losses(w, row);
+  sweep_add_losses(w, row);
 }
 
 static void observe(sweep *w, int stage, int block) {

@@ -2,6 +2,7 @@
 
 #include <assert.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "dsl/base/arena.h"
 #include "runtime/base/lane_sum.h"
@@ -10,8 +11,8 @@
 /* --- set-up ----------------------------------------------------------------------------------- */
 
 int sweep_planes(const sweep *w, int where) {
-  if (w->law->kind != PL_STATE) return w->body->lattice->directions;
-  return where == PL_ON_PARTICLE ? 1 : 2 * w->body->lattice->directions;
+  if (w->law->kind != PL_STATE) return w->lattice->directions;
+  return where == PL_ON_PARTICLE ? 1 : 2 * w->lattice->directions;
 }
 
 static void new_fields(sweep *w) {
@@ -19,7 +20,7 @@ static void new_fields(sweep *w) {
   w->field = must_calloc((size_t)law->field_count + 1, sizeof *w->field);
   w->new_field = must_calloc((size_t)law->field_count + 1, sizeof *w->new_field);
   for (int f = 0; f < law->field_count; f++) {
-    const long values = sweep_planes(w, law->fields[f].place) * w->body->lattice->size;
+    const long values = sweep_planes(w, law->fields[f].place) * w->lattice->size;
     w->field[f] = body_doubles(w->body, values);
     w->new_field[f] = body_doubles(w->body, values);
     for (long k = 0; k < values; k++)
@@ -27,11 +28,30 @@ static void new_fields(sweep *w) {
   }
 }
 
-sweep *sweep_new(body *of, const pl_law *law, const double *parameters, sweep_engine_new *engine) {
+static sweep *begin(body *of, const rows *lattice, const pl_law *law) {
   sweep *w = must_calloc(1, sizeof *w);
   assert(law->dimensions == of->dimensions && law->dof == of->dof);
   w->body = of;
+  w->lattice = lattice;
   w->law = law;
+  memcpy(w->force, of->force, sizeof w->force);
+  return w;
+}
+
+sweep *sweep_new(body *of, const pl_law *law, const double *parameters, sweep_engine_new *engine) {
+  sweep *w = begin(of, of->lattice, law);
+  new_fields(w);
+  w->engine = engine(w, parameters);
+  return w;
+}
+
+sweep *sweep_beside(body *of, const rows *lattice, const pl_law *law, const double *parameters,
+                    const double *share, sweep_engine_new *engine) {
+  sweep *w = begin(of, lattice, law);
+  w->beside = true;
+  w->share = share;
+  for (int d = 0; d < of->dof; d++)
+    w->force[d] = body_doubles(of, of->lattice->size);
   new_fields(w);
   w->engine = engine(w, parameters);
   return w;
@@ -42,7 +62,7 @@ void sweep_free(sweep *w) {
   w->engine.free(w);
   free(w->field);
   free(w->new_field);
-  body_free(w->body);
+  if (!w->beside) body_free(w->body);
   free(w);
 }
 
@@ -92,23 +112,26 @@ void sweep_new_losses(sweep *w) {
   double **const energies[] = {&w->dissipated_state, &w->dissipated_rate, &w->lost_state,
                                &w->lost_rate};
   for (int k = 0; k < 4; k++)
-    *energies[k] = body_doubles(w->body, w->body->lattice->size);
+    *energies[k] = body_doubles(w->body, w->lattice->size);
 }
 
 /* Rate terms, like other forces, count half a step until the state is reached; they are none of
    those that a step must be short enough for (body_row.free). */
-void sweep_sum_losses(sweep *w, int row) {
+void sweep_add_losses(sweep *w, int row) {
   const long start = body_start(w->body, row), count = w->body->count[row];
   const double pending = 0.5 * lane_total(count, w->lost_rate + start);
   body_row *r = &w->body->observed[row];
-  r->state =
+  r->state +=
       lane_total(count, w->dissipated_state + start) + lane_total(count, w->lost_state + start);
-  r->rate = lane_total(count, w->dissipated_rate + start) + pending;
+  r->rate += lane_total(count, w->dissipated_rate + start) + pending;
   r->free += pending;
 }
 
-bool sweep_books_losses(const pl_law *law) {
-  return law->kind != PL_STATE || (PL_HAS(law, ledger) && law->ledger.pass_count > 0);
+bool sweep_knows_losses(const pl_law *law) {
+  if (law->kind != PL_STATE) return true;
+  if (!law->stores) return false;
+  const bool may_lose = law->field_count > 0 || law->reads_rates;
+  return !may_lose || (PL_HAS(law, ledger) && law->ledger.pass_count > 0);
 }
 
 void sweep_output(sweep *w, int output, double *values) {
@@ -120,8 +143,12 @@ void sweep_stored(sweep *w, double *values) {
 }
 
 double sweep_bond_value(const sweep *w, const double *values, const rows_bond *bond) {
-  const rows *g = w->body->lattice;
+  const rows *g = w->lattice;
   if (w->law->kind != PL_STATE) return values[bond->slot];
-  const long back = bond->slot / g->size + g->directions;
-  return 0.5 * (values[bond->slot] + values[back * g->size + g->particle_site[bond->j]]);
+  const long back = bond->slot / g->size + g->directions, i = g->particle_site[bond->i],
+             j = g->particle_site[bond->j];
+  const double here = values[bond->slot], there = values[back * g->size + j];
+  if (!w->share) return 0.5 * (here + there);
+  return (w->share[i] > 0 ? w->share[i] * here : 0) / (w->share[i] + w->share[j]) +
+         (w->share[j] > 0 ? w->share[j] * there : 0) / (w->share[i] + w->share[j]);
 }

@@ -34,8 +34,12 @@ typedef struct sweep_engine {
 typedef sweep_engine sweep_engine_new(sweep *w, const double *parameters);
 
 struct sweep {
-  body *body; /* owned */
+  body *body;          /* owned, but of one law beside others (joint.h) */
+  const rows *lattice; /* with the bonds that the law is at work on; the body's, or some of these */
   const pl_law *law;
+  bool beside; /* the engine finds forces and leaves it to others to move the particles */
+  double
+      *force[PL_MAX_DOF]; /* [size] N, N m: sums over its bonds; the body's unless it is beside */
   /* [fields][sweep_planes * size] of the state that the last step left behind, and of that observed
      last; which memory is whose may change in a step. */
   double **field, **new_field;
@@ -51,6 +55,9 @@ struct sweep {
 
 /* The fields start at their initial values. The body is the sweep's from then on. */
 sweep *sweep_new(body *of, const pl_law *law, const double *parameters, sweep_engine_new *engine);
+/* One that finds forces of its own on a body that others move, and that it does not own. */
+sweep *sweep_beside(body *of, const rows *lattice, const pl_law *law, const double *parameters,
+                    const double *share, sweep_engine_new *engine);
 void sweep_free(sweep *w);
 
 /* Site arrays that make up a field or an output in that place (pl_place): one for each direction of
@@ -78,12 +85,13 @@ void sweep_observe(sweep *w);
 /* Value in a bond of a field, an output, or a parameter that stands on bonds or neighbours; of a
    law of families the mean of both sides. */
 double sweep_bond_value(const sweep *w, const double *values, const rows_bond *bond);
-/* For engines: makes the arrays of losses; sums those of a row, since the start and in the state
-   observed. */
+/* For engines: makes the arrays of losses; adds those of a row, since the start and in the state
+   observed, to what is known of it (body_row). */
 void sweep_new_losses(sweep *w);
-void sweep_sum_losses(sweep *w, int row);
-/* Whether the law says what it loses. */
-bool sweep_books_losses(const pl_law *law);
+void sweep_add_losses(sweep *w, int row);
+/* Whether what the law loses can be known: of laws of bonds on strips it is what they say, of laws of
+   families, which then store energy, too, if they may lose any. */
+bool sweep_knows_losses(const pl_law *law);
 
 /* An output in the state observed last: values[sweep_planes * size], defined where bonds or
    particles are. */

@@ -169,6 +169,7 @@ static bool open_source(const deck_field *f, const value_places *places, const p
 
 typedef struct value_sources {
   const value_places *places;
+  const deck_material *whole; /* of the law where no region says otherwise */
   const double *parameters;
   field_source *field; /* [varying] */
   const regional_values *regional;
@@ -195,7 +196,9 @@ static bool open_fields(const deck *k, int lattice, double *parameters, value_so
   bool good = true;
   for (int i = 0; i < k->field_count; i++) {
     const deck_field *f = &k->fields[i];
-    if (strcmp(f->lattice, k->lattices[lattice].name) != 0) continue;
+    if (strcmp(f->lattice, k->lattices[lattice].name) != 0 || s->whole->region ||
+        s->whole->between[0])
+      continue;
     const int plane = find_plane(law, f->parameter, deck_where(&f->item, "parameter"), d);
     if (plane < 0) {
       good = false;
@@ -221,12 +224,10 @@ static bool take_formula(value_sources *s, int region, const deck_assignment *a,
   return false;
 }
 
-static bool open_formulas(const deck *k, int lattice, int regions, value_sources *s,
-                          diagnostics *d) {
-  const int whole = deck_find_material(k, k->lattices[lattice].name);
+static bool open_formulas(int regions, value_sources *s, diagnostics *d) {
   bool good = true;
   for (int region = -1; region < regions; region++) {
-    const deck_material *m = region < 0 ? &k->materials[whole] : s->regional[region].material;
+    const deck_material *m = region < 0 ? s->whole : s->regional[region].material;
     for (int n = 0; n < m->assignment_count; n++)
       if (m->assignments[n].formula) good = take_formula(s, region, &m->assignments[n], d) && good;
   }
@@ -280,16 +281,14 @@ static const deck_assignment *given_by(const deck_material *m, const char *name)
 }
 
 /* The region says no more of it than the material of its lattice. */
-static bool repeats(const deck *k, const deck_material *m, const pl_parameter *p) {
+static bool repeats(const value_sources *s, const deck_material *m, const pl_parameter *p) {
   const deck_assignment *own = given_by(m, p->name);
-  const deck_assignment *whole =
-      given_by(&k->materials[deck_find_material(k, m->lattice)], p->name);
+  const deck_assignment *whole = given_by(s->whole, p->name);
   return !own || own->value == (whole ? whole->value : p->initial);
 }
 
 /* What differs must differ in the kernel, too. */
-static bool region_fits(const deck *k, const value_sources *s, const regional_values *v,
-                        diagnostics *d) {
+static bool region_fits(const value_sources *s, const regional_values *v, diagnostics *d) {
   const pl_law *law = s->places->law;
   for (int p = 0; p < law->parameter_count; p++) {
     const double own = v->parameters[p], other = s->parameters[p];
@@ -297,7 +296,7 @@ static bool region_fits(const deck *k, const value_sources *s, const regional_va
     const char *name = law->parameters[p].name;
     const int plane = find_plane(law, name, v->material->item.where, d);
     if (plane < 0) return false;
-    if (!s->field[plane].field || repeats(k, v->material, &law->parameters[p])) continue;
+    if (!s->field[plane].field || repeats(s, v->material, &law->parameters[p])) continue;
     diag_report(d, DIAG_CONFLICT, s->field[plane].field->item.where,
                 "`%s` differs at random, and the material of the region `%s` gives it a value",
                 name, v->material->region);
@@ -314,7 +313,7 @@ static bool open_regions(const deck *k, int count, value_sources *s, diagnostics
   for (long q = 0; q < s->places->rows->size; q++)
     s->region_of[q] = -1;
   for (int n = 0; n < count; n++)
-    good = region_fits(k, s, &s->regional[n], d) && take_region(k, n, s, d) && good;
+    good = region_fits(s, &s->regional[n], d) && take_region(k, n, s, d) && good;
   return good;
 }
 
@@ -536,17 +535,21 @@ static void sources_free(value_sources *s) {
   free(s->region_of);
 }
 
-parameter_planes *parameter_planes_new(const deck *k, int lattice, const rows *w, const pl_law *law,
-                                       double *parameters, const regional_values *regional,
-                                       int regional_count, diagnostics *d) {
+parameter_planes *parameter_planes_new(const deck *k, int lattice, const deck_material *whole,
+                                       const rows *w, const pl_law *law, double *parameters,
+                                       const regional_values *regional, int regional_count,
+                                       diagnostics *d) {
   value_places places = places_new(w, law);
-  value_sources s = {
-      .places = &places, .parameters = parameters, .regional = regional, .regions = regional_count};
+  value_sources s = {.places = &places,
+                     .whole = whole,
+                     .parameters = parameters,
+                     .regional = regional,
+                     .regions = regional_count};
   parameter_planes *r = planes_new(&places);
   s.field = must_calloc((size_t)r->count + 1, sizeof *s.field);
   s.formula = must_calloc((size_t)(regional_count + 1) * (size_t)(r->count + 1), sizeof *s.formula);
   bool good = open_fields(k, lattice, parameters, &s, d);
-  good = open_formulas(k, lattice, regional_count, &s, d) && good;
+  good = open_formulas(regional_count, &s, d) && good;
   good = open_regions(k, regional_count, &s, d) && good;
   for (int n = 0; good && n < r->count; n++) {
     r->random[n] = s.field[n].field != NULL;

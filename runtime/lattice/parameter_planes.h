@@ -27,13 +27,14 @@ typedef struct parameter_planes {
   size_t bytes;
 } parameter_planes;
 
-/* Evaluates all that the deck says of the lattice. `parameters` are those of the material without
-   region; those with a random field become its mean. NULL with diagnostics: a wrong unit, values
+/* Evaluates all that the deck says of the law of a material on the lattice. `parameters` are those
+   of the material `whole`, `regional` those of the regions that have its law; those with a random field become its mean. NULL with diagnostics: a wrong unit, values
    that the law does not allow (with the place of the first), two materials for one particle, a
    kernel that takes such a parameter as the same everywhere. */
-parameter_planes *parameter_planes_new(const deck *k, int lattice, const rows *w, const pl_law *law,
-                                       double *parameters, const regional_values *regional,
-                                       int regional_count, diagnostics *d);
+parameter_planes *parameter_planes_new(const deck *k, int lattice, const deck_material *whole,
+                                       const rows *w, const pl_law *law, double *parameters,
+                                       const regional_values *regional, int regional_count,
+                                       diagnostics *d);
 void parameter_planes_free(parameter_planes *p);
 
 #endif

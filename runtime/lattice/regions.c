@@ -62,6 +62,8 @@ static bool *find_used_regions(const deck *k) {
     if (region >= 0) used[region] = true;                                                          \
   }
   USED(material, region)
+  USED(material, between[0])
+  USED(material, between[1])
   USED(support, region)
   USED(drive, region)
   USED(force, region)

@@ -103,6 +103,36 @@ void rows_free(rows *w) {
   free(w);
 }
 
+/* Bits of the bonds that others own, of a list. */
+static uint64_t *incoming_of(const rows *w) {
+  uint64_t *incoming = rows_array(w->size, sizeof *incoming);
+  for (long p = 0; incoming && p < w->particle_count; p++)
+    for (int k = 0; k < w->directions; k++)
+      if (rows_has_bond(w, w->particle_site[p], k))
+        incoming[rows_partner(w, w->particle_site[p], k)] |= UINT64_C(1) << k;
+  return incoming;
+}
+
+rows *rows_part(const rows *w, uint64_t *bonds) {
+  rows *part = must_alloc(sizeof *part);
+  *part = *w;
+  part->bonds = bonds;
+  rows_count_bonds(part);
+  if (!w->list) return part;
+  part->list = must_alloc(sizeof *part->list);
+  *part->list = *w->list;
+  part->list->incoming = incoming_of(part);
+  return part;
+}
+
+void rows_part_free(rows *part) {
+  if (!part) return;
+  if (part->list) free(part->list->incoming);
+  free(part->list);
+  free(part->bonds);
+  free(part);
+}
+
 int rows_degree(const rows *w, long site) {
   int count = __builtin_popcountll(w->bonds[site]);
   if (w->list) return count + __builtin_popcountll(w->list->incoming[site]);

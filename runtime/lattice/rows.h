@@ -180,6 +180,11 @@ pl_bond_class rows_bond_class(const rows *w, int direction);
 
 void rows_free(rows *w);
 
+/* The same sites with these of their bonds alone: `bonds` [size] bits as of rows.bonds, taken over.
+   All else stays that of `w`, which must stay; to be freed by rows_part_free. */
+rows *rows_part(const rows *w, uint64_t *bonds);
+void rows_part_free(rows *part);
+
 /* Bond m of the results: its ends as particles and where its fields stand (direction * size +
    site). */
 typedef struct rows_bond {

@@ -14,6 +14,7 @@ struct bad_search {
   int body_count;
   const run_clock *clock;
   const run_body *of; /* the bad one */
+  const run_law *law; /* that is looked at */
   const sweep *state; /* of it */
   bad_state found;
   double *own_parameters; /* of the bad bond */
@@ -71,7 +72,7 @@ static double *parameters_of_bond(const bad_search *s, const rows_bond *b) {
   const pl_law *law = s->state->law;
   double *values = must_calloc((size_t)law->parameter_count + 1, sizeof *values);
   for (int p = 0; p < law->parameter_count; p++)
-    values[p] = s->of->parameters[p];
+    values[p] = s->law->parameters[p];
   for (int k = 0; k < law->varying_count; k++)
     values[law->varying[k]] = s->state->parameter[k][b->slot];
   return values;
@@ -143,8 +144,8 @@ static void look_at_family(bad_search *s, long site) {
 /* Of the bonds of the particle the one that pulls most, and what its law read. */
 static void look_at_bonds(bad_search *s, int32_t particle) {
   double worst = 0;
-  for (long m = 0; m < s->of->lattice_rows->bond_count; m++) {
-    const rows_bond *b = &s->of->bonds[m];
+  for (long m = 0; m < s->law->rows->bond_count; m++) {
+    const rows_bond *b = &s->law->bonds[m];
     if (b->i != particle && b->j != particle) continue;
     const int direction = (int)(b->slot / s->of->lattice_rows->size);
     const bond_motion k = motion_of(s, b, direction);
@@ -167,13 +168,24 @@ static int first_bad(const bad_search *s) {
   return b;
 }
 
+/* Of several laws the first that the particle is of, or has bonds of. */
+static const run_law *law_at(const run_body *of, long site) {
+  for (int n = 0; n < of->law_count; n++) {
+    const run_law *l = &of->laws[n];
+    if (l->share ? l->share[site] > 0 : rows_degree(l->rows, site) > 0) return l;
+  }
+  return of->laws;
+}
+
 void bad_search_velocity(bad_search *s) {
   const int bad = first_bad(s);
   s->of = &s->bodies[bad];
-  s->state = s->of->state;
   const body_block *at = &s->of->body->blocks[body_bad(s->of->body)];
   const int32_t particle = s->of->lattice_rows->site_particle[at->bad_site];
+  s->law = law_at(s->of, at->bad_site);
+  s->state = s->law->state;
   s->found = (bad_state){.body = bad,
+                         .interaction = (int)(s->law - s->bodies[0].laws),
                          .step = (long)s->clock->at.step,
                          .time = run_clock_time(s->clock),
                          .particle = in_results(s, particle),
@@ -208,10 +220,12 @@ bad_search *bad_search_new(const run_body *bodies, int count, const run_clock *c
   *s = (bad_search){.bodies = bodies, .body_count = count, .clock = clock};
   s->found = (bad_state){.particle = -1, .bond_particle = -1, .what = ""};
   for (int b = 0; b < count; b++) {
-    const size_t n = 2 * (size_t)bodies[b].lattice_rows->directions,
-                 all = (1 + n) * (size_t)bodies[b].law->field_count;
+    const size_t n = 2 * (size_t)bodies[b].lattice_rows->directions;
     neighbours = n > neighbours ? n : neighbours;
-    values = all > values ? all : values;
+    for (int l = 0; l < bodies[b].law_count; l++) {
+      const size_t all = (1 + n) * (size_t)bodies[b].laws[l].law->field_count;
+      values = all > values ? all : values;
+    }
   }
   s->fields = must_calloc(values + 1, sizeof(double));
   s->family = must_calloc(neighbours, sizeof *s->family);

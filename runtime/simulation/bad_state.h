@@ -23,7 +23,7 @@ typedef struct bad_neighbour {  /* of a law of families */
    the step; a partner elsewhere is moved back by its velocity. With a law of families there is no
    such bond, but all neighbours. */
 typedef struct bad_state {
-  int body; /* of the run */
+  int body, interaction; /* of the run */
   long step;
   double time;
   long particle;

@@ -8,8 +8,8 @@ typedef struct frame_field {
   const char *name, *unit;
   bool on_bonds;
   int components;
-  int body;              /* of the run; on particles the first that has the field */
-  long count;            /* particles of all bodies, or bonds of that body */
+  int interaction;       /* of the run; on particles the first that has the field */
+  long count;            /* particles of all bodies, or bonds of that interaction */
   bool of_law;           /* it, or a parameter, has its name from the law */
   const char *kind;      /* "state", "damage", "output" of the law; else "other" */
   const char *long_name; /* in words: the law's, where it is of the law */

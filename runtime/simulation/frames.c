@@ -16,12 +16,14 @@
 typedef struct frame_source frame_source;
 typedef struct frames_of { /* where values come from */
   const run_body *body;
+  const run_law *law;
   long step;
 } frames_of;
 typedef void values_of(const frames_of *of, const frame_source *from, double *values);
 
-struct frame_source { /* where a body's values of a frame field come from */
-  values_of *values;  /* NULL: the body has no such field */
+struct
+    frame_source { /* where a law's values of a frame field come from, or a body's: at its first law */
+  values_of *values; /* NULL: there is no such field */
   int components;
   /* of the law's fields, outputs, or parameters that differ from bond to bond; of a tensor's
      components */
@@ -49,11 +51,13 @@ struct frame_set {
   const deck_output *asked;
   const run_body *bodies;
   int body_count;
+  const run_law *laws; /* [law_count] those of all bodies */
+  int law_count;
   const run_clock *clock;
   bond_forces **forces;  /* [body_count] NULL unless some field needs them */
   frame_tensor *tensors; /* [TENSORS][body_count] */
   frame_field *fields;
-  frame_source *sources; /* [count][body_count]; of bonds only that of their body */
+  frame_source *sources; /* [count][law_count]; of bonds only that of their law */
   int count;
 };
 
@@ -67,9 +71,17 @@ static void site_values(const frames_of *of, double *const *arrays, int componen
       values[p * components + c] = arrays[c][g->particle_site[p]];
 }
 
+/* Of the particles that are of the law. */
+static void law_site_values(const frames_of *of, const double *array, double *values) {
+  const rows *g = of->body->lattice_rows;
+  const double *share = of->law->share;
+  for (long p = 0; p < g->particle_count; p++)
+    if (!share || share[g->particle_site[p]] > 0) values[p] = array[g->particle_site[p]];
+}
+
 static void bond_values(const frames_of *of, const double *array, double *values) {
-  for (long b = 0; b < of->body->lattice_rows->bond_count; b++)
-    values[b] = sweep_bond_value(of->body->state, array, &of->body->bonds[b]);
+  for (long b = 0; b < of->law->rows->bond_count; b++)
+    values[b] = sweep_bond_value(of->law->state, array, &of->law->bonds[b]);
 }
 
 static bool on_bonds(const pl_field *f) {
@@ -81,27 +93,27 @@ static void law_values(const frames_of *of, const pl_field *field, double *array
   if (on_bonds(field))
     bond_values(of, array, values);
   else
-    site_values(of, &array, 1, values);
+    law_site_values(of, array, values);
 }
 
 static void values_of_state(const frames_of *of, const frame_source *from, double *values) {
-  law_values(of, &of->body->law->fields[from->index], of->body->state->new_field[from->index],
+  law_values(of, &of->law->law->fields[from->index], of->law->state->new_field[from->index],
              values);
 }
 
 static void values_of_output(const frames_of *of, const frame_source *from, double *values) {
-  const pl_field *field = &of->body->law->outputs[from->index];
-  const size_t planes = (size_t)sweep_planes(of->body->state, field->place);
+  const pl_field *field = &of->law->law->outputs[from->index];
+  const size_t planes = (size_t)sweep_planes(of->law->state, field->place);
   double *array = must_calloc(planes * (size_t)of->body->lattice_rows->size, sizeof *array);
-  sweep_output(of->body->state, from->index, array);
+  sweep_output(of->law->state, from->index, array);
   law_values(of, field, array, values);
   free(array);
 }
 
 static void values_of_parameter(const frames_of *of, const frame_source *from, double *values) {
-  double *array = of->body->state->parameter[from->index];
-  if (of->body->law->varying_place == PL_ON_PARTICLE)
-    site_values(of, &array, 1, values);
+  const double *array = of->law->state->parameter[from->index];
+  if (of->law->law->varying_place == PL_ON_PARTICLE)
+    law_site_values(of, array, values);
   else
     bond_values(of, array, values);
 }
@@ -131,7 +143,9 @@ static void values_of_force(const frames_of *of, const frame_source *from, doubl
 
 static void values_of_damage(const frames_of *of, const frame_source *from, double *values) {
   (void)from;
-  damage_of_particles(of->body->state, of->body->bonds, values);
+  damage_law *laws = run_body_damages(of->body);
+  damage_of_particles(laws, of->body->law_count, values);
+  free(laws);
 }
 
 /* Energy lost in the bonds that a particle owns (those to the right and above). */
@@ -185,7 +199,7 @@ static const tensor_field tensor_fields[] = {
 
 /* --- which runs have them --------------------------------------------------------------------- */
 
-/* In runs with this law and output. */
+/* On bodies with this law, in runs with this output. */
 typedef bool exists_in(const deck_output *asked, const pl_law *law);
 
 static bool always(const deck_output *asked, const pl_law *law) {
@@ -246,12 +260,27 @@ static bool is_asked(const deck_output *o, const char *name) {
   return false;
 }
 
+static int count_laws(const run_body *bodies, int count) {
+  int sum = 0;
+  for (int b = 0; b < count; b++)
+    sum += bodies[b].law_count;
+  return sum;
+}
+
 static size_t most_fields(const run_body *bodies, int count) {
   size_t most = OWN_FIELDS + TENSORS * (1 + TENSOR_MOST);
-  for (int b = 0; b < count; b++)
-    most += (size_t)(bodies[b].law->field_count + bodies[b].law->output_count +
-                     bodies[b].law->varying_count);
+  for (int n = 0; n < count_laws(bodies, count); n++) {
+    const pl_law *law = bodies[0].laws[n].law;
+    most += (size_t)(law->field_count + law->output_count + law->varying_count);
+  }
   return most;
+}
+
+/* Some law of the body has what the field is about. */
+static bool exists_on(const own_field *own, const deck_output *asked, const run_body *of) {
+  for (int n = 0; n < of->law_count; n++)
+    if (own->exists(asked, of->laws[n].law)) return true;
+  return false;
 }
 
 static long particles_of(const run_body *bodies, int count) {
@@ -261,13 +290,13 @@ static long particles_of(const run_body *bodies, int count) {
   return sum;
 }
 
-/* The place of a field that another body has brought, or -1. */
+/* The place of a field that another law has brought, or -1. */
 static int find_shared(const frame_set *f, const frame_field *field) {
   for (int k = 0; k < f->count && !field->on_bonds; k++) {
     const frame_field *other = &f->fields[k];
-    if (!other->on_bonds && other->body != field->body && other->components == field->components &&
-        strcmp(other->name, field->name) == 0 && strcmp(other->unit, field->unit) == 0 &&
-        strcmp(other->kind, field->kind) == 0)
+    if (!other->on_bonds && other->interaction != field->interaction &&
+        other->components == field->components && strcmp(other->name, field->name) == 0 &&
+        strcmp(other->unit, field->unit) == 0 && strcmp(other->kind, field->kind) == 0)
       return k;
   }
   return -1;
@@ -277,11 +306,11 @@ static int find_shared(const frame_set *f, const frame_field *field) {
 static frame_source *add(frame_set *f, frame_field field, values_of *values, int index) {
   const int shared = find_shared(f, &field), at = shared < 0 ? f->count++ : shared;
   if (shared < 0) {
-    field.count = field.on_bonds ? f->bodies[field.body].lattice_rows->bond_count
+    field.count = field.on_bonds ? f->laws[field.interaction].rows->bond_count
                                  : particles_of(f->bodies, f->body_count);
     f->fields[at] = field;
   }
-  frame_source *from = &f->sources[at * f->body_count + field.body];
+  frame_source *from = &f->sources[at * f->law_count + field.interaction];
   *from = (frame_source){.values = values, .components = field.components, .index = index};
   return from;
 }
@@ -290,16 +319,20 @@ static const char *words_of(const char *doc, const char *otherwise) {
   return doc && *doc ? doc : otherwise;
 }
 
+static int first_law(const frame_set *f, int b) {
+  return (int)(f->bodies[b].laws - f->laws);
+}
+
 /* What is stored of any law. */
 static void add_own(frame_set *f, const own_field *own, int b) {
-  const pl_law *law = f->bodies[b].law;
-  if (!is_asked(f->asked, own->name) || !own->exists(f->asked, law)) return;
-  const bool largest = own->values == values_of_damage && damage_on_particles(law);
+  const run_body *of = &f->bodies[b];
+  if (!is_asked(f->asked, own->name) || !exists_on(own, f->asked, of)) return;
+  const bool largest = own->values == values_of_damage && damage_on_particles(of->law);
   add(f,
       (frame_field){.name = own->name,
                     .unit = own->unit,
-                    .components = component_count(own->components, law),
-                    .body = b,
+                    .components = component_count(own->components, of->law),
+                    .interaction = first_law(f, b),
                     .kind = own->kind,
                     .long_name = largest ? "the largest damage of the particle" : own->words},
       own->values, 0);
@@ -351,15 +384,15 @@ static void add_tensor(frame_set *f, int k, int b) {
     const frame_field field = {.name = t->names[c],
                                .unit = from->unit,
                                .components = 1,
-                               .body = b,
+                               .interaction = first_law(f, b),
                                .kind = "other",
                                .long_name = from->words};
     add(f, field, values_of_tensor, c)->tensor = t;
   }
 }
 
-static void add_of_law(frame_set *f, int b) {
-  const pl_law *law = f->bodies[b].law;
+static void add_of_law(frame_set *f, int n) {
+  const pl_law *law = f->laws[n].law;
   const deck_output *asked = f->asked;
   for (int k = 0; k < law->field_count; k++) {
     const pl_field *s = &law->fields[k];
@@ -370,7 +403,7 @@ static void add_of_law(frame_set *f, int b) {
                       .unit = s->unit,
                       .on_bonds = on_bonds(s),
                       .components = 1,
-                      .body = b,
+                      .interaction = n,
                       .of_law = true,
                       .kind = damages ? "damage" : "state",
                       .long_name =
@@ -385,7 +418,7 @@ static void add_of_law(frame_set *f, int b) {
                       .unit = o->unit,
                       .on_bonds = on_bonds(o),
                       .components = 1,
-                      .body = b,
+                      .interaction = n,
                       .of_law = true,
                       .kind = "output",
                       .long_name = words_of(o->doc, "output of the law")},
@@ -399,7 +432,7 @@ static void add_of_law(frame_set *f, int b) {
                       .unit = p->unit,
                       .on_bonds = law->varying_place != PL_ON_PARTICLE,
                       .components = 1,
-                      .body = b,
+                      .interaction = n,
                       .of_law = true,
                       .kind = "other",
                       .long_name = words_of(p->doc, "parameter of the law")},
@@ -411,9 +444,14 @@ frame_set *frames_new(const deck_output *asked, const run_body *bodies, int coun
                       const run_clock *clock) {
   const size_t most = most_fields(bodies, count);
   frame_set *f = must_calloc(1, sizeof *f);
-  *f = (frame_set){.asked = asked, .bodies = bodies, .body_count = count, .clock = clock};
+  *f = (frame_set){.asked = asked,
+                   .bodies = bodies,
+                   .body_count = count,
+                   .laws = bodies[0].laws,
+                   .law_count = count_laws(bodies, count),
+                   .clock = clock};
   f->fields = must_calloc(most, sizeof *f->fields);
-  f->sources = must_calloc(most * (size_t)count, sizeof *f->sources);
+  f->sources = must_calloc(most * (size_t)f->law_count, sizeof *f->sources);
   f->forces = must_calloc((size_t)count, sizeof *f->forces);
   f->tensors = must_calloc(TENSORS * (size_t)count, sizeof *f->tensors);
   for (const own_field *own = own_fields; own < own_fields + OWN_FIELDS; own++)
@@ -422,8 +460,8 @@ frame_set *frames_new(const deck_output *asked, const run_body *bodies, int coun
   for (int k = 0; k < TENSORS; k++)
     for (int b = 0; b < count; b++)
       add_tensor(f, k, b);
-  for (int b = 0; b < count; b++)
-    add_of_law(f, b);
+  for (int n = 0; n < f->law_count; n++)
+    add_of_law(f, n);
   return f;
 }
 
@@ -446,25 +484,34 @@ int frames_fields(const frame_set *f, const frame_field **fields) {
   return f->count;
 }
 
-/* Of a body that does not have the field. */
-static void fill_without(const frame_set *f, const frame_field *field, int b, double *values) {
-  const long count = f->bodies[b].lattice_rows->particle_count * field->components;
+/* Of particles whose laws do not have the field. */
+static void fill_without(const frame_field *field, const run_body *of, double *values) {
+  const long count = of->lattice_rows->particle_count * field->components;
   const double none = strcmp(field->kind, "damage") == 0 ? 0 : NAN;
   for (long k = 0; k < count; k++)
     values[k] = none;
 }
 
+static void values_of_law(const frame_set *f, int field, const run_body *of, const run_law *law,
+                          double *values) {
+  const frame_source *from = &f->sources[field * f->law_count + (law - f->laws)];
+  const frames_of here = {of, law, (long)f->clock->at.step};
+  if (from->values) from->values(&here, from, values);
+}
+
 void frames_values(const frame_set *f, int field, double *values) {
   const frame_field *of = &f->fields[field];
-  for (int b = of->on_bonds ? of->body : 0; b < (of->on_bonds ? of->body + 1 : f->body_count);
-       b++) {
-    const frame_source *from = &f->sources[field * f->body_count + b];
-    const frames_of here = {&f->bodies[b], (long)f->clock->at.step};
-    double *at = of->on_bonds ? values : values + f->bodies[b].first_particle * of->components;
-    if (from->values)
-      from->values(&here, from, at);
-    else
-      fill_without(f, of, b, at);
+  if (of->on_bonds) {
+    const run_law *law = &f->laws[of->interaction];
+    values_of_law(f, field, &f->bodies[law->from->lattice], law, values);
+    return;
+  }
+  for (int b = 0; b < f->body_count; b++) {
+    const run_body *here = &f->bodies[b];
+    double *at = values + here->first_particle * of->components;
+    fill_without(of, here, at);
+    for (int n = 0; n < here->law_count; n++)
+      values_of_law(f, field, here, &here->laws[n], at);
   }
 }
 
@@ -473,7 +520,7 @@ void frames_values(const frame_set *f, int field, double *values) {
 static bool exists_in_run(const own_field *own, const deck_output *o, const run_body *bodies,
                           int count) {
   for (int b = 0; b < count; b++)
-    if (own->exists(o, bodies[b].law)) return true;
+    if (exists_on(own, o, &bodies[b])) return true;
   return false;
 }
 
@@ -497,8 +544,8 @@ static const char **field_names(const deck_output *o, const run_body *bodies, in
       names[(*count)++] = own_fields[k].name;
   for (int k = 0; k < TENSORS; k++)
     names[(*count)++] = tensor_fields[k].name;
-  for (int b = 0; b < bodies_count; b++)
-    *count = add_law_names(bodies[b].law, names, *count);
+  for (int n = 0; n < count_laws(bodies, bodies_count); n++)
+    *count = add_law_names(bodies[0].laws[n].law, names, *count);
   return names;
 }
 
@@ -519,7 +566,7 @@ static void report_no_field(const deck_output *o, const run_body *bodies, int bo
 
 static void warn_of_none(const deck_output *o, const run_body *bodies, int count, int k,
                          diagnostics *d) {
-  if (count == 1)
+  if (count_laws(bodies, count) == 1)
     diag_report(d, DIAG_DECK_WARNING, o->field_where[k],
                 "this run with the law `%s` has no `%s` to store", bodies[0].law->name,
                 o->fields[k]);

@@ -132,8 +132,25 @@ static bool has_own_name(const deck *k, int lattice, diagnostics *d) {
   return false;
 }
 
+/* Laws beside others have folders of their own among the fields. */
+static bool laws_have_names(const deck *k, diagnostics *d) {
+  for (int n = 0; n < k->interaction_count; n++) {
+    const deck_interaction *of = &k->interactions[n];
+    const bool first = of->material == deck_material_of(k, of->lattice);
+    if (first || (!strchr(of->name, '/') && deck_find_lattice(k, of->name) < 0)) continue;
+    diag_report(d, DIAG_RESERVED_NAME, of->material->item.where,
+                strchr(of->name, '/')
+                    ? "the result names the bonds of this law `%s`: no name of a region that has "
+                      "a law of its own may hold `/`"
+                    : "the result names the bonds of this law `%s`, as a lattice is named already",
+                of->name);
+    return false;
+  }
+  return true;
+}
+
 bool bodies_fit(const deck *k, const run_body *bodies, int count, diagnostics *d) {
-  bool good = are_alike(k, bodies, count, d);
+  bool good = are_alike(k, bodies, count, d) && laws_have_names(k, d);
   for (int b = 0; b < count && count > 1; b++)
     good = has_own_name(k, b, d) && good;
   return good;
@@ -149,7 +166,8 @@ static bool is_named_once(const deck *k, const frame_field *f, int count, int fi
   bool once = strcmp(name, "time") != 0;
   for (int n = 0; n < count; n++)
     if (n != field)
-      once = once && strcmp(f[n].on_bonds ? k->lattices[f[n].body].name : f[n].name, name) != 0;
+      once = once &&
+             strcmp(f[n].on_bonds ? k->interactions[f[n].interaction].name : f[n].name, name) != 0;
   return once;
 }
 
@@ -164,9 +182,10 @@ bool law_fits_result(const deck *k, const run_body *bodies, const frame_field *f
   for (int n = 0; n < count; n++) {
     const char *name = fields[n].name;
     if (is_own_field(&fields[n]) || is_named_once(k, fields, count, n)) continue;
-    diag_report(d, DIAG_RESERVED_NAME, law_fits_where(k, fields[n].body),
+    const run_law *of = &bodies[0].laws[fields[n].interaction];
+    diag_report(d, DIAG_RESERVED_NAME, deck_where(&of->from->material->item, "model"),
                 "`%s` of the law `%s` cannot be stored: a result has another `%s` there", name,
-                bodies[fields[n].body].law->name, name);
+                of->law->name, name);
     diag_hint(d, "give it another name in the law, or leave it out of `fields` in &output");
   }
   return d->errors == errors;

@@ -54,6 +54,15 @@ typedef struct ledger {
    does. */
 const char *ledger_unchecked(const pl_law *law);
 
+/* What the laws at work on a body say of their energies. */
+typedef struct ledger_laws {
+  const char *unchecked; /* as of one law */
+  bool families;         /* some are laws of families */
+  bool silent;           /* some say nothing of what they store */
+  bool reads_rates;
+} ledger_laws;
+void ledger_add_law(ledger_laws *of, const pl_law *law);
+
 /* Terms of the state observed last. False where the steps make energy. With the velocity v of the
    state and the forces f of bonds alone half m v- v+ = half m v^2 - (dt f)^2/(8 m), and bonds that
    are not stiffer than virgin ones store at least f^2/(2 m omega^2): so the sum of half m v- v+ and
@@ -62,7 +71,7 @@ const char *ledger_unchecked(const pl_law *law);
    without end and stored energy rises.) `omega` (rad/s) is the largest frequency that the step was
    chosen by. Bonds may become twice as stiff; a millionth of the largest energy so far is rounding.
    Where the stored energy is not known nothing is said. */
-bool ledger_sample(ledger *g, const sweep *state, const loads *l, const load_look *look,
-                   double omega, double terms[LEDGER_COUNT]);
+bool ledger_sample(ledger *g, const ledger_laws *of, const body *state, const loads *l,
+                   const load_look *look, double omega, double terms[LEDGER_COUNT]);
 
 #endif

@@ -70,8 +70,14 @@ static bool check_component(const deck_monitor *m, const pl_law *law, diagnostic
   return false;
 }
 
+static bool law_can_be_damaged(const pl_law *law) {
+  return damage_on_bonds(law) || damage_on_particles(law);
+}
+
 static bool can_be_damaged(const run_body *b) {
-  return damage_on_bonds(b->law) || damage_on_particles(b->law);
+  for (int n = 0; n < b->law_count; n++)
+    if (law_can_be_damaged(b->laws[n].law)) return true;
+  return false;
 }
 
 static bool check_damage(const deck_monitor *m, const run_body *bodies, int count, diagnostics *d) {
@@ -80,7 +86,7 @@ static bool check_damage(const deck_monitor *m, const run_body *bodies, int coun
     some = some || can_be_damaged(&bodies[b]);
   if (some) return true;
   const char *task = follows_tip(m) ? "follow" : "count";
-  if (count > 1)
+  if (count > 1 || bodies[0].law_count > 1)
     diag_report(d, DIAG_BAD_VALUE, deck_where(&m->item, "kind"),
                 "none of the laws has damage to %s", task);
   else
@@ -102,8 +108,16 @@ static int find_field(const deck_monitor *m, const pl_law *law) {
   return -1;
 }
 
-static bool check_field(const deck_monitor *m, const pl_law *law, diagnostics *d) {
-  if (m->kind != MONITOR_FIELD || find_field(m, law) >= 0) return true;
+/* The first law of the body that has the field; NULL: none. */
+static const run_law *law_with_field(const deck_monitor *m, const run_body *of) {
+  for (int n = 0; n < of->law_count; n++)
+    if (find_field(m, of->laws[n].law) >= 0) return &of->laws[n];
+  return NULL;
+}
+
+static bool check_field(const deck_monitor *m, const run_body *of, diagnostics *d) {
+  if (m->kind != MONITOR_FIELD || law_with_field(m, of)) return true;
+  const pl_law *law = of->law;
   const int count = law->field_count + law->output_count;
   const char **names = must_calloc((size_t)count + 1, sizeof *names);
   int there = 0;
@@ -124,7 +138,7 @@ bool monitors_check(const deck *k, const run_body *bodies, int count, diagnostic
     good = check_damage(m, first ? first : bodies, first ? 1 : count, d) && good;
     for (int end = 0; end < 2; end++) {
       const run_body *of = body_of(k, bodies, count, m, end);
-      good = (!of || (check_component(m, of->law, d) && check_field(m, of->law, d))) && good;
+      good = (!of || (check_component(m, of->law, d) && check_field(m, of, d))) && good;
     }
   }
   return good;
@@ -149,7 +163,7 @@ static monitor_time when_known(const monitor *m, const monitors *all) {
   if (all->deck->relaxation.increments > 0) return KNOWN_WHEN_OBSERVED;
   switch (m->deck->kind) {
   case MONITOR_FIELD:
-    return m->field < m->of[0]->law->field_count ? KNOWN_ONE_LATE : KNOWN_WHEN_OBSERVED;
+    return m->field < m->law->law->field_count ? KNOWN_ONE_LATE : KNOWN_WHEN_OBSERVED;
   case MONITOR_REACTION:
   case MONITOR_REACTIONS:
   case MONITOR_TIP:
@@ -172,8 +186,11 @@ static void watch(monitor *m, monitors *all, diagnostics *d) {
   const rows *g = of->lattice_rows;
   if (m->deck->region) take_sites(m, 0, all, m->deck->region);
   const bool whole = !m->deck->region;
-  m->own = watched_new(m->deck, whole ? g->particle_site : m->indices[0],
-                       whole ? g->particle_count : m->index_count[0], of->state, of->bonds, d);
+  damage_law *laws = run_body_damages(of);
+  m->own =
+      watched_new(m->deck, whole ? g->particle_site : m->indices[0],
+                  whole ? g->particle_count : m->index_count[0], of->state, laws, of->law_count, d);
+  free(laws);
   bond_forces **forces = &all->forces[of - all->bodies];
   if (watched_needs_forces(m->deck) && !*forces) *forces = bond_forces_new(of->state);
 }
@@ -183,6 +200,18 @@ static void check_speed(const monitor *m, const monitors *all, diagnostics *d) {
   if (m->deck->kind != MONITOR_TIP_SPEED || m->window > 1) return;
   diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&m->deck->item, "average"),
               "a speed is taken over two states at least: %.6g s and more", 2 * all->interval);
+}
+
+/* Other laws have no such field on their particles. */
+static void check_share(const monitor *m, diagnostics *d) {
+  for (long p = 0; m->law->share && p < m->index_count[0]; p++) {
+    if (m->law->share[m->indices[0][p]] > 0) continue;
+    diag_report(d, DIAG_BAD_VALUE, deck_where(&m->deck->item, "region"),
+                "the region `%s` holds particles that are not of the law `%s`, whose `%s` is "
+                "watched",
+                m->deck->region, m->law->law->name, m->deck->field);
+    return;
+  }
 }
 
 static void new_monitor(monitors *all, int index, diagnostics *d) {
@@ -212,9 +241,11 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
     take_sites(m, 0, all, m->deck->region);
     break;
   case MONITOR_FIELD:
-    m->field = find_field(m->deck, m->of[0]->law);
-    m->unit = law_field(m->of[0]->law, m->field)->unit;
+    m->law = law_with_field(m->deck, m->of[0]);
+    m->field = find_field(m->deck, m->law->law);
+    m->unit = law_field(m->law->law, m->field)->unit;
     take_sites(m, 0, all, m->deck->region);
+    check_share(m, d);
     break;
   case MONITOR_DAMAGED:
   case MONITOR_BROKEN:
@@ -302,10 +333,12 @@ static bool watches(const monitors *all, const monitor *m, int b) {
 static char *count_words(const monitors *all, const monitor *m, arena *a) {
   bool bonds = false, particles = false;
   for (int b = 0; b < all->body_count; b++) {
-    if (!watches(all, m, b)) continue;
-    bonds = bonds || damage_on_bonds(all->bodies[b].law);
-    particles = particles ||
-                (!damage_on_bonds(all->bodies[b].law) && damage_on_particles(all->bodies[b].law));
+    const run_body *of = &all->bodies[b];
+    for (int n = 0; n < of->law_count && watches(all, m, b); n++) {
+      const pl_law *law = of->laws[n].law;
+      bonds = bonds || damage_on_bonds(law);
+      particles = particles || (!damage_on_bonds(law) && damage_on_particles(law));
+    }
   }
   const char *of = m->deck->lattice ? arena_printf(a, " of `%s`", m->deck->lattice) : "";
   return arena_printf(a, "%s%s with %s %.6g",
@@ -318,7 +351,7 @@ static char *count_words(const monitors *all, const monitor *m, arena *a) {
 }
 
 static char *field_words(const monitor *m, arena *a) {
-  const pl_field *f = law_field(m->of[0]->law, m->field);
+  const pl_field *f = law_field(m->law->law, m->field);
   char *words = arena_printf(a, "mean `%s` of `%s`", f->name, m->deck->region);
   return f->doc && *f->doc ? arena_printf(a, "%s (%s)", words, f->doc) : words;
 }
@@ -388,32 +421,37 @@ static long count_in_places(const rows *g, const monitor *m, const double *damag
 }
 
 /* Bonds, or particles where the law's damage is on particles alone. */
-static long count_damaged(const run_body *of, const monitor *m) {
-  const rows *g = of->lattice_rows;
+static long count_damaged(const run_law *of, const monitor *m) {
+  const rows *g = of->rows;
   const bool bonds = damage_on_bonds(of->law);
   const double *in_places = damage_of_all_bonds(of->state);
   long count = 0;
-  if (!can_be_damaged(of)) return 0;
+  if (!law_can_be_damaged(of->law)) return 0;
   if (in_places) return count_in_places(g, m, in_places);
   for (long b = 0; bonds && b < g->bond_count; b++)
     count += is_counted(m, damage_of_bond(of->state, &of->bonds[b]));
   for (long p = 0; !bonds && p < g->particle_count; p++)
-    count += is_counted(m, damage_of_site(of->state, g->particle_site[p]));
+    if (!of->share || of->share[g->particle_site[p]] > 0)
+      count += is_counted(m, damage_of_site(of->state, g->particle_site[p]));
   return count;
 }
 
 static double count_all_damaged(const monitors *all, const monitor *m) {
   long count = 0;
   for (int b = 0; b < all->body_count; b++)
-    if (watches(all, m, b)) count += count_damaged(&all->bodies[b], m);
+    for (int n = 0; n < all->bodies[b].law_count && watches(all, m, b); n++)
+      count += count_damaged(&all->bodies[b].laws[n], m);
   return (double)count;
 }
 
 /* Of a law's field or output on particles. */
-static double field_mean(const monitors *all, const monitor *m, double *const *fields) {
-  const int count = m->of[0]->law->field_count;
-  const double *values = m->field < count ? fields[m->field] : all->values;
-  if (m->field >= count) sweep_output(m->of[0]->state, m->field - count, all->values);
+static double field_mean(const monitors *all, const monitor *m, bool late) {
+  sweep *state = m->law->state;
+  const int count = m->law->law->field_count;
+  const double *values = m->field >= count ? all->values
+                         : late            ? state->field[m->field]
+                                           : state->new_field[m->field];
+  if (m->field >= count) sweep_output(state, m->field - count, all->values);
   return mean_at(values, m->indices[0], m->index_count[0]);
 }
 
@@ -440,14 +478,14 @@ static velocity_instant velocities_at(const void *from, int component, long site
   return load_steps_velocities(v->of->loads, v->of->body, component, site, v->step);
 }
 
-/* What watched.h has; `field`: the law's fields in the state that is meant. */
-static double watched_now(const monitors *all, const monitor *m, long step, double *const *field) {
+/* What watched.h has. */
+static double watched_now(const monitors *all, const monitor *m, long step, bool late) {
   const instant_velocities v = {m->of[0], step};
   bond_forces *forces = all->forces[m->of[0] - all->bodies];
   const watch_instant at = {.velocity = velocities_at,
                             .velocities = &v,
                             .forces = forces,
-                            .field = field,
+                            .late = late,
                             .scratch = all->values};
   if (watched_needs_forces(m->deck)) bond_forces_find(forces, step);
   return watched_value(m->own, &at);
@@ -467,12 +505,12 @@ static double value_now(const monitors *all, const monitor *m, long step) {
   case MONITOR_OPENING:
     return displacement_mean(m, 1) - displacement_mean(m, 0);
   case MONITOR_FIELD:
-    return field_mean(all, m, m->of[0]->state->new_field);
+    return field_mean(all, m, false);
   case MONITOR_DAMAGED:
   case MONITOR_BROKEN:
     return count_all_damaged(all, m);
   default:
-    return watched_now(all, m, step, m->of[0]->state->new_field);
+    return watched_now(all, m, step, false);
   }
 }
 
@@ -481,9 +519,9 @@ static double value_now(const monitors *all, const monitor *m, long step) {
 static double value_of_step(const monitors *all, const monitor *m, long step) {
   if (m->deck->kind == MONITOR_VELOCITY)
     return mean_at(m->of[0]->body->velocity[m->deck->component], m->indices[0], m->index_count[0]);
-  if (m->deck->kind == MONITOR_FIELD) return field_mean(all, m, m->of[0]->state->field);
+  if (m->deck->kind == MONITOR_FIELD) return field_mean(all, m, true);
   if (m->deck->kind == MONITOR_ACCELERATION) return watched_velocity(m->own);
-  if (m->own) return watched_now(all, m, step, m->of[0]->state->field);
+  if (m->own) return watched_now(all, m, step, true);
   return value_now(all, m, step);
 }
 

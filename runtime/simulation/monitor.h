@@ -36,10 +36,11 @@ typedef struct monitor {
   monitor_state state;
   int32_t *indices[2]; /* sites, or constraints of a reaction (second list: of the second region) */
   long index_count[2];
-  int field;         /* of a field monitor: the law's field, or field_count + output */
-  watched_part *own; /* NULL of kinds that are not watched.h's */
-  double *ring;      /* [window] the last values, value of push k at k % window */
-  long window;       /* steps; 1: no averaging */
+  const run_law *law; /* of a field monitor: that whose field it is */
+  int field;          /* of a field monitor: the law's field, or field_count + output */
+  watched_part *own;  /* NULL of kinds that are not watched.h's */
+  double *ring;       /* [window] the last values, value of push k at k % window */
+  long window;        /* steps; 1: no averaging */
   monitor_time known;
   long zero_step; /* -1: never */
 } monitor;

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/base/arena.h"
+#include "runtime/analysis/stability.h"
 #include "runtime/interaction/interaction.h"
 #include "runtime/lattice/lattice.h"
 #include "runtime/simulation/law_fits.h"
@@ -24,37 +26,145 @@ static bool has_formula(const deck_material *m) {
   return false;
 }
 
-static bool open_planes(run_body *b, const deck *k, diagnostics *d) {
-  const int material = deck_find_material(k, b->name);
-  if (!has_field(k, b->name) && b->regional_count == 0 && b->law->varying_count == 0 &&
-      (material < 0 || !has_formula(&k->materials[material])))
+static bool open_planes(const run_body *b, run_law *l, const deck *k, diagnostics *d) {
+  const deck_material *m = l->from->material;
+  if (!(l == b->laws && has_field(k, b->name)) && l->regional_count == 0 &&
+      l->law->varying_count == 0 && !has_formula(m))
     return true;
-  b->planes = parameter_planes_new(k, b->lattice, b->lattice_rows, b->law, b->parameters,
-                                   b->regional, b->regional_count, d);
-  return b->planes != NULL;
+  l->planes = parameter_planes_new(k, b->lattice, m, l->rows, l->law, l->parameters, l->regional,
+                                   l->regional_count, d);
+  return l->planes != NULL;
+}
+
+static bool all_have_parameters(const run_body *b) {
+  for (int n = 0; n < b->law_count; n++)
+    if (!b->laws[n].parameters) return false;
+  return true;
+}
+
+/* A solver has kernels of its own, and its deck may change. */
+static bool is_for_one_of_several(const run_body *b, const run_law *l, diagnostics *d) {
+  if (l->law->kind == PL_STATE && (l->law->pairwise || l->law->reads_share)) return true;
+  diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&l->from->material->item, "model"),
+              "the kernel of `%s` was made for a lattice with one law, `%s` has several",
+              l->law->name, b->name);
+  diag_hint(d, "use `perilat run`, or build the solver from this deck again");
+  return false;
+}
+
+/* A body has particles of one kind, and engines for laws of one kind. */
+static bool laws_are_alike(const run_body *b, diagnostics *d) {
+  for (int n = 0; n < b->law_count && b->law_count > 1; n++) {
+    if (!is_for_one_of_several(b, &b->laws[n], d)) return false;
+    const pl_law *first = b->law, *law = b->laws[n].law;
+    const char *why = law->dof != first->dof ? "their particles have not the same rotations"
+                      : law->pairwise != first->pairwise
+                          ? "one is a law of bonds, the other one of families"
+                          : NULL;
+    if (!why) continue;
+    diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&b->laws[n].from->material->item, "model"),
+                "the law `%s` cannot stand beside `%s` on one lattice: %s", law->name, first->name,
+                why);
+    diag_note(d, deck_where(&b->laws[0].from->material->item, "model"), "the lattice's law");
+    diag_hint(d, "take two laws of bonds that both rotate or both do not, or two laws of families");
+    return false;
+  }
+  return true;
+}
+
+static bool laws_fit(run_body *b, const deck *k, diagnostics *d) {
+  bool good = true;
+  for (int n = 0; n < b->law_count; n++) {
+    run_law *l = &b->laws[n];
+    l->rows = b->lattice_rows;
+    l->fits = l->law && law_fits_lattice(l->law, k, b->lattice, b->lattice_rows, d);
+    good = good && l->fits;
+  }
+  return good && laws_are_alike(b, d);
+}
+
+/* Of several laws: which bonds are whose. */
+static bool open_parts(run_body *b, const deck *k, diagnostics *d) {
+  if (b->law_count == 1) return true;
+  const int first = (int)(b->laws[0].from - k->interactions);
+  const bool families = !b->law->pairwise;
+  b->parts = law_parts_new(k, first, b->law_count, b->lattice_rows, families, d);
+  for (int n = 0; n < b->law_count && b->parts; n++) {
+    b->laws[n].rows = b->parts[n].bonds;
+    b->laws[n].share = b->parts[n].share;
+  }
+  return b->parts != NULL;
+}
+
+/* What the engine of one of several laws sees: of families all bonds, of which they have shares. */
+static interaction_law law_beside(const run_body *b, const run_law *l) {
+  return (interaction_law){.law = l->law,
+                           .parameters = l->parameters,
+                           .varying = l->planes ? l->planes->value : NULL,
+                           .lattice = l->share ? b->lattice_rows : l->rows,
+                           .share = l->share};
+}
+
+static interaction_law *laws_beside(const run_body *b) {
+  interaction_law *laws = must_calloc((size_t)b->law_count, sizeof *laws);
+  for (int n = 0; n < b->law_count; n++)
+    laws[n] = law_beside(b, &b->laws[n]);
+  return laws;
+}
+
+static bool find_limit(run_body *b, const deck *k, diagnostics *d) {
+  const run_law *l = &b->laws[0];
+  if (b->law_count == 1)
+    return step_limit_of(k, b->lattice, l->law, l->parameters, l->planes, b->lattice_rows,
+                         &b->limit, d);
+  interaction_law *laws = laws_beside(b);
+  stability_limit_joint(laws, b->law_count, b->lattice_rows, &b->limit);
+  free(laws);
+  return step_limit_check(k, b->lattice, b->law, &b->limit, d);
+}
+
+static bool density_is_one(const run_body *b, diagnostics *d) {
+  const double rho = material_density(b->law, b->laws[0].parameters);
+  for (int n = 1; n < b->law_count; n++) {
+    const run_law *l = &b->laws[n];
+    if (material_density(l->law, l->parameters) == rho || !l->from->material->region) continue;
+    diag_report(d, DIAG_NOT_SUPPORTED, l->from->material->item.where,
+                "`rho` cannot differ from region to region: the particles of a lattice have one "
+                "mass");
+    return false;
+  }
+  return true;
 }
 
 /* What asks for the values of parameters. */
-static bool open_material(run_body *b, const deck *k, diagnostics *d) {
-  const bool planes = open_planes(b, k, d), mass = law_fits_motion(b->law, k, b->lattice, d);
-  if (mass) rows_set_density(b->lattice_rows, material_density(b->law, b->parameters));
+static bool open_materials(run_body *b, const deck *k, diagnostics *d) {
+  bool planes = true, mass = true;
+  for (int n = 0; n < b->law_count; n++) {
+    planes = open_planes(b, &b->laws[n], k, d) && planes;
+    mass = law_fits_motion(b->laws[n].law, k, b->lattice, d) && mass;
+  }
+  mass = mass && density_is_one(b, d);
+  if (mass) {
+    rows_set_density(b->lattice_rows, material_density(b->law, b->laws[0].parameters));
+    law_parts_take_masses(b->parts, b->law_count, b->lattice_rows);
+  }
   if (deck_lacks(k, "simulation") || deck_lacks(k, "relaxation")) return false;
-  return planes && mass &&
-         step_limit_of(k, b->lattice, b->law, b->parameters, b->planes, b->lattice_rows, &b->limit,
-                       d);
+  return planes && mass && find_limit(b, k, d);
 }
 
 bool run_body_open(run_body *b, const deck *k, rows *lattice, diagnostics *d) {
   enum { ANY_DOF = PL_MAX_DOF };
   b->name = k->lattices[b->lattice].name;
+  b->law = b->laws[0].law;
   b->lattice_rows = lattice ? lattice : lattice_build(k, b->lattice, d);
   if (!b->lattice_rows) return false;
-  b->fits = b->law && law_fits_lattice(b->law, k, b->lattice, b->lattice_rows, d);
+  b->fits = laws_fit(b, k, d);
   b->loads = loads_new(k, b->lattice, b->lattice_rows, b->fits ? b->law->name : "",
                        b->fits ? b->law->dof : ANY_DOF, d);
   if (!b->fits) return false;
-  law_fits_protection(b->law, k, b->lattice, d);
-  return b->parameters && open_material(b, k, d) && b->loads;
+  for (int n = 0; n < b->law_count; n++)
+    law_fits_protection(b->laws[n].law, k, b->lattice, d);
+  return open_parts(b, k, d) && all_have_parameters(b) && open_materials(b, k, d) && b->loads;
 }
 
 /* --- the state -------------------------------------------------------------------------------- */
@@ -69,22 +179,54 @@ static int choose_threads(const run_body *b, const deck *k) {
   return sensible < 1 ? 1 : offered < sensible ? offered : sensible;
 }
 
+/* One law moves the body by itself, several do it together. */
+static void open_state(run_body *b, const deck *k, double step) {
+  run_law *l = &b->laws[0];
+  const bool energies = k->output.energy;
+  const int threads = choose_threads(b, k);
+  if (b->law_count == 1) {
+    b->state = l->state = interaction_new(b->lattice_rows, l->law, l->parameters, step, threads,
+                                          energies, k->relaxation.increments > 0);
+    if (l->planes) l->state->parameter = l->planes->value;
+    return;
+  }
+  interaction_law *laws = laws_beside(b);
+  sweep **states = must_calloc((size_t)b->law_count, sizeof(sweep *));
+  b->state =
+      interaction_joint(b->lattice_rows, laws, b->law_count, step, threads, energies, states);
+  for (int n = 0; n < b->law_count; n++)
+    b->laws[n].state = states[n];
+  free(states);
+  free(laws);
+}
+
 bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d) {
   b->limit.step = step;
-  b->bonds = rows_bonds(b->lattice_rows);
-  b->state = interaction_new(b->lattice_rows, b->law, b->parameters, step, choose_threads(b, k),
-                             k->output.energy, k->relaxation.increments > 0);
+  for (int n = 0; n < b->law_count; n++) {
+    b->laws[n].bonds = rows_bonds(b->laws[n].rows);
+    ledger_add_law(&b->energies, b->laws[n].law);
+  }
+  open_state(b, k, step);
   b->body = b->state->body;
-  if (b->planes) b->state->parameter = b->planes->value;
   if (k->gravity_count > 0) body_add_gravity(b->body);
   return loads_initial_motion(b->loads, b->body, d);
+}
+
+damage_law *run_body_damages(const run_body *b) {
+  damage_law *laws = must_calloc((size_t)b->law_count, sizeof *laws);
+  for (int n = 0; n < b->law_count; n++)
+    laws[n] = (damage_law){b->laws[n].state, b->laws[n].bonds, b->laws[n].rows->bond_count};
+  return laws;
 }
 
 void run_body_free(run_body *b) {
   loads_free(b->loads);
   sweep_free(b->state);
-  parameter_planes_free(b->planes);
-  free(b->bonds);
+  for (int n = 0; n < b->law_count; n++) {
+    parameter_planes_free(b->laws[n].planes);
+    free(b->laws[n].bonds);
+  }
+  law_parts_free(b->parts, b->law_count);
   if (b->lattice_rows) rows_free(b->lattice_rows);
 }
 
@@ -94,7 +236,13 @@ double run_body_memory(const run_body *b) {
   const double list =
       g->list ? 2 * g->directions * (sizeof(int32_t) + (1 + (double)g->dimensions) * sizeof(double))
               : 0;
-  return (double)b->body->bytes + (list + site) * (double)g->size +
-         (b->planes ? (double)b->planes->bytes : 0) +
-         (double)sizeof(rows_bond) * (double)g->bond_count;
+  double bytes = (double)b->body->bytes + (list + site) * (double)g->size;
+  for (int n = 0; n < b->law_count; n++) {
+    const run_law *l = &b->laws[n];
+    bytes += (double)sizeof(rows_bond) * (double)l->rows->bond_count;
+    bytes += l->planes ? (double)l->planes->bytes : 0;
+    bytes += (b->parts ? sizeof(uint64_t) : 0) * (double)g->size;
+    bytes += (l->share ? sizeof(double) : 0) * (double)g->size;
+  }
+  return bytes;
 }

@@ -96,19 +96,29 @@ static bool set_up(simulation *s, rows *const *lattices, diagnostics *d) {
   return true;
 }
 
+static void take_laws(simulation *s, const simulation_law *laws) {
+  const deck *k = s->deck;
+  s->law_count = k->interaction_count;
+  s->laws = must_calloc((size_t)s->law_count + 1, sizeof *s->laws);
+  for (int n = 0; n < s->law_count; n++) {
+    run_body *of = &s->bodies[k->interactions[n].lattice];
+    s->laws[n] = (run_law){.from = &k->interactions[n],
+                           .law = laws[n].law,
+                           .parameters = laws[n].parameters,
+                           .regional = laws[n].regional,
+                           .regional_count = laws[n].regional_count};
+    if (of->law_count++ == 0) of->laws = &s->laws[n];
+    of->lattice = k->interactions[n].lattice;
+  }
+}
+
 simulation *simulation_new_on(rows *const *lattices, const deck *k, const simulation_law *laws,
                               diagnostics *d) {
   simulation *s = must_calloc(1, sizeof *s);
   s->deck = k;
   s->body_count = k->lattice_count;
   s->bodies = must_calloc((size_t)s->body_count + 1, sizeof *s->bodies);
-  for (int b = 0; b < s->body_count; b++) {
-    s->bodies[b].lattice = b;
-    s->bodies[b].law = laws[b].law;
-    s->bodies[b].parameters = laws[b].parameters;
-    s->bodies[b].regional = laws[b].regional;
-    s->bodies[b].regional_count = laws[b].regional_count;
-  }
+  take_laws(s, laws);
   if (set_up(s, lattices, d) && d->errors == 0) return s;
   simulation_free(s);
   return NULL;
@@ -129,6 +139,7 @@ void simulation_free(simulation *s) {
     run_body_free(&s->bodies[b]);
   team_free(s->team);
   free(s->bodies);
+  free(s->laws);
   free(s);
 }
 
@@ -136,8 +147,12 @@ int simulation_bodies(const simulation *s) {
   return s->body_count;
 }
 
-const parameter_planes *simulation_planes(const simulation *s, int number) {
-  return s->bodies[number].planes;
+const parameter_planes *simulation_planes(const simulation *s, int interaction) {
+  return s->laws[interaction].planes;
+}
+
+const rows *simulation_law_rows(const simulation *s, int interaction) {
+  return s->laws[interaction].rows;
 }
 
 const rows *simulation_rows(const simulation *s, int number) {
@@ -171,6 +186,10 @@ int simulation_threads(const simulation *s) {
 }
 sweep *simulation_state(simulation *s, int number) {
   return s->bodies[number].state;
+}
+
+sweep *simulation_law_state(simulation *s, int interaction) {
+  return s->laws[interaction].state;
 }
 
 double simulation_memory(const simulation *s) {
@@ -221,14 +240,14 @@ char *simulation_series_words(const simulation *s, int k, arena *a) {
 int simulation_imbalance(const simulation *s, const char **unchecked) {
   *unchecked = NULL;
   for (int b = 0; b < s->body_count && !*unchecked; b++)
-    *unchecked = ledger_unchecked(s->bodies[b].law);
+    *unchecked = s->bodies[b].energies.unchecked;
   return history_imbalance(&s->history, -1);
 }
 
 bool simulation_judges(const simulation *s, int series, const char **unchecked) {
   if (series == simulation_imbalance(s, unchecked)) return true;
   for (int b = 0; b < s->body_count; b++) {
-    *unchecked = ledger_unchecked(s->bodies[b].law);
+    *unchecked = s->bodies[b].energies.unchecked;
     if (series == history_imbalance(&s->history, b)) return true;
   }
   *unchecked = NULL;

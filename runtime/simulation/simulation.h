@@ -28,7 +28,7 @@ typedef struct simulation simulation;
 struct profile;
 struct sweep;
 
-/* What the front end hands over for each lattice of the deck, in deck order. NULL where a law or
+/* What the front end hands over for each interaction of the deck, in its order. NULL where a law or
    its parameters are wrong: then the deck is checked as far as it does not depend on them. */
 typedef struct simulation_law {
   const pl_law *law;
@@ -53,9 +53,11 @@ void simulation_free(simulation *s);
 
 /* As many as the deck has lattices, in their order. */
 int simulation_bodies(const simulation *s);
-/* Parameters of its law that differ in space; NULL without. */
-const parameter_planes *simulation_planes(const simulation *s, int body);
 const rows *simulation_rows(const simulation *s, int body);
+/* Of an interaction of the deck: the rows of its body with the bonds that the law has a part in,
+   and the parameters that differ in space (NULL without). */
+const rows *simulation_law_rows(const simulation *s, int interaction);
+const parameter_planes *simulation_planes(const simulation *s, int interaction);
 /* The shortest that a body has, and whose it is. */
 const step_limit *simulation_step_limit(const simulation *s);
 int simulation_ruling_body(const simulation *s);
@@ -74,6 +76,8 @@ void simulation_measure(simulation *s, struct profile *p);
 /* The arrays of the state of a body, for tools and tests; before the first step they may be set (an
    initial velocity, say). */
 struct sweep *simulation_state(simulation *s, int body);
+/* With the fields of the law of an interaction. */
+struct sweep *simulation_law_state(simulation *s, int interaction);
 
 /* The &stop of the deck that ended the run (STEP_STOPPED), or NULL. */
 const deck_stop *simulation_stopped_by(const simulation *s);

@@ -18,6 +18,16 @@ static void add_part(part_list *l, const char *name, void *data, size_t bytes) {
   l->items[l->count++] = (checkpoint_part){name, data, bytes};
 }
 
+static void add_fields(part_list *l, const sweep *w) {
+  const size_t site = (size_t)w->lattice->size * sizeof(double);
+  for (int f = 0; f < w->law->field_count; f++)
+    add_part(l, w->law->fields[f].name, w->field[f],
+             site * (size_t)sweep_planes(w, w->law->fields[f].place));
+  if (!w->dissipated_state) return;
+  add_part(l, "dissipated_state", w->dissipated_state, site);
+  add_part(l, "dissipated_rate", w->dissipated_rate, site);
+}
+
 static void add_state(part_list *l, const run_body *of) {
   const sweep *w = of->state;
   const size_t site = (size_t)of->lattice_rows->size * sizeof(double),
@@ -26,13 +36,8 @@ static void add_state(part_list *l, const run_body *of) {
     add_part(l, "displacement", w->body->displacement[d], site);
     add_part(l, "velocity", w->body->velocity[d], site);
   }
-  for (int f = 0; f < w->law->field_count; f++)
-    add_part(l, w->law->fields[f].name, w->field[f],
-             site * (size_t)sweep_planes(w, w->law->fields[f].place));
-  if (w->dissipated_state) {
-    add_part(l, "dissipated_state", w->dissipated_state, site);
-    add_part(l, "dissipated_rate", w->dissipated_rate, site);
-  }
+  for (int n = 0; n < of->law_count; n++)
+    add_fields(l, of->laws[n].state);
   if (w->body->weight) {
     add_part(l, "work_of_gravity", w->body->row_gravity, row);
     add_part(l, "gravity", w->body->gravity, sizeof w->body->gravity);

@@ -17,6 +17,8 @@ struct simulation {
   const deck *deck;
   run_body *bodies; /* [body_count] in the order of the deck's lattices */
   int body_count;
+  run_law *laws; /* [law_count] the deck's interactions, those of one body after the other */
+  int law_count;
   team *team; /* of the threads */
   int blocks; /* of a round of the team; each has a block of some bodies */
   monitors *monitors;

@@ -19,6 +19,9 @@ typedef struct step_plan {
 bool step_limit_of(const deck *k, int lattice, const pl_law *law, const double *parameters,
                    const parameter_planes *fields, const rows *w, step_limit *limit,
                    diagnostics *d);
+/* The same of a limit that is known. */
+bool step_limit_check(const deck *k, int lattice, const pl_law *law, const step_limit *limit,
+                      diagnostics *d);
 /* limit->step, the deck's part of the shortest of these limits. It is that of `law`, and of
    `lattice` where there are others, too (else NULL). */
 bool step_choose(const deck *k, const pl_law *law, const char *lattice, step_limit *limit,

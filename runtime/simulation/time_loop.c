@@ -46,8 +46,8 @@ static void sample_energies(simulation *s) {
   const bool last = run_clock_position(&s->clock) == run_clock_end(&s->clock);
   for (int b = 0; b < s->body_count; b++) {
     run_body *of = &s->bodies[b];
-    if (!ledger_sample(&of->ledger, of->state, of->loads, &of->look, of->limit.omega_max,
-                       history_energies_of(&s->history, b)))
+    if (!ledger_sample(&of->ledger, &of->energies, of->body, of->loads, &of->look,
+                       of->limit.omega_max, history_energies_of(&s->history, b)))
       end_badly(s, "energy from nothing");
   }
   add_up(s);

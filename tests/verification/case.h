@@ -77,6 +77,7 @@ static inline double *law_case_value(law_case *c, const char *name) {
   abort();
 }
 
+enum { DECK_CASE_LAWS = 4 };
 /* A deck read from text or file, and the lattice or the run that it describes. */
 typedef struct deck_case {
   arena *memory;
@@ -85,7 +86,10 @@ typedef struct deck_case {
   const deck *deck;
   rows *lattice;      /* of deck_case_lattice */
   model model;        /* of deck_case_run */
-  simulation_law law; /* of deck_case_run */
+  simulation_law law; /* of deck_case_run: the first */
+  /* of the deck's other interactions */
+  model more_models[DECK_CASE_LAWS];
+  simulation_law laws[DECK_CASE_LAWS];
   simulation *simulation;
 } deck_case;
 
@@ -111,37 +115,48 @@ static inline bool deck_case_lattice(deck_case *c, const char *text) {
   return c->lattice != NULL;
 }
 
-static inline double *deck_case_parameters(deck_case *c, const deck_material *values) {
-  double *parameters = calloc((size_t)c->law.law->parameter_count + 1, sizeof *parameters);
-  if (material_parameters(values, c->law.law, parameters, &c->said)) return parameters;
+static inline double *deck_case_parameters(deck_case *c, const pl_law *kernel,
+                                           const deck_material *values) {
+  double *parameters = calloc((size_t)kernel->parameter_count + 1, sizeof *parameters);
+  if (material_parameters(values, kernel, parameters, &c->said)) return parameters;
   free(parameters);
   return NULL;
 }
 
-static inline bool deck_case_regions(deck_case *c, const deck_material *m) {
-  c->law.regional = calloc((size_t)m->regional_count + 1, sizeof *c->law.regional);
+static inline bool deck_case_regions(deck_case *c, const deck_material *m, const model *of,
+                                     simulation_law *into) {
+  into->regional = calloc((size_t)m->regional_count + 1, sizeof *into->regional);
   for (int k = 0; k < m->regional_count; k++) {
     deck_material values;
-    if (!material_law_regional(m->regional[k], &c->model, c->memory, &values, &c->said))
-      return false;
-    double *parameters = deck_case_parameters(c, &values);
+    if (!material_law_regional(m->regional[k], of, c->memory, &values, &c->said)) return false;
+    double *parameters = deck_case_parameters(c, into->law, &values);
     if (!parameters) return false;
-    c->law.regional[c->law.regional_count++] = (regional_values){m->regional[k], parameters};
+    into->regional[into->regional_count++] = (regional_values){m->regional[k], parameters};
   }
   return true;
 }
 
-/* A simulation of the deck with the compiled kernel of its own law. */
-static inline bool deck_case_start(deck_case *c, const char *path) {
+static inline bool deck_case_law(deck_case *c, const deck_interaction *of, const char *path,
+                                 model *opened, simulation_law *into) {
   const char *note;
   char error[4096];
-  const deck_material *m = deck_material_of(c->deck, 0);
-  if (!m || !material_law_open(m, &c->deck->lattices[0], path, &c->model, &c->said)) return false;
-  c->law.law = model_kernel(&c->model, false, &note, error, sizeof error);
-  if (!c->law.law) return false;
-  c->law.parameters = deck_case_parameters(c, &c->model.values);
-  if (c->law.parameters && deck_case_regions(c, m))
-    c->simulation = simulation_new(c->deck, &c->law, &c->said);
+  const deck_material *m = of->material;
+  if (!m || !material_law_open(m, &c->deck->lattices[of->lattice], path, opened, &c->said))
+    return false;
+  into->law = model_kernel(opened, false, &note, error, sizeof error);
+  if (!into->law) return false;
+  into->parameters = deck_case_parameters(c, into->law, &opened->values);
+  return into->parameters && deck_case_regions(c, m, opened, into);
+}
+
+/* A simulation of the deck with the compiled kernels of its own laws. */
+static inline bool deck_case_start(deck_case *c, const char *path) {
+  bool good = c->deck->interaction_count <= DECK_CASE_LAWS &&
+              deck_case_law(c, c->deck->interactions, path, &c->model, &c->law);
+  for (int n = 1; n < c->deck->interaction_count && good; n++)
+    good = deck_case_law(c, &c->deck->interactions[n], path, &c->more_models[n], &c->laws[n]);
+  c->laws[0] = c->law;
+  if (good) c->simulation = simulation_new(c->deck, c->laws, &c->said);
   if (c->said.errors) diag_print(&c->said, stderr);
   return c->simulation != NULL;
 }
@@ -177,10 +192,14 @@ static inline step_status deck_case_go(deck_case *c) {
 
 static inline void deck_case_close(deck_case *c) {
   if (c->simulation) simulation_free(c->simulation);
-  free(c->law.parameters);
-  for (int k = 0; k < c->law.regional_count; k++)
-    free(c->law.regional[k].parameters);
-  free(c->law.regional);
+  for (int n = 0; n < DECK_CASE_LAWS; n++) {
+    const simulation_law *of = n ? &c->laws[n] : &c->law;
+    free(of->parameters);
+    for (int k = 0; k < of->regional_count; k++)
+      free(of->regional[k].parameters);
+    free(of->regional);
+    if (c->more_models[n].memory) model_close(&c->more_models[n]);
+  }
   if (c->model.memory) model_close(&c->model);
   if (c->lattice) rows_free(c->lattice);
   diag_clear(&c->said);

@@ -232,8 +232,6 @@ static void slips_are_told_at_their_line(void **state) {
                 "region `c` holds no particle", "name = 'c'"},
                {"&material lattice = 'l' region = 'd' model = 'lps' E = '1 GPa' /\n",
                 "there is no region `d`", "region = 'd'"},
-               {"&material lattice = 'l' region = 'a' model = 'pmb' E = '1 GPa' /\n",
-                "a region has the law of its lattice", "model = 'pmb'"},
                {"&material lattice = 'l' region = 'a' model = 'lps' rho = 1000 /\n",
                 "`rho` cannot differ from region to region", "rho = 1000"},
                {"&material lattice = 'l' region = 'a' model = 'lps' E = '-1 GPa' /\n",

@@ -50,7 +50,7 @@ static void the_largest_damage_of_a_bond_counts(void **state) {
       w->new_field[f][bonds[b].slot] = given[b][f];
   assert_true(damage_of_bond(w, &bonds[0]) == 0.6 && damage_of_bond(w, &bonds[1]) == 0.9);
   assert_null(damage_of_all_bonds(w)); /* no single array holds it */
-  damage_of_particles(w, bonds, values);
+  damage_of_particles(&(damage_law){w, bonds, 2}, 1, values);
   for (int b = 0; b < 2; b++) { /* the ends have one bond, the middle has both */
     const int32_t end =
         bonds[b].i == bonds[1 - b].i || bonds[b].i == bonds[1 - b].j ? bonds[b].j : bonds[b].i;
@@ -86,7 +86,7 @@ static void without_damage_all_is_sound(void **state) {
   w->new_field[0][bonds[0].slot] = 0.7;
   assert_true(damage_of_bond(w, &bonds[0]) == 0 &&
               damage_of_site(w, w->body->lattice->particle_site[0]) == 0);
-  damage_of_particles(w, bonds, values);
+  damage_of_particles(&(damage_law){w, bonds, 2}, 1, values);
   assert_true(values[0] == 0 && values[1] == 0 && values[2] == 0);
   free(bonds);
   small_close(&r);

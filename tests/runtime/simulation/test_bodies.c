@@ -323,9 +323,9 @@ static void frames_hold_all_bodies(void **state) {
   for (int k = 0; k < count; k++) {
     assert_string_equal(f[k].name, expected[k].name);
     assert_int_equal(f[k].on_bonds, expected[k].on_bonds);
-    assert_int_equal(f[k].body, expected[k].of);
+    assert_int_equal(f[k].interaction, expected[k].of);
     assert_int_equal(f[k].count, f[k].on_bonds
-                                     ? simulation_rows(t.simulation, f[k].body)->bond_count
+                                     ? simulation_rows(t.simulation, f[k].interaction)->bond_count
                                      : particles);
     simulation_frame_values(t.simulation, k, values);
     for (int b = 0; b < BODIES && !f[k].on_bonds; b++) {

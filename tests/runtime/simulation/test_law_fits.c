@@ -123,9 +123,11 @@ static void fields_are_named_once_in_a_result(void **state) {
                                 {.name = "time", .kind = "state", .on_bonds = true},
                                 {.name = "c", .kind = "damage", .on_bonds = true},
                                 {.name = "stress", .kind = "output"}};
-  const run_body bar = {.law = &elastic_bar};
+  run_law law = {.law = &elastic_bar};
+  const run_body bar = {.law = &elastic_bar, .laws = &law, .law_count = 1};
   built_rows b;
   read_deck(&b, PLANE(NEAREST));
+  law.from = b.deck->interactions;
   assert_true(law_fits_result(b.deck, &bar, fields + 4, 3, &b.said));
   assert_true(law_fits_result(b.deck, &bar, fields, 1, &b.said));
   assert_int_equal(b.said.count, 0);

@@ -138,13 +138,15 @@ static void steps_that_make_energy_are_told(void **state) {
   rows *lattice = lattice_build(r.deck, 0, &r.said);
   loads *l = loads_new(r.deck, 0, lattice, "m", 2, &r.said);
   ledger g = {0};
+  ledger_laws of = {.unchecked = NULL};
+  ledger_add_law(&of, w->law);
   double terms[LEDGER_COUNT];
-  assert_true(ledger_sample(&g, w, l, &(load_look){0}, pair_frequency(), terms));
+  assert_true(ledger_sample(&g, &of, w->body, l, &(load_look){0}, pair_frequency(), terms));
   assert_true(terms[LEDGER_KINETIC] < 0 &&
               terms[LEDGER_KINETIC] == small_last(&r, "energy/kinetic"));
   assert_true(terms[LEDGER_STORED] == small_last(&r, "energy/stored"));
   assert_true(terms[LEDGER_IMBALANCE] == 0); /* it begins with this sample */
-  assert_false(ledger_sample(&g, w, l, &(load_look){0}, 0.1 * pair_frequency(), terms));
+  assert_false(ledger_sample(&g, &of, w->body, l, &(load_look){0}, 0.1 * pair_frequency(), terms));
   loads_free(l);
   rows_free(lattice);
   small_close(&r);

@@ -145,7 +145,7 @@ static void parts_of_a_simulation_agree(void **state) {
     assert_true(b->body->time_step == s->clock.time_step);
     assert_int_equal(s->clock.step_count, s->plan.step_count);
     assert_int_equal(s->history.capacity, s->plan.history_capacity);
-    assert_int_equal(b->bonds[0].i + b->bonds[0].j, 1);
+    assert_int_equal(b->laws[0].bonds[0].i + b->laws[0].bonds[0].j, 1);
     assert_true((s->relaxation != NULL) == quasi_static);
     assert_ptr_equal(s->clock.relaxation, s->relaxation);
     assert_ptr_equal(s->history.relaxation, s->relaxation);
