@@ -190,11 +190,12 @@ typedef struct pl_family {
   const double *displacement[PL_MAX_DOF], *velocity[PL_MAX_DOF];
   /* Lists. Where there is no neighbour, `neighbour` leads to a site that is absent, and the chord
      is some vector that is not 0. */
-  const int32_t *neighbour;    /* [neighbours][plane] sites from here to the neighbour */
-  const uint64_t *incoming;    /* [count] bit k: the bond to neighbour k + neighbours/2 exists */
-  const double *length;        /* [neighbours][plane] m */
-  const double *chord[3];      /* [neighbours][plane] reference chord to the neighbour, m */
-  const double *volume, *mass; /* [count] of the particles: m^3, kg */
+  const int32_t *neighbour; /* [neighbours][plane] sites from here to the neighbour */
+  const uint64_t *incoming; /* [count] bit k: the bond to neighbour k + neighbours/2 exists */
+  const double *length;     /* [neighbours][plane] m */
+  const double *chord[3];   /* [neighbours][plane] reference chord to the neighbour, m */
+  const double *volume;     /* [count] of the particles, m^3 */
+  const double *mass;       /* [count] of laws that read it: of the particles, kg */
   /* [varying_count] SI: the parameters that are not the same everywhere. On particles one plane, a
      particle's own; on bonds one for each neighbour, `plane` doubles apart, the same from both
      ends. Finite everywhere. */
@@ -332,6 +333,7 @@ typedef struct pl_law {
   int constant_sum_count; /* sums that the passes may keep from step to step; 0: none */
   int reads_shape;        /* the passes read `shape` */
   int reads_share;        /* and `share` */
+  int reads_mass;         /* and `mass` */
   /* a law of bonds in this form: its force depends on the bond's ends alone */
   int pairwise;
   pl_program step; /* new fields and the forces */

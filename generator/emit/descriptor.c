@@ -124,6 +124,7 @@ static void write_programs(c_text *out, const kernel_plan *p) {
   if (p->variation.varying_count && p->law->tree->law == LAW_STATE)
     c_text_add(out, "    .varying_place = PL_ON_PARTICLE,\n");
   if (p->reads_share) c_text_add(out, "    .reads_share = 1,\n");
+  if (p->reads_mass) c_text_add(out, "    .reads_mass = 1,\n");
   write_program(out, p, &p->step);
   write_program(out, p, &p->observe);
   if (p->losses.pass_count) {

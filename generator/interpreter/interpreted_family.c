@@ -162,10 +162,8 @@ static void point_at_particles(family_runner *r, const pl_family *f, long first)
     r->held[0][q] = f->held[first + q] ? 1 : 0;
   r->ends[ENDS_HELD_I] = r->held[0];
   if (r->plan->reads_share) r->ends[ENDS_SHARE_I] = f->share + first;
-  if (f->neighbour) {
-    r->ends[ENDS_VOLUME_I] = f->volume + first;
-    r->ends[ENDS_MASS_I] = f->mass + first;
-  }
+  if (f->volume) r->ends[ENDS_VOLUME_I] = f->volume + first;
+  if (f->mass) r->ends[ENDS_MASS_I] = f->mass + first;
   r->ends[ENDS_TIME_STEP] = &f->time_step;
 }
 
@@ -233,7 +231,6 @@ static void point_at_list(family_runner *r, const pl_family *f, long first, long
     r->ends[chord[d]] = f->chord[d] + k * f->plane + first;
   r->ends[ENDS_REFERENCE_LENGTH] = f->length + k * f->plane + first;
   r->ends[ENDS_VOLUME_J] = at_neighbours(r, f, f->volume, first, k);
-  r->ends[ENDS_MASS_J] = at_neighbours(r, f, f->mass, first, k);
 }
 
 /* On bonds each neighbour has a plane. */
@@ -244,6 +241,7 @@ static void point_at_parameters(family_runner *r, const pl_family *f, long first
       r->bond_parameters[n] = f->parameter[n] + k * f->plane + first;
     else
       r->neighbour_parameters[n] = at_neighbours(r, f, f->parameter[n], first, k);
+  if (f->mass) r->ends[ENDS_MASS_J] = at_neighbours(r, f, f->mass, first, k);
   if (r->plan->reads_share) r->ends[ENDS_SHARE_J] = at_neighbours(r, f, f->share, first, k);
 }
 

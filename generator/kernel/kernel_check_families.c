@@ -32,7 +32,7 @@ typedef struct body {
   long offset[2 * PL_MAX_DIRECTIONS];          /* rows */
   int32_t *neighbour;                          /* [neighbours][SIZE] lists; NULL on rows */
   double **chord;    /* [dimensions][neighbours * SIZE] lists: m, and their lengths behind them */
-  double **particle; /* [2][SIZE] lists: volumes, masses */
+  double **particle; /* [2][SIZE] volumes, masses */
 } body;
 
 static bool is_list(const body *b) {
@@ -99,10 +99,10 @@ static body body_new(const pl_law *law, int neighbours) {
   b.incoming = must_calloc(SIZE, sizeof *b.incoming);
   b.held = must_calloc(SIZE, sizeof *b.held);
   b.unusual = must_calloc(SIZE, sizeof *b.unusual);
+  b.particle = planes_new(2, SIZE);
   if (!is_list(&b)) return b;
   b.neighbour = must_calloc((size_t)neighbours * SIZE, sizeof *b.neighbour);
   b.chord = planes_new(law->dimensions + 1, (long)neighbours * SIZE);
-  b.particle = planes_new(2, SIZE);
   return b;
 }
 
@@ -205,12 +205,15 @@ static void draw_chords(body *b, int k, double s, uint64_t *seed) {
   }
 }
 
-static void draw_list(body *b, double s, double mass, uint64_t *seed) {
+static void draw_list(body *b, double s, uint64_t *seed) {
   memset(b->incoming, 0, SIZE * sizeof *b->incoming);
   for (int k = 0; k < b->neighbours / 2; k++) {
     draw_permutation(b, k, seed);
     draw_chords(b, k, s, seed);
   }
+}
+
+static void draw_particles(body *b, double s, double mass, uint64_t *seed) {
   for (int q = 0; q < SIZE; q++) {
     b->particle[0][q] = s * s * s * draw_uniform(seed, 0.5, 1.5);
     b->particle[1][q] = mass * draw_uniform(seed, 0.5, 1.5);
@@ -281,9 +284,10 @@ static void draw_body(body *b, const pl_bond_class *bonds, const double *paramet
   draw_motion(b, bonds->s, seed);
   draw_bonds(b, seed);
   if (is_list(b))
-    draw_list(b, bonds->s, bonds->mass_i, seed);
+    draw_list(b, bonds->s, seed);
   else
     draw_offsets(b, seed);
+  draw_particles(b, bonds->s, bonds->mass_i, seed);
   for (int v = 0; v <= resolved; v++)
     for (int q = 0; q < SIZE; q++)
       b->shape[v][q] = v == resolved ? (double)(draw_bits(seed) & 1) : draw_uniform(seed, -1, 1);
@@ -381,7 +385,6 @@ static void point_at_list(const body *b, long site, pl_family *f) {
     f->chord[d] = b->chord[d] + site;
   f->length = b->chord[dimensions] + site;
   f->volume = b->particle[0] + site;
-  f->mass = b->particle[1] + site;
 }
 
 static bool any_held(const body *b) {
@@ -419,6 +422,7 @@ static void run_part(const law_readers *l, const body *b, int side, pl_family_fu
                  .held_near = any_held(b),
                  .unusual = b->unusual + site / PL_LANES,
                  .share = b->share + site,
+                 .mass = b->particle[1] + site,
                  .time_step = 1.7e-7,
                  .lost = {b->lost[side][0] + site, b->lost[side][1] + site}};
   f.shape = (const double *const *)from_site(&s, b->shape, PL_SHAPE_PLANES(law->dimensions), site);

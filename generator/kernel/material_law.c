@@ -218,11 +218,6 @@ static int find_varying(const deck_material *m, int field, const law *l, diagnos
     diag_report(said, DIAG_UNKNOWN_NAME, m->varying_where[field],
                 "the law `%s` has no parameter `%s`", l->tree->name, wanted);
     diag_suggest(said, wanted, names, l->parameters.count);
-  } else if (l->rho && found == l->rho->index) {
-    diag_report(
-        said, DIAG_NOT_SUPPORTED, m->varying_where[field],
-        "`rho` cannot differ from bond to bond: it belongs to the particles, which have one mass");
-    found = -1;
   }
   free(names);
   return found;
@@ -249,35 +244,15 @@ static bool has_field(const deck_material *m, const symbol *parameter) {
   return false;
 }
 
-/* The formula that gives it, of the material or one of its regions; or NULL. */
-static const deck_assignment *formula_of(const deck_material *m, const symbol *parameter) {
+/* The material or one of its regions gives it by a formula or a file. */
+static bool is_placed(const deck_material *m, const symbol *parameter) {
   for (int k = -1; k < m->regional_count; k++) {
     const deck_material *of = k < 0 ? m : m->regional[k];
     for (int n = 0; n < of->assignment_count; n++)
-      if (of->assignments[n].formula && strcasecmp(of->assignments[n].name, parameter->name) == 0)
-        return &of->assignments[n];
+      if (of->assignments[n].placed && strcasecmp(of->assignments[n].name, parameter->name) == 0)
+        return true;
   }
-  return NULL;
-}
-
-static bool density_is_one(const deck_material *m, const law *l, diagnostics *said) {
-  const deck_assignment *by_place = l->rho ? formula_of(m, l->rho) : NULL;
-  if (by_place) {
-    diag_report(
-        said, DIAG_NOT_SUPPORTED, by_place->value_where,
-        "`rho` cannot differ from place to place: the particles of a lattice have one mass");
-    return false;
-  }
-  for (int k = 0; l->rho && k < m->regional_count; k++) {
-    const deck_material *of = m->regional[k];
-    if (value_in(of, l->rho) == value_in(m, l->rho)) continue;
-    diag_report(said, DIAG_NOT_SUPPORTED, of->item.where,
-                "`rho` cannot differ from region to region: the particles of a lattice have one "
-                "mass");
-    diag_hint(said, "give the region the `rho` of its lattice, too");
-    return false;
-  }
-  return true;
+  return false;
 }
 
 /* The parameters that random fields, regions or formulas make differ, as the law orders them. */
@@ -285,21 +260,32 @@ static bool find_variation(const deck_material *m, model *out, law_variation *v,
                            diagnostics *said) {
   const symbol_list *all = &out->law->parameters;
   int *varying = arena_alloc(out->memory, ((size_t)all->count + 1) * sizeof *varying);
-  bool good = density_is_one(m, out->law, said);
+  bool good = true;
   *v = (law_variation){.varying = varying};
   for (int k = 0; k < m->varying_count; k++)
     good = find_varying(m, k, out->law, said) >= 0 && good;
   for (int p = 0; p < all->count && good; p++)
     if (has_field(m, all->items[p]) || differs_by_region(m, all->items[p]) ||
-        formula_of(m, all->items[p]))
+        is_placed(m, all->items[p]))
       varying[v->varying_count++] = p;
+  v->shares = m->beside && out->law->tree->law == LAW_STATE;
+  v->masses = m->beside;
+  for (int k = 0; out->law->rho && k < v->varying_count; k++)
+    v->masses = v->masses || varying[k] == out->law->rho->index;
   return good;
 }
 
-/* Laws of bonds run as strips on the hexagon of nearest neighbours; on all other lattices as laws
-   of families. */
-static bool needs_families(const deck_lattice *l, const law *of) {
-  return of->tree->law != LAW_STATE && !bravais_is_hexagon(l);
+static bool reads_masses(const law *l) {
+  return law_reads(l, QUANTITY_M_BOND) || law_reads(l, QUANTITY_M_END_I) ||
+         law_reads(l, QUANTITY_M_END_J);
+}
+
+/* Laws of bonds run as strips on the hexagon of nearest neighbours; as laws of families on all other
+   lattices, beside other laws, and where they read masses that differ. */
+static bool needs_families(const deck_material *m, const deck_lattice *l, const law *of,
+                           const law_variation *v) {
+  if (of->tree->law == LAW_STATE) return false;
+  return m->beside || !bravais_is_hexagon(l) || (v->masses && reads_masses(of));
 }
 
 bool material_law_plan(const deck_material *m, const deck_lattice *l, model *out,
@@ -307,10 +293,8 @@ bool material_law_plan(const deck_material *m, const deck_lattice *l, model *out
   law_variation v;
   if (!take_setting(m, l, out, said) || !suits_section(m, l, out->law, said)) return false;
   if (!find_variation(m, out, &v, said)) return false;
-  v.shares = m->beside && out->law->tree->law == LAW_STATE;
-  return l && (m->beside ? out->law->tree->law != LAW_STATE : needs_families(l, out->law))
-             ? model_plan_of_families(out, &v)
-             : model_plan_varying(out, &v);
+  return l && needs_families(m, l, out->law, &v) ? model_plan_of_families(out, &v)
+                                                 : model_plan_varying(out, &v);
 }
 
 bool material_law_open(const deck_material *m, const deck_lattice *l, const char *deck_path,

@@ -10,9 +10,11 @@ bool settings_of_group(arena *a, const namelist_group *g, deck_material *m, diag
   m->item.where = g->where;
   bool good = deck_assignments_read(a, g, m, d);
   for (int k = 0; k < m->assignment_count; k++) {
-    if (!m->assignments[k].formula) continue;
+    const deck_placed *by = m->assignments[k].placed;
+    if (!by) continue;
     diag_report(d, DIAG_NOT_SUPPORTED, m->assignments[k].value_where,
-                "there are no places here that a formula of x, y, z could read");
+                by->path ? "there are no particles here that a file could have values for"
+                         : "there are no places here that a formula of x, y, z could read");
     good = false;
   }
   return good;

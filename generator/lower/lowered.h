@@ -17,6 +17,7 @@ typedef struct law_variation {
   const int *varying; /* [varying_count] ascending: law->parameters that differ in space: from bond
                          to bond of laws of bonds, else from particle to particle */
   int varying_count;
+  bool masses; /* particles have masses of their own */
   bool shares; /* force state and energy are those of a particle's share (pl_family) */
 } law_variation;
 

@@ -101,6 +101,7 @@ typedef struct kernel_plan {
   program_links links;
   bool reads_shape;         /* inverse shape matrices */
   bool reads_share;         /* shares of particles */
+  bool reads_mass;          /* and masses */
   bool stores, reads_rates; /* pl_law */
   arena *memory;
 } kernel_plan;

@@ -270,11 +270,19 @@ program_motion plan_motion(const kernel_plan *plan, bool reference) {
   return (program_motion){from, to, n};
 }
 
-/* --- lists ------------------------------------------------------------------------------------ */
+/* --- what a row knows for a whole direction --------------------------------------------------- */
 
-enum { LIST_INPUTS = 9 };
+enum { MASS_INPUTS = 3, LIST_INPUTS = 6 + MASS_INPUTS };
 
-/* What a row knows for a whole direction, a list knows for each bond. */
+static int mass_inputs(ir *g, ir_node *from, ir_node *to) {
+  const ir_node mine = kinematics_input(g, ENDS_MASS_I), other = kinematics_input(g, ENDS_MASS_J);
+  from[0] = lower_quantity(g, QUANTITY_M_END_I), to[0] = mine;
+  from[1] = lower_quantity(g, QUANTITY_M_END_J), to[1] = other;
+  from[2] = lower_quantity(g, QUANTITY_M_BOND), to[2] = ir_make(g, IR_MIN, mine, other, IR_NONE);
+  return MASS_INPUTS;
+}
+
+/* A list knows for each bond. */
 static program_motion list_inputs(const kernel_plan *plan) {
   static const ends_input row_chord[] = {ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y,
                                          ENDS_CLASS_CHORD_Z},
@@ -282,20 +290,24 @@ static program_motion list_inputs(const kernel_plan *plan) {
   ir *g = plan->graph;
   ir_node *from = arena_alloc(plan->memory, LIST_INPUTS * sizeof *from);
   ir_node *to = arena_alloc(plan->memory, LIST_INPUTS * sizeof *to);
-  ir_node mine = kinematics_input(g, ENDS_MASS_I), other = kinematics_input(g, ENDS_MASS_J);
   int n = 0;
   for (int d = 0; d < 3; d++)
     from[n] = kinematics_input(g, row_chord[d]), to[n++] = kinematics_input(g, chord[d]);
   from[n] = lower_quantity(g, QUANTITY_S), to[n++] = kinematics_input(g, ENDS_REFERENCE_LENGTH);
-  from[n] = lower_quantity(g, QUANTITY_M_END_I), to[n++] = mine;
-  from[n] = lower_quantity(g, QUANTITY_M_END_J), to[n++] = other;
-  from[n] = lower_quantity(g, QUANTITY_M_BOND), to[n++] = ir_make(g, IR_MIN, mine, other, IR_NONE);
+  n += mass_inputs(g, from + n, to + n);
   from[n] = lower_quantity(g, QUANTITY_SHELL), to[n++] = ir_constant(g, 1);
   from[n] = lower_quantity(g, QUANTITY_WEIGHT), to[n++] = ir_constant(g, 1);
   return (program_motion){from, to, n};
 }
 
-static void read_from_lists(const kernel_plan *plan, const program_motion *of, root_list *r) {
+/* Particles of different densities know for each its mass. */
+static program_motion masses(const kernel_plan *plan) {
+  ir_node *from = arena_alloc(plan->memory, MASS_INPUTS * sizeof *from);
+  ir_node *to = arena_alloc(plan->memory, MASS_INPUTS * sizeof *to);
+  return (program_motion){from, to, mass_inputs(plan->graph, from, to)};
+}
+
+static void read_of_each(const kernel_plan *plan, const program_motion *of, root_list *r) {
   ir_substitution *s = ir_substitution_new(plan->graph);
   for (int k = 0; k < of->count; k++)
     ir_substitution_add(s, of->from[k], of->to[k]);
@@ -304,8 +316,8 @@ static void read_from_lists(const kernel_plan *plan, const program_motion *of, r
   ir_substitution_free(s);
 }
 
-static void motion_from_lists(const kernel_plan *plan, const program_motion *of,
-                              program_motion *motion) {
+static void motion_of_each(const kernel_plan *plan, const program_motion *of,
+                           program_motion *motion) {
   ir_node *to = arena_alloc(plan->memory, MOST_MOTION * sizeof *to);
   ir_substitute(plan->graph, motion->to, motion->count, of->from, of->to, of->count, to);
   motion->to = to;
@@ -398,6 +410,11 @@ static bool is_shape(const ir *g, ir_node input) {
 static bool is_share(const ir *g, ir_node input) {
   return ir_input_source(g, input) == IR_FROM_ENDS &&
          ends_origins[ir_input_index(g, input)].array == FROM_SHARE;
+}
+
+static bool is_mass(const ir *g, ir_node input) {
+  return ir_input_source(g, input) == IR_FROM_ENDS &&
+         ends_origins[ir_input_index(g, input)].array == FROM_MASS;
 }
 
 /* Operations of all segments of a step that are done for each neighbour; what is done once for both
@@ -495,12 +512,12 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   root_list losses = loss_roots(&p, &energy, &step);
   program_motion motion = plan_motion(plan, p.step.along_reference);
   fuse_motion(plan, &motion);
-  if (l->irregular) {
-    const program_motion list = list_inputs(plan);
-    read_from_lists(plan, &list, &step);
-    read_from_lists(plan, &list, &observe);
-    read_from_lists(plan, &list, &losses);
-    motion_from_lists(plan, &list, &motion);
+  if (l->irregular || v->masses) {
+    const program_motion each = l->irregular ? list_inputs(plan) : masses(plan);
+    read_of_each(plan, &each, &step);
+    read_of_each(plan, &each, &observe);
+    read_of_each(plan, &each, &losses);
+    motion_of_each(plan, &each, &motion);
   }
   program_build(&plan->step, "step", p.g, plan->memory, step.items, step.count, &motion,
                 sharing(&p), &plan->links);
@@ -516,6 +533,7 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   }
   plan->reads_shape = reads(plan, is_shape);
   plan->reads_share = reads(plan, is_share);
+  plan->reads_mass = reads(plan, is_mass);
   count_cost(plan);
   return true;
 }

@@ -72,7 +72,7 @@ static bool write_all(const char *deck_name, const model *m, const simulation_la
   put_text(deck_name, out);
   fprintf(out, "  end_time = 0  steps = 1  /\n&bond\n  spacing = %.17g\n  thickness = %.17g\n",
           w->spacing, w->stiffness_thickness);
-  if (w->mass > 0) fprintf(out, "  mass_i = %.17g\n", w->mass);
+  if (w->mass > 0 && !w->site_mass) fprintf(out, "  mass_i = %.17g\n", w->mass);
   fputs("/\n", out);
   put_material(m, l, out);
   put_initial(l->law, b, out);

@@ -9,6 +9,7 @@
 #include "dsl/base/elementary.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/material_law.h"
+#include "generator/plan/plan.h"
 #include "generator/run/law_verdict.h"
 
 /* --- laws ------------------------------------------------------------------------------------- */
@@ -108,10 +109,12 @@ static bool take_built_in(run *r, const deck_material *m, int interaction, deck_
 }
 
 /* A check asks a kernel for a few hundred steps at most, to find the fastest mode of a body of
-   families: of a small body that takes the interpreter less time than the compiler. */
+   families, or of parameters that differ: of a small body that takes the interpreter less time than
+   the compiler. */
 static bool is_worth_compiling(const rows *w, const model *opened) {
   enum { MANY_BONDS = 200000 };
-  return w && w->bond_count > MANY_BONDS && opened->law->tree->law == LAW_STATE;
+  return w && w->bond_count > MANY_BONDS &&
+         (opened->law->tree->law == LAW_STATE || opened->plan->variation.varying_count > 0);
 }
 
 /* 0, or an exit status. */

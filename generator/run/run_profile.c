@@ -58,7 +58,8 @@ static double bytes_in(const run *r, int number) {
   }
   const double both_ends = kernel->sum_count > 0 && kernel->varying_place == PL_ON_BOND ? 2 : 1;
   read += kernel->varying_count * sweep_planes(w, kernel->varying_place) / both_ends;
-  if (g->list) read += 2.0 * g->directions * (1.5 + kernel->dimensions) + 3;
+  if (g->site_mass) read += kernel->dof > kernel->dimensions ? 2 : 1;
+  if (g->list) read += 2.0 * g->directions * (1.5 + kernel->dimensions) + 2;
   return one * (2 * both + read) * (double)g->particle_count;
 }
 

@@ -67,6 +67,11 @@ static void announce_modulus(const run *r, int interaction, double implied) {
   print_quantity(" (E = ", asked, "Pa was asked for)");
 }
 
+/* Of one of several laws. */
+static void announce_part(long bonds, const char *name) {
+  printf(" of %ld bond%s as `%s`", bonds, bonds == 1 ? "" : "s", name);
+}
+
 static void announce_law(const run *r, int interaction) {
   const deck_interaction *of = &r->deck->interactions[interaction];
   const rows *w = simulation_rows(r->simulation, of->lattice);
@@ -78,8 +83,7 @@ static void announce_law(const run *r, int interaction) {
     printf(" (%s)", strncmp(path, "./", 2) == 0 ? path + 2 : path);
   }
   if (of->material->beside)
-    printf(" of %ld bonds as `%s`", simulation_law_rows(r->simulation, interaction)->bond_count,
-           of->name);
+    announce_part(simulation_law_rows(r->simulation, interaction)->bond_count, of->name);
   if (w->list) {
     announce_uniform_strain(r, interaction);
     return;
@@ -127,8 +131,9 @@ static void announce_body(const run *r, int lattice, int interaction) {
     print_quantity(c && !isnan(E[0]) ? ", E = " : " E = ", E[c], "Pa");
     printf(" along %c (%+.1f %%)", "xy"[c], 100 * (E[c] / e.E[c] - 1));
   }
-  puts(f && f->count > 0 ? ": it is not uniform, and edges and notches lack bonds"
-                         : ": edges and notches lack bonds");
+  puts(f && f->count > (f->density ? 1 : 0)
+           ? ": it is not uniform, and edges and notches lack bonds"
+           : ": edges and notches lack bonds");
 }
 
 static void announce_notch(const notch_depth *n, int number, bool only) {
@@ -168,20 +173,18 @@ static void announce_notches(const run *r, int lattice) {
 static void announce_planes(const run *r, int interaction) {
   const parameter_planes *f = simulation_planes(r->simulation, interaction);
   const simulation_law *l = &r->laws[interaction];
-  const bool particles = l->law->varying_place == PL_ON_PARTICLE;
   for (int k = 0; f && k < f->count; k++) {
+    const bool particles =
+        l->law->varying_place == PL_ON_PARTICLE || l->law->varying[k] == l->law->density;
     const pl_parameter *p = &l->law->parameters[l->law->varying[k]];
     const char *in = unit_is_pure(p->unit) ? "" : p->unit;
-    const char *places = f->placed[k]    ? "place to place"
-                         : !f->random[k] ? "region to region"
-                         : particles     ? "particle to particle"
-                                         : "bond to bond";
-    printf("  %-10s %s differs from %s: %.5g to %.5g%s%s",
-           f->placed[k]   ? "formula"
-           : f->random[k] ? "field"
-                          : "regions",
-           p->name, places, f->smallest[k], f->largest[k], *in ? " " : "", in);
-    if (f->random[k]) printf(", mean of the distribution %.5g", l->parameters[l->law->varying[k]]);
+    const char *const places[] = {"region to region", "place to place", "place to place",
+                                  particles ? "particle to particle" : "bond to bond"};
+    static const char *const names[] = {"regions", "formula", "file", "field"};
+    printf("  %-10s %s differs from %s: %.5g to %.5g%s%s", names[f->source[k]], p->name,
+           places[f->source[k]], f->smallest[k], f->largest[k], *in ? " " : "", in);
+    if (f->source[k] == PLANE_AT_RANDOM)
+      printf(", mean of the distribution %.5g", l->parameters[l->law->varying[k]]);
     putchar('\n');
   }
 }

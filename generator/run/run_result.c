@@ -14,6 +14,7 @@
 #include "generator/kernel/version.h"
 #include "generator/run/run_report.h"
 #include "runtime/base/whole_file.h"
+#include "runtime/lattice/parameter_planes.h"
 #include "runtime/lattice/rows_select.h"
 #include "runtime/lattice/shape_matrix.h"
 #include "runtime/simulation/simulation_save.h"
@@ -97,6 +98,16 @@ static bool result_spares_starts(run *r, const deck_initial *items, int count) {
   return true;
 }
 
+/* Those that parameters are taken from. */
+static bool result_spares_parameters(run *r) {
+  for (int k = 0; k < r->deck->material_count; k++)
+    for (int n = 0; n < r->deck->materials[k].assignment_count; n++) {
+      const deck_placed *by = r->deck->materials[k].assignments[n].placed;
+      if (by && by->path && !result_spares(r, by->path)) return false;
+    }
+  return true;
+}
+
 bool result_spares_inputs(run *r) {
   bool good = r->options->deck_text || result_spares(r, r->options->deck_path);
   for (int k = 0; k < r->open_models; k++)
@@ -110,7 +121,7 @@ bool result_spares_inputs(run *r) {
     good = result_spares(r, particles);
     free(particles);
   }
-  return good &&
+  return good && result_spares_parameters(r) &&
          result_spares_starts(r, r->deck->initial_velocitys, r->deck->initial_velocity_count) &&
          result_spares_starts(r, r->deck->initial_displacements,
                               r->deck->initial_displacement_count);
@@ -144,6 +155,10 @@ void fingerprint(run *r) {
   for (int k = 0; k < r->deck->lattice_count; k++) {
     const uint64_t particles = rows_fingerprint(simulation_rows(r->simulation, k));
     if (particles) text = arena_printf(r->memory, "%s\nparticles %016" PRIx64, text, particles);
+  }
+  for (int k = 0; k < r->deck->interaction_count; k++) {
+    const uint64_t values = parameter_planes_fingerprint(simulation_planes(r->simulation, k));
+    if (values) text = arena_printf(r->memory, "%s\nparameters %016" PRIx64, text, values);
   }
   r->fingerprint = text;
 }

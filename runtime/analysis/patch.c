@@ -218,6 +218,9 @@ static void new_parameters(patch *p) {
   p->parameter = must_calloc((size_t)p->law->varying_count + 1, sizeof *p->parameter);
   for (int k = 0; k < p->law->varying_count; k++)
     p->parameter[k] = site_array(p, parameter_planes(p), sizeof(double));
+  p->mass = site_array(p, 1, sizeof(double));
+  for (long q = -p->lead; q < p->size - p->lead; q++)
+    p->mass[q] = p->lattice->mass;
   if (!p->law->reads_share) return;
   p->share = site_array(p, 1, sizeof(double));
   for (long q = -p->lead; q < p->size - p->lead; q++)
@@ -273,6 +276,7 @@ void patch_free(patch *p) {
   free_array(p, p->bonds, sizeof *p->bonds);
   free_array(p, p->held, sizeof *p->held);
   free_arrays(p, p->parameter, p->law->varying_count);
+  free_array(p, p->mass, sizeof(double));
   free_array(p, p->share, sizeof(double));
   free_arrays(p, p->field, p->law->field_count);
   free_arrays(p, p->new_field, p->law->field_count);
@@ -395,6 +399,7 @@ static void run_pass(patch *p, pl_family_function pass, long first, long count, 
                    .sum = from_first(&s, p->sum, law->sum_count),
                    .ahead_only = ahead_only,
                    .held_near = 1,
+                   .mass = p->mass + first,
                    .share = p->share ? p->share + first : NULL,
                    .time_step = p->time_step};
   run.shape = (const double *const *)from_first(&s, p->shape, PL_SHAPE_PLANES(law->dimensions));

@@ -28,6 +28,7 @@ typedef struct patch {
   double *shape[PL_SHAPE_PLANES(3)];
   double **parameter;          /* [varying] the same everywhere */
   double *share;               /* 1 everywhere */
+  double *mass;                /* that of the lattice everywhere */
   double **field, **new_field; /* [fields] at hand; of the last step */
   double **link, **bond_link;
   double **sum;       /* of laws whose bonds add to both ends (pl_family) */

@@ -48,18 +48,46 @@ void section_free(section *s) {
 
 typedef struct section_sum {
   const section *of;
-  double *force;
+  double *sum;
 } section_sum;
 
-static void add(void *to, const bond_force *b) {
+static void add_force(void *to, const bond_force *b) {
   const section_sum *s = to;
   const double *near = is_far(s->of, b->owner) ? b->on_partner : b->on_owner;
   for (int d = 0; d < s->of->of->dimensions; d++)
-    s->force[d] += near[d];
+    s->sum[d] += near[d];
+}
+
+static void add_moment(void *to, const bond_force *b) {
+  const section_sum *s = to;
+  const body *of = s->of->of;
+  const bool far = is_far(s->of, b->owner);
+  const long site = far ? b->partner : b->owner;
+  const double *on = far ? b->on_partner : b->on_owner;
+  double arm[3], force[3] = {0, 0, 0};
+  rows_place(of->lattice, site, arm);
+  for (int d = 0; d < of->dimensions; d++) {
+    arm[d] += of->displacement[d][site] - s->of->at[d];
+    force[d] = on[d];
+  }
+  for (int axis = of->dimensions == 2 ? 2 : 0; axis < 3; axis++) {
+    const int a = (axis + 1) % 3, c = (axis + 2) % 3;
+    s->sum[axis] += arm[a] * force[c] - arm[c] * force[a];
+  }
+  for (int d = of->dimensions; d < of->dof; d++) /* of particles that turn */
+    s->sum[of->dimensions == 2 ? 2 : d - 3] += on[d];
+}
+
+static void sum_up(const section *s, bond_forces *f, bond_force_use *add, double sum[3]) {
+  section_sum to = {s, sum};
+  memset(sum, 0, 3 * sizeof *sum);
+  bond_forces_each(f, s->bonds, add, &to);
 }
 
 void section_force(const section *s, bond_forces *f, double force[3]) {
-  section_sum sum = {s, force};
-  memset(force, 0, 3 * sizeof *force);
-  bond_forces_each(f, s->bonds, add, &sum);
+  sum_up(s, f, add_force, force);
+}
+
+void section_moment(const section *s, bond_forces *f, double moment[3]) {
+  sum_up(s, f, add_moment, moment);
 }

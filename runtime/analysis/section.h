@@ -1,4 +1,4 @@
-/* What a body carries through a plane section: the forces of the bonds that cross it in the
+/* What a body carries through a plane section: force and moment of the bonds that cross it in the
    reference place. */
 #ifndef PERILAT_RUNTIME_SECTION_H
 #define PERILAT_RUNTIME_SECTION_H
@@ -20,5 +20,8 @@ void section_free(section *s);
 /* What the far side, where the normal points to, exerts on the near one, N. The forces have been
    found (bond_forces.h). */
 void section_force(const section *s, bond_forces *f, double force[3]);
+/* The moment of that about the section's place, N m: of the forces where the near particles now
+   are, and of what turns these. In the plane it has a z alone. */
+void section_moment(const section *s, bond_forces *f, double moment[3]);
 
 #endif

@@ -145,6 +145,15 @@ static void take_body(const pl_law *law, const double *parameters, const paramet
   out->least = body.least;
 }
 
+/* No particle is lighter. */
+static void take_lightest(crystal *c, const rows *w) {
+  double least = INFINITY;
+  for (long p = 0; p < w->particle_count; p++)
+    least = pl_fmin(least, w->site_mass[w->particle_site[p]]);
+  for (int d = 0; d < c->dof && w->particle_count > 0; d++)
+    c->scale[d] *= sqrt(w->mass / least);
+}
+
 static void find_limit(const pl_law *law, const double *parameters, const parameter_planes *fields,
                        const rows *w, step_limit *out) {
   bool definite;
@@ -156,8 +165,13 @@ static void find_limit(const pl_law *law, const double *parameters, const parame
     return;
   }
   crystal c = crystal_of(law, parameters, fields, w, &definite);
+  if (w->site_mass) take_lightest(&c, w);
   waves_limit(&c, out);
   crystal_free(&c);
+  if (w->site_mass && !c.damped) {
+    body_limit(law, parameters, fields ? fields->value : NULL, w, out);
+    return;
+  }
   if (!definite && out->limit > 0) take_body(law, parameters, fields, w, out);
 }
 

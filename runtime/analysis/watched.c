@@ -23,7 +23,7 @@ struct watched_part {
 };
 
 bool watched_needs_forces(const deck_monitor *m) {
-  return m->kind == MONITOR_FORCE || m->kind == MONITOR_STRESS;
+  return m->kind == MONITOR_FORCE || m->kind == MONITOR_MOMENT || m->kind == MONITOR_STRESS;
 }
 
 /* --- set-up ----------------------------------------------------------------------------------- */
@@ -116,6 +116,7 @@ static bool open_tensor(watched_part *w, diagnostics *d) {
 static bool open_kind(watched_part *w, const damage_law *laws, int count, diagnostics *d) {
   switch (w->deck->kind) {
   case MONITOR_FORCE:
+  case MONITOR_MOMENT:
     return open_section(w, d);
   case MONITOR_TIP:
   case MONITOR_TIP_SPEED:
@@ -188,12 +189,13 @@ static double energy(const watched_part *w, const watch_instant *at) {
   return sum;
 }
 
-static double force(const watched_part *w, bond_forces *forces) {
-  double f[3], along = 0;
-  section_force(&w->section, forces, f);
+/* Force or moment. */
+static double through_section(const watched_part *w, bond_forces *forces) {
+  double carried[3], along = 0;
+  (w->deck->kind == MONITOR_MOMENT ? section_moment : section_force)(&w->section, forces, carried);
   for (int d = 0; d < 3; d++)
-    along += f[d] * w->section.normal[d];
-  return w->deck->component < 0 ? along : f[w->deck->component];
+    along += carried[d] * w->section.normal[d];
+  return w->deck->component < 0 ? along : carried[w->deck->component];
 }
 
 static double tensor(const watched_part *w, const watch_instant *at) {
@@ -224,7 +226,8 @@ double watched_value(const watched_part *w, const watch_instant *at) {
   case MONITOR_ENERGY:
     return energy(w, at);
   case MONITOR_FORCE:
-    return force(w, at->forces);
+  case MONITOR_MOMENT:
+    return through_section(w, at->forces);
   case MONITOR_TIP:
   case MONITOR_TIP_SPEED:
     return way_of_tip(w, at->late);
@@ -269,6 +272,7 @@ static char *tip_words(const watched_part *w, arena *a) {
 }
 
 char *watched_words(const watched_part *w, arena *a) {
+  static const char *const axes[] = {"x", "y", "z"};
   const char *of = part_words(w, a);
   switch (w->deck->kind) {
   case MONITOR_ACCELERATION:
@@ -276,7 +280,7 @@ char *watched_words(const watched_part *w, arena *a) {
   case MONITOR_MOMENTUM:
     return arena_printf(a, "momentum %s %s", along_words(w, a), of);
   case MONITOR_ANGULAR_MOMENTUM:
-    return arena_printf(a, "angular momentum about %c through %s %s", "xyz"[w->deck->component],
+    return arena_printf(a, "angular momentum about %s through %s %s", axes[w->deck->component],
                         place_words(w, w->deck->about, a), of);
   case MONITOR_ENERGY:
     return arena_printf(a, "%s energy %s",
@@ -284,6 +288,10 @@ char *watched_words(const watched_part *w, arena *a) {
   case MONITOR_FORCE:
     return arena_printf(a, "force %s through the section at %s",
                         w->deck->component < 0 ? "along the normal" : along_words(w, a),
+                        place_words(w, w->deck->at, a));
+  case MONITOR_MOMENT:
+    return arena_printf(a, "moment about %s through the section at %s",
+                        w->deck->component < 0 ? "the normal" : axes[w->deck->component],
                         place_words(w, w->deck->at, a));
   case MONITOR_TIP:
   case MONITOR_TIP_SPEED:

@@ -52,13 +52,23 @@ typedef struct deck_lattice {
   const char *setting; /* "plane_stress" (default) or "plane_strain"; "space" */
 } deck_lattice;
 
+typedef struct deck_placed {     /* a value that may differ from place to place */
+  double value;                  /* SI */
+  const struct formula *formula; /* of x, y, z, instead; or NULL */
+  const char *path;              /* of a table or result with places and values; or NULL */
+  const char *column;            /* its column or field; NULL: the only one */
+  const char *unit_text;         /* SI */
+  int component;                 /* of a field of vectors; negative: there is none */
+  const char *lattice; /* whose particles are meant: of a result the values of that name */
+} deck_placed;
+
 typedef struct deck_assignment { /* parameter = value in a &material */
   const char *name;              /* as written */
   double value; /* SI; of a formula in the middle of the lattice's or region's bodies */
   bool has_unit;
-  dimension dim;                 /* when has_unit */
-  const struct formula *formula; /* of x, y, z, where the value differs from place to place */
-  const char *word;              /* a string that is not a number: an option's choice; else NULL */
+  dimension dim;             /* when has_unit */
+  const deck_placed *placed; /* where it differs from place to place: a formula, or a file */
+  const char *word;          /* a string that is not a number: an option's choice; else NULL */
   span name_where, value_where;
 } deck_assignment;
 
@@ -183,16 +193,6 @@ typedef struct deck_gravity { /* force mass * acceleration on every particle */
   time_function factor;   /* 1: full */
 } deck_gravity;
 
-typedef struct deck_placed {     /* a value that may differ from place to place */
-  double value;                  /* SI */
-  const struct formula *formula; /* of x, y, z, instead; or NULL */
-  const char *path;              /* of a table or result with places and values; or NULL */
-  const char *column;            /* its column or field; NULL: the only one */
-  const char *unit_text;         /* SI */
-  int component;                 /* of a field of vectors */
-  const char *lattice;           /* of the region, whose values a result's are */
-} deck_placed;
-
 typedef struct deck_initial { /* of each particle of the region when the run begins */
   deck_item item;
   const char *region;
@@ -225,6 +225,7 @@ typedef enum monitor_kind {
   MONITOR_ANGULAR_MOMENTUM, /* N m s, about `about` */
   MONITOR_ENERGY,           /* J: kinetic or stored */
   MONITOR_FORCE,            /* N: through a section */
+  MONITOR_MOMENT,           /* N m: through a section, about `at` */
   MONITOR_TIP,              /* m: way of the furthest damaged bond */
   MONITOR_TIP_SPEED,        /* m/s: of that */
   MONITOR_STRESS,           /* Pa */
@@ -242,8 +243,9 @@ typedef struct deck_monitor {
   const char *lattice; /* NULL: the region's, or the only one; of counts all */
   const char *between[2];
   const char *field;
-  /* of the particles' motion; of MONITOR_FORCE -1: along the normal; of MONITOR_ANGULAR_MOMENTUM
-     the axis x, y, z; of tensors as symmetric_tensor.h says */
+  /* of the particles' motion; of MONITOR_FORCE, MONITOR_MOMENT -1: along the normal; of
+     MONITOR_ANGULAR_MOMENTUM, MONITOR_MOMENT the axis x, y, z; of tensors as symmetric_tensor.h
+     says */
   int component;
   bool placed;                    /* `at` is given */
   double at[3];                   /* m */

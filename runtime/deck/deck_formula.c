@@ -76,22 +76,37 @@ static bool keep_text(const char *path, span where, diagnostics *d) {
   return good;
 }
 
-static bool read_file(arena *a, const namelist_group *g, const namelist_key *key, deck_placed *p,
-                      diagnostics *d) {
-  if (!deck_values_counted(key, 1, d)) return false;
-  const namelist_value *v = &key->values[0];
+bool deck_is_place_file(const namelist_value *v) {
+  static const char *const endings[] = {".csv", ".tsv", ".txt", ".dat", ".h5"};
   const char *column = NULL;
-  if (v->kind != NAMELIST_TEXT || !*v->text) {
-    diag_report(d, DIAG_BAD_VALUE, v->where, "`file` is the name of a table or result in quotes");
-    return false;
-  }
+  if (v->kind != NAMELIST_TEXT) return false;
   char *name = text_table_split(v->text, &column);
-  char *path = deck_file_path(d->sources->items[g->where.file].name, name);
+  bool found = column != NULL;
+  for (size_t k = 0; k < sizeof endings / sizeof *endings; k++)
+    found = found || ends_with(name, endings[k]);
+  free(name);
+  return found;
+}
+
+bool deck_place_file_read(arena *a, uint16_t file, const namelist_value *v, deck_placed *p,
+                          diagnostics *d) {
+  const char *column = NULL;
+  char *name = text_table_split(v->text, &column);
+  char *path = deck_file_path(d->sources->items[file].name, name);
   p->path = arena_text(a, path, strlen(path));
   p->column = column;
   free(name);
   free(path);
   return keep_text(p->path, v->where, d);
+}
+
+static bool read_file(arena *a, const namelist_group *g, const namelist_key *key, deck_placed *p,
+                      diagnostics *d) {
+  if (!deck_values_counted(key, 1, d)) return false;
+  const namelist_value *v = &key->values[0];
+  if (v->kind == NAMELIST_TEXT && *v->text) return deck_place_file_read(a, g->where.file, v, p, d);
+  diag_report(d, DIAG_BAD_VALUE, v->where, "`file` is the name of a table or result in quotes");
+  return false;
 }
 
 bool deck_placed_read(arena *a, const namelist_group *g, const char *unit_text, deck_placed *p,

@@ -15,6 +15,12 @@ bool deck_is_formula(const namelist_value *v);
 const formula *deck_formula_read(arena *a, const namelist_value *v, const char *key,
                                  const formula_scope *scope, const char *unit_text, diagnostics *d);
 
+/* A text that names a table or a result, with or without its column: 'field.csv:E'. */
+bool deck_is_place_file(const namelist_value *v);
+/* Such a value: path and column. The text of a table goes with the deck, which stands in `file`. */
+bool deck_place_file_read(arena *a, uint16_t file, const namelist_value *v, deck_placed *p,
+                          diagnostics *d);
+
 /* What the group's `value` or `file` says: a number, a formula of x, y, z, or places and values. */
 bool deck_placed_read(arena *a, const namelist_group *g, const char *unit_text, deck_placed *p,
                       diagnostics *d);

@@ -8,9 +8,11 @@
 #include "dsl/base/elementary.h"
 #include "dsl/semantics/formula.h"
 #include "runtime/deck/deck_check.h"
+#include "runtime/deck/deck_formula.h"
 #include "runtime/deck/deck_groups.h"
 #include "runtime/deck/deck_set.h"
 #include "runtime/deck/deck_value.h"
+#include "runtime/deck/group_lattice.h"
 #include "runtime/deck/text_table.h"
 
 enum { MOST_ERRORS = 100 };
@@ -220,7 +222,7 @@ static void set_computed_defaults(deck_reader *r) {
     k->simulation.step_safety = k->relaxation.increments > 0 ? 0.9 : 0.25;
 }
 
-/* --- files of loads --------------------------------------------------------------------------- */
+/* --- files of loads and materials ------------------------------------------------------------- */
 
 static int find_source(const source_set *sources, const char *name) {
   for (int i = 0; i < sources->count; i++)
@@ -238,22 +240,29 @@ static void list_file(deck_reader *r, const namelist_value *v) {
   const char *columns;
   char *name = text_table_split(v->text, &columns), *path = deck_file_path(r->k->name, name);
   const int found = find_source(r->d->sources, path);
-  if (found >= 0 && !is_listed(r->k, found))
+  if (found >= 0 && !is_listed(r->k, found)) {
+    r->k->files = arena_room(r->memory, r->k->files, r->k->file_count, sizeof *r->k->files);
     r->k->files[r->k->file_count++] = (deck_file){arena_text(r->memory, name, strlen(name)), found};
+  }
   free(path);
   free(name);
 }
 
-/* Loads alone have a `file` that is read with the deck. */
+/* That of loads, and of parameters of materials, which are keys of no name that the deck knows. */
+static bool is_read_with_the_deck(int kind, const namelist_key *key) {
+  const int known = deck_key_find(deck_groups[kind], key->name);
+  if (key->value_count != 1 || key->values[0].kind != NAMELIST_TEXT) return false;
+  if (known < 0)
+    return deck_groups[kind] == &deck_group_material && deck_is_place_file(&key->values[0]);
+  return strcasecmp(key->name, "file") == 0 && deck_groups[kind]->keys[known].type == DECK_LATER;
+}
+
 static void list_files(deck_reader *r, const namelist *n) {
-  r->k->files = arena_alloc(r->memory, ((size_t)n->group_count + 1) * sizeof *r->k->files);
   for (int i = 0; i < n->group_count; i++) {
-    const int kind = deck_group_find(n->groups[i].name);
-    const namelist_key *file = namelist_find(&n->groups[i], "file");
-    if (kind < 0 || !file || file->value_count != 1 || file->values[0].kind != NAMELIST_TEXT)
-      continue;
-    const int key = deck_key_find(deck_groups[kind], "file");
-    if (key >= 0 && deck_groups[kind]->keys[key].type == DECK_LATER) list_file(r, &file->values[0]);
+    const namelist_group *g = &n->groups[i];
+    const int kind = deck_group_find(g->name);
+    for (int k = 0; kind >= 0 && k < g->key_count; k++)
+      if (is_read_with_the_deck(kind, &g->keys[k])) list_file(r, &g->keys[k].values[0]);
   }
 }
 
@@ -343,7 +352,7 @@ static const deck_assignment *density_of(const deck_material *m) {
   return NULL;
 }
 
-/* The particles of a lattice have one density. */
+/* Unless a region says otherwise its particles have the density of their lattice. */
 static void inherit_density(deck_material *m, const deck_material *whole) {
   const deck_assignment *density = density_of(whole);
   if (!density || density_of(m)) return;
@@ -367,11 +376,17 @@ static void link_regional(arena *a, deck *k) {
   }
 }
 
-/* A law of its own in a part of the lattice. */
+static bool is_region_of(const deck *k, const char *name, const char *lattice) {
+  const int region = name ? deck_find_region(k, name) : -1;
+  return region >= 0 && deck_same_name(k->regions[region].lattice, lattice);
+}
+
+/* A law of its own in a part of the lattice; what is wrong has been said. */
 static bool is_law_beside(const deck *k, int material, const char *lattice) {
   const deck_material *m = &k->materials[material];
-  return deck_same_name(m->lattice, lattice) && (m->region || m->between[0]) && m->model &&
-         lattice_material(k, m) < 0;
+  if (!deck_same_name(m->lattice, lattice) || !m->model) return false;
+  if (m->region) return is_region_of(k, m->region, lattice) && lattice_material(k, m) < 0;
+  return is_region_of(k, m->between[0], lattice) && is_region_of(k, m->between[1], lattice);
 }
 
 static deck_interaction law_beside(arena *a, const deck *k, int lattice, int material) {
@@ -431,7 +446,7 @@ static void take_middles(deck_reader *r) {
     find_middle(r->k, m, middle);
     for (int n = 0; n < m->assignment_count; n++) {
       deck_assignment *a = &m->assignments[n];
-      if (a->formula) a->value = formula_value(a->formula, middle);
+      if (a->placed && a->placed->formula) a->value = formula_value(a->placed->formula, middle);
     }
   }
 }

@@ -1,5 +1,6 @@
 #include "runtime/deck/deck_schema.h"
 
+#include <assert.h>
 #include <string.h>
 #include <strings.h>
 
@@ -24,5 +25,6 @@ int deck_choices(arena *a, const char *choices, const char **words, int most) {
     words[count++] = arena_text(a, choices, length);
     choices += length + (choices[length] == '|');
   }
+  assert(*choices == 0); /* `most` is enough */
   return count;
 }

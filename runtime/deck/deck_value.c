@@ -9,7 +9,7 @@
 #include "dsl/base/unit_hint.h"
 #include "dsl/base/units.h"
 
-enum { LONGEST_SHOWN = 60, LONGEST_LIST = 400, MOST_CHOICES = 16 };
+enum { LONGEST_SHOWN = 60, LONGEST_LIST = 400, MOST_CHOICES = 32 };
 
 /* --- showing ---------------------------------------------------------------------------------- */
 

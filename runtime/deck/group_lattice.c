@@ -306,6 +306,21 @@ static const deck_key_info material_keys[] = {
             "across a weak plane; for laws of bonds"},
 };
 
+static const deck_placed *placed_by(arena *memory, deck_placed by) {
+  deck_placed *p = arena_alloc(memory, sizeof *p);
+  *p = by;
+  return p;
+}
+
+/* The law knows the unit. */
+static bool read_place_file(arena *memory, uint16_t file, const char *lattice,
+                            const namelist_value *v, deck_assignment *a, diagnostics *d) {
+  deck_placed p = {.component = -1, .lattice = lattice};
+  if (!deck_place_file_read(memory, file, v, &p, d)) return false;
+  a->placed = placed_by(memory, p);
+  return true;
+}
+
 /* One that reads no place is a number. */
 static bool read_formula(arena *memory, const namelist_value *v, deck_assignment *a,
                          diagnostics *d) {
@@ -315,20 +330,21 @@ static bool read_formula(arena *memory, const namelist_value *v, deck_assignment
   a->has_unit = !formula_is_zero(f);
   a->dim = formula_dimension(f);
   a->value = formula_value(f, anywhere);
-  for (int k = 0; k < FORMULA_VARIABLES; k++)
-    if (formula_reads(f, k)) a->formula = f;
-  if (a->formula || isfinite(a->value)) return true;
+  for (int k = 0; k < FORMULA_VARIABLES && !a->placed; k++)
+    if (formula_reads(f, k)) a->placed = placed_by(memory, (deck_placed){.formula = f});
+  if (a->placed || isfinite(a->value)) return true;
   diag_report(d, DIAG_BAD_NUMBER, a->value_where, "this is not a finite number");
   return false;
 }
 
-static bool read_assignment(arena *memory, const namelist_key *key, deck_assignment *a,
-                            diagnostics *d) {
+static bool read_assignment(arena *memory, const namelist_group *g, const namelist_key *key,
+                            const char *lattice, deck_assignment *a, diagnostics *d) {
   if (!deck_values_counted(key, 1, d)) return false;
   const namelist_value *v = &key->values[0];
   *a = (deck_assignment){
       .name = key->name, .name_where = key->name_where, .value_where = key->value_where};
   const char *text = v->kind == NAMELIST_TEXT ? v->text + strspn(v->text, " \t") : "0";
+  if (deck_is_place_file(v)) return read_place_file(memory, g->where.file, lattice, v, a, d);
   if (deck_is_formula(v)) return read_formula(memory, v, a, d);
   if (isalpha((unsigned char)*text) || *text == '_') {
     a->word = text;
@@ -348,7 +364,8 @@ bool deck_assignments_read(arena *memory, const namelist_group *g, deck_material
   m->assignments = arena_alloc(memory, (size_t)g->key_count * sizeof *m->assignments);
   for (int i = 0; i < g->key_count; i++) {
     if (deck_key_find(&deck_group_material, g->keys[i].name) >= 0) continue;
-    if (read_assignment(memory, &g->keys[i], &m->assignments[m->assignment_count], d))
+    if (read_assignment(memory, g, &g->keys[i], m->lattice, &m->assignments[m->assignment_count],
+                        d))
       m->assignment_count++;
   }
   return d->errors == errors;
@@ -371,7 +388,7 @@ DECK_LIST(
     .doc =
         "The law of a lattice's bonds, or its parameters in a region. Every other key sets a "
         "parameter or an option of the law, e.g. `E = '30 GPa'`, or by place `E = '30 [GPa]*(1 + "
-        "x/2 [m])'`.");
+        "x/2 [m])'` or `E = 'field.csv:E'`.");
 
 /* --- random fields ---------------------------------------------------------------------------- */
 
@@ -380,7 +397,7 @@ static const deck_key_info field_keys[] = {
      .type = DECK_NAME,
      .required = true,
      DECK_AT(field, parameter),
-     .doc = "of the law, but not `rho`"},
+     .doc = "of the law"},
     {.name = "lattice",
      .type = DECK_NAME,
      .fallback = "= the only one",
@@ -389,7 +406,7 @@ static const deck_key_info field_keys[] = {
     {.name = "on",
      .type = DECK_WORD,
      .choices = "bond|particle",
-     .fallback = "= 'bond' of laws of bonds; of families always 'particle'",
+     .fallback = "= 'bond' of laws of bonds; of families, and of `rho`, always 'particle'",
      DECK_NOT_KEPT,
      .doc = "`particle`: a value for each particle; a bond has the mean of its two ends"},
     {.name = "distribution",

@@ -21,7 +21,8 @@ static const deck_key_info monitor_keys[] = {
     {.name = "kind",
      .type = DECK_CHOICE,
      .choices = "reaction|displacement|velocity|opening|damaged|broken|field|acceleration|"
-                "momentum|angular_momentum|energy|force|tip|tip_speed|stress|strain",
+                "momentum|angular_momentum|energy|force|moment|tip|tip_speed|stress|"
+                "strain",
      .required = true,
      DECK_AT(monitor, kind),
      .doc = "decides which of the next ten keys are needed"},
@@ -32,14 +33,16 @@ static const deck_key_info monitor_keys[] = {
          "reaction: force that its supports and drives exert on the body, of a rotation the sum of "
          "the couples on its particles, without the moments r x F of forces; displacement, "
          "velocity, acceleration, field, stress, strain: mean; momentum, angular_momentum, "
-         "energy: of its particles, without it of all; force: only bonds between its particles; "
+         "energy: of its particles, without it of all; force, moment: only bonds between its "
+         "particles; "
          "tip, tip_speed: only bonds of its particles"},
     {.name = "lattice",
      .type = DECK_NAME,
      .fallback = "= the only one; damaged, broken: all",
      DECK_AT(monitor, lattice),
      .doc = "in place of `region`: the lattice that is watched. Where the deck has several, "
-            "momentum, angular_momentum, energy, force, tip, tip_speed, and what is asked `at` a "
+            "momentum, angular_momentum, energy, force, moment, tip, tip_speed, and what is asked "
+            "`at` a "
             "place, need one of the two; energies in sum over all are in `energy/...`"},
     {.name = "between",
      .type = DECK_NAMES,
@@ -52,8 +55,9 @@ static const deck_key_info monitor_keys[] = {
      .choices = COMPONENTS,
      DECK_AT(monitor, component),
      .doc = "reaction, displacement, velocity, opening, acceleration, momentum: direction; force: "
-            "direction, without it along the normal; angular_momentum: axis, in the plane `z`, "
-            "which need not be said; energy: `kinetic` or `stored`; stress, strain: `xx`, `yy`, "
+            "direction, without it along the normal; moment, angular_momentum: axis, in the plane "
+            "`z`, which need not be said; moment in space without it about the normal; energy: "
+            "`kinetic` or `stored`; stress, strain: `xx`, `yy`, "
             "`xy`, in space `zz`, `yz`, `xz`, too"},
     {.name = "field",
      .type = DECK_NAME,
@@ -64,12 +68,14 @@ static const deck_key_info monitor_keys[] = {
      .unit = "m",
      DECK_AT(monitor, at),
      .doc = "acceleration, stress, strain: in place of `region`, of the particle nearest to it; "
-            "force: a place of the section; tip, tip_speed: where the crack begins"},
+            "force, moment: a place of the section, which the moment is about; tip, tip_speed: "
+            "where the crack begins"},
     {.name = "normal",
      .type = DECK_PLACE,
      .unit = "1",
      DECK_AT(monitor, normal),
-     .doc = "force: normal of the section, to the side that acts on the other: tension along it is "
+     .doc = "force, moment: normal of the section, to the side that acts on the other: tension "
+            "along it is "
             "positive"},
     {.name = "direction",
      .type = DECK_PLACE,
@@ -123,7 +129,7 @@ enum {
   OF_DAMAGE = 1 << MONITOR_DAMAGED | 1 << MONITOR_BROKEN,
   OF_TENSOR = 1 << MONITOR_STRESS | 1 << MONITOR_STRAIN,
   OF_PLACE = OF_TENSOR | 1 << MONITOR_ACCELERATION, /* of a region or at a place */
-  OF_SECTION = 1 << MONITOR_FORCE,
+  OF_SECTION = 1 << MONITOR_FORCE | 1 << MONITOR_MOMENT,
   OF_TIP = 1 << MONITOR_TIP | 1 << MONITOR_TIP_SPEED,
   OF_TURNS = 1 << MONITOR_ANGULAR_MOMENTUM,
   OF_ENERGY = 1 << MONITOR_ENERGY,
@@ -132,23 +138,16 @@ enum {
   OF_LATTICE = OF_WHOLE | OF_DAMAGE,
   ALONG_AXIS = OF_MOTION | OF_PAIR | 1 << MONITOR_ACCELERATION | 1 << MONITOR_MOMENTUM
 };
-static const char *const monitor_words[] = {"a reaction monitor",
-                                            "a displacement monitor",
-                                            "a velocity monitor",
-                                            "an opening monitor",
-                                            "a damaged monitor",
-                                            "a broken monitor",
-                                            "a field monitor",
-                                            "an acceleration monitor",
-                                            "a momentum monitor",
-                                            "an angular_momentum monitor",
-                                            "an energy monitor",
-                                            "a force monitor",
-                                            "a tip monitor",
-                                            "a tip_speed monitor",
-                                            "a stress monitor",
-                                            "a strain monitor",
-                                            "a reaction monitor with `between`"};
+static const char *const monitor_words[] = {
+    "a reaction monitor",  "a displacement monitor",
+    "a velocity monitor",  "an opening monitor",
+    "a damaged monitor",   "a broken monitor",
+    "a field monitor",     "an acceleration monitor",
+    "a momentum monitor",  "an angular_momentum monitor",
+    "an energy monitor",   "a force monitor",
+    "a moment monitor",    "a tip monitor",
+    "a tip_speed monitor", "a stress monitor",
+    "a strain monitor",    "a reaction monitor with `between`"};
 static const deck_key_use monitor_uses[] = {
     {"region", OF_MOTION | OF_FIELD | OF_PLACE | OF_PART | OF_SECTION | OF_TIP, false},
     {"lattice", OF_LATTICE, false},
@@ -321,17 +320,19 @@ static bool take_tensor(deck_reader *r, const namelist_key *key, deck_monitor *i
   return true;
 }
 
-/* The axis of an angular momentum; in the plane there is one. */
+/* The axis of a moment or an angular momentum; in the plane there is one, in space a section has its
+   normal. */
 static bool take_axis(deck_reader *r, const namelist_group *from, const namelist_key *key,
                       deck_monitor *item, int dimensions) {
   if (key &&
       (item->component > DECK_WRITTEN_Z || (dimensions == 2 && item->component < DECK_WRITTEN_Z)))
     return refuse_component(r, key, item, dimensions == 2 ? "'z'" : "'x', 'y' and 'z'");
-  if (!key && dimensions == 3)
+  const bool needed = dimensions == 3 && item->kind == MONITOR_ANGULAR_MOMENTUM;
+  if (!key && needed)
     diag_report(r->d, DIAG_MISSING_KEY, from->where, "%s needs `component` in space",
                 monitor_words[item->kind]);
-  if (!key) item->component = DECK_WRITTEN_Z;
-  return key || dimensions == 2;
+  if (!key) item->component = dimensions == 3 ? -1 : DECK_WRITTEN_Z;
+  return key || !needed;
 }
 
 static bool take_direction(deck_reader *r, const namelist_key *key, deck_monitor *item) {
@@ -351,7 +352,8 @@ static bool take_direction(deck_reader *r, const namelist_key *key, deck_monitor
 static bool take_component(deck_reader *r, const namelist_group *from, deck_monitor *item) {
   const namelist_key *key = namelist_find(from, "component");
   const int dimensions = dimensions_of(r, item);
-  if (is_kind(item, OF_TURNS)) return take_axis(r, from, key, item, dimensions);
+  if (is_kind(item, OF_TURNS | 1 << MONITOR_MOMENT))
+    return take_axis(r, from, key, item, dimensions);
   if (!key) {
     item->component = is_kind(item, OF_SECTION) ? -1 : 0;
     return true;
@@ -380,7 +382,7 @@ static void check_monitor(deck_reader *r, const namelist_group *from, void *into
     deck_region_known(r, between->values[i].where, item->between[i]);
   const int dimensions = dimensions_of(r, item);
   if (dimensions) deck_check_places(r, from, &deck_group_monitor, dimensions);
-  if (item->kind == MONITOR_FORCE && !has_length(r, &item->item, "normal", item->normal)) return;
+  if (is_kind(item, OF_SECTION) && !has_length(r, &item->item, "normal", item->normal)) return;
   if (!take_component(r, from, item)) return;
   if (item->kind == MONITOR_REACTION || item->kind == MONITOR_REACTIONS) check_reaction(r, item);
 }
@@ -407,6 +409,8 @@ const char *deck_monitor_unit(const deck_monitor *m, bool rotates) {
     return rotates ? "rad/s^2" : "m/s^2";
   case MONITOR_MOMENTUM:
     return "N*s";
+  case MONITOR_MOMENT:
+    return "N*m";
   case MONITOR_ANGULAR_MOMENTUM:
     return "N*m*s";
   case MONITOR_ENERGY:

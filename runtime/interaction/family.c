@@ -202,6 +202,13 @@ static void new_shares(sweep *w, family *f) {
     f->whole[q] = 1;
 }
 
+static void new_masses(sweep *w, family *f) {
+  const long size = w->lattice->size;
+  f->mass = body_doubles(w->body, size);
+  for (long q = 0; q < size; q++)
+    f->mass[q] = w->lattice->mass;
+}
+
 static void new_planes(sweep *w, family *f) {
   const pl_law *law = w->law;
   const long size = w->lattice->size;
@@ -278,6 +285,7 @@ sweep_engine family_engine(sweep *w, const double *parameters) {
   new_blocks(w, f);
   if (law->reads_shape) find_shapes(w, f);
   if (law->reads_share) new_shares(w, f);
+  if (law->reads_mass && !w->lattice->site_mass) new_masses(w, f);
   f->pairs = family_pairs_new(w, f);
   f->windows = f->pairs ? NULL : family_windows(w, f);
   if (!f->windows) new_links(w, f);

@@ -31,7 +31,6 @@ static void point_at_neighbours(const rows *g, int row, long start, pl_family *r
   for (int d = 0; d < g->dimensions; d++)
     run->chord[d] = l->chord[d] + start;
   run->volume = g->site_volume + start;
-  run->mass = g->site_mass + start;
 }
 
 void family_run_begin(const sweep *w, const pl_program *program, int block, pl_family *run) {
@@ -62,6 +61,8 @@ void family_run_part(const sweep *w, int block, row_part at, pl_family *run) {
   run->new_plane = w->lattice->size;
   run->bonds = w->lattice->bonds + start;
   run->held = w->lattice->held + start;
+  if (w->law->reads_mass)
+    run->mass = (w->lattice->site_mass ? w->lattice->site_mass : family_of(w)->mass) + start;
   if (w->law->reads_share) run->share = (w->share ? w->share : family_of(w)->whole) + start;
   if (w->lost_state) {
     const bool aside = w->body->blocks[block].aside;

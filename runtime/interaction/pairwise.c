@@ -248,18 +248,22 @@ static inline uint64_t size_bits(double x) {
 /* next = decay v + part dt/m f (motion.h) in all components, from place `first` of a row on. Not 0
    when a velocity is not below its limit (NaN is not below anything). One loop whose choices are
    literal: that is what compilers make vectors of. */
-static inline __attribute__((always_inline)) int64_t
-kick(const body *w, const gathered *from, int dof, bool decays, row_part at, double *next) {
+static inline __attribute__((always_inline)) int64_t kick(const body *w, const gathered *from,
+                                                          int dof, bool decays, bool each_mass,
+                                                          row_part at, double *next) {
   const long start = body_start(w, at.row), pitch = w->lattice->pitch;
   const double decay = w->decay, step = motion_force_part(w) * w->time_step;
   const double factor[] = {step / w->mass[0], step / w->mass[1], -step / w->mass[dof - 1]};
+  const double *moves = each_mass ? w->mobility[0] + start : NULL,
+               *turns = each_mass && dof > 2 ? w->mobility[1] + start : NULL;
   const gathered s = *from;
   uint64_t largest[] = {0, 0, 0};
   INDEPENDENT
   for (long q = at.first; q < at.end; q++)
     for (int d = 0; d < dof; d++) {
       const double v = w->velocity[d][start + q];
-      const double after = (decays ? decay * v : v) + factor[d] * bond_sum(&s, d, q);
+      const double part = !each_mass ? factor[d] : factor[d] * (d < 2 ? moves : turns)[q];
+      const double after = (decays ? decay * v : v) + part * bond_sum(&s, d, q);
       const uint64_t size = size_bits(after);
       next[d * pitch + q] = after;
       largest[d] = largest[d] > size ? largest[d] : size;
@@ -271,11 +275,19 @@ kick(const body *w, const gathered *from, int dof, bool decays, row_part at, dou
 }
 
 /* Particles receive the opposite of end moments. */
-static int64_t kick_part(const body *w, const gathered *from, row_part at, double *next) {
+static inline __attribute__((always_inline)) int64_t
+kick_components(const body *w, const gathered *from, int dof, row_part at, double *next) {
   const bool decays = w->decay != 1;
-  if (w->dof == 2)
-    return decays ? kick(w, from, 2, true, at, next) : kick(w, from, 2, false, at, next);
-  return decays ? kick(w, from, 3, true, at, next) : kick(w, from, 3, false, at, next);
+  if (w->mobility[0])
+    return decays ? kick(w, from, dof, true, true, at, next)
+                  : kick(w, from, dof, false, true, at, next);
+  return decays ? kick(w, from, dof, true, false, at, next)
+                : kick(w, from, dof, false, false, at, next);
+}
+
+static int64_t kick_part(const body *w, const gathered *from, row_part at, double *next) {
+  return w->dof == 2 ? kick_components(w, from, 2, at, next)
+                     : kick_components(w, from, 3, at, next);
 }
 
 /* A row on its way. */

@@ -88,6 +88,34 @@ static bool joins(const law_owners *o, int law, long i, long j) {
   return a && ((a[i] && b[j]) || (a[j] && b[i]));
 }
 
+/* The second law between regions that claims the bond, or 0. */
+static int second_claim(const law_owners *o, long i, long j) {
+  int claims = 0;
+  for (int law = 1; law < o->count; law++)
+    if (joins(o, law, i, j) && claims++ > 0) return law;
+  return 0;
+}
+
+static bool bonds_have_one(const law_owners *o) {
+  const rows *w = o->rows;
+  for (long p = 0; p < w->particle_count; p++)
+    for (int k = 0; k < w->directions; k++) {
+      const long i = w->particle_site[p], j = rows_partner(w, i, k);
+      const int second = rows_has_bond(w, i, k) ? second_claim(o, i, j) : 0;
+      double at[3];
+      char text[ROWS_PLACE_TEXT];
+      if (second == 0) continue;
+      const deck_material *m = o->laws[second].material;
+      rows_place(w, i, at);
+      diag_report(o->said, DIAG_CONFLICT, deck_where(&m->item, "between"),
+                  "a bond of the particle at %s has two materials: it joins other regions, too",
+                  rows_place_text(w->dimensions, at, text));
+      diag_hint(o->said, "give the regions shapes that have no particle in common");
+      return false;
+    }
+  return true;
+}
+
 static int owner_of_bond(const law_owners *o, long i, long j) {
   for (int law = 1; law < o->count; law++)
     if (joins(o, law, i, j)) return law;
@@ -110,12 +138,19 @@ static uint64_t *bonds_of(const law_owners *o, bool families, int law) {
   return bonds;
 }
 
-static double *share_of(const law_owners *o, int law) {
-  double *share = rows_array(o->rows->size, sizeof *share);
+static unsigned char *own_of(const law_owners *o, int law) {
+  unsigned char *own = must_calloc((size_t)o->rows->size, 1);
   for (long p = 0; p < o->rows->particle_count; p++) {
     const long site = o->rows->particle_site[p];
-    share[site] = o->of_site[site] == law;
+    own[site] = o->of_site[site] == law;
   }
+  return own;
+}
+
+static double *share_of(const rows *w, const unsigned char *own) {
+  double *share = rows_array(w->size, sizeof *share);
+  for (long q = 0; q < w->size; q++)
+    share[q] = own[q];
   return share;
 }
 
@@ -166,9 +201,11 @@ law_part *law_parts_new(const deck *k, int first, int count, const rows *w, bool
   law_part *parts = must_calloc((size_t)count, sizeof *parts);
   bool good = (!families || suits_families(&o)) && find_owners(&o);
   if (good) find_insides(&o);
+  good = good && bonds_have_one(&o);
   for (int law = 0; law < count && good; law++) {
     parts[law].bonds = rows_part(w, bonds_of(&o, families, law));
-    if (families) parts[law].share = share_of(&o, law);
+    parts[law].own = own_of(&o, law);
+    if (families) parts[law].share = share_of(w, parts[law].own);
     good = is_for_something(&o, law, parts[law].bonds);
   }
   owners_free(&o);
@@ -188,6 +225,7 @@ void law_parts_take_masses(law_part *parts, int count, const rows *w) {
 void law_parts_free(law_part *parts, int count) {
   for (int n = 0; parts && n < count; n++) {
     rows_part_free(parts[n].bonds);
+    free(parts[n].own);
     free(parts[n].share);
   }
   free(parts);

@@ -15,7 +15,8 @@
 #include "runtime/lattice/rows.h"
 
 typedef struct law_part {
-  rows *bonds; /* rows_part: the bonds that the law has a part in */
+  rows *bonds;        /* rows_part: the bonds that the law has a part in */
+  unsigned char *own; /* [size] 1 where a particle is of this law; none is of one between regions */
   double
       *share; /* [size] of laws of families: 1 where a particle is of this law, else 0; or NULL */
 } law_part;

@@ -7,7 +7,9 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "dsl/base/hash.h"
 #include "dsl/semantics/formula.h"
+#include "runtime/lattice/placed_values.h"
 #include "runtime/lattice/random_field.h"
 #include "runtime/lattice/rows_select.h"
 
@@ -38,6 +40,11 @@ static value_places places_new(const rows *w, const pl_law *law) {
                         .law = law,
                         .bonds = particles ? NULL : rows_bonds(w),
                         .count = particles ? w->particle_count : w->bond_count};
+}
+
+/* Whatever the law reads. */
+static value_places places_of_particles(const value_places *p) {
+  return (value_places){.rows = p->rows, .law = p->law, .count = p->rows->particle_count};
 }
 
 static value_place place_of(const value_places *p, long m) {
@@ -139,8 +146,20 @@ static bool units_fit(const deck_field *f, const pl_parameter *p, diagnostics *d
   return mean && low && high && scale;
 }
 
-static bool place_fits(const deck_field *f, const value_places *p, diagnostics *d) {
-  if (!on_particles(p) || f->on != FIELD_ON_BONDS) return true;
+static bool is_density(const pl_law *law, const pl_parameter *p) {
+  return law->density >= 0 && p == &law->parameters[law->density];
+}
+
+static bool place_fits(const deck_field *f, const value_places *p, const pl_parameter *of,
+                       diagnostics *d) {
+  const bool density = is_density(p->law, of);
+  if (!(on_particles(p) || density) || f->on != FIELD_ON_BONDS) return true;
+  if (density) {
+    diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&f->item, "on"),
+                "`%s` is the density of the particles: bonds have no mass", of->name);
+    diag_hint(d, "leave `on` away, or write on = 'particle'");
+    return false;
+  }
   diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&f->item, "on"),
               "the law `%s` reads whole families: its parameters have values on particles",
               p->law->name);
@@ -151,11 +170,11 @@ static bool place_fits(const deck_field *f, const value_places *p, diagnostics *
 static bool open_source(const deck_field *f, const value_places *places, const pl_parameter *p,
                         double *own, field_source *s, diagnostics *d) {
   char error[128];
-  if (!units_fit(f, p, d) || !place_fits(f, places, d)) return false;
+  if (!units_fit(f, p, d) || !place_fits(f, places, p, d)) return false;
   *s = (field_source){.field = f,
                       .rows = places->rows,
                       .seed = random_seed_of(f),
-                      .of_particles = f->on == FIELD_ON_PARTICLES};
+                      .of_particles = f->on == FIELD_ON_PARTICLES || is_density(places->law, p)};
   if (!random_distribution_of(f, *own, &s->distribution, error, sizeof error)) {
     diag_report(d, DIAG_BAD_VALUE, f->item.where, "%s", error);
     return false;
@@ -170,13 +189,16 @@ static bool open_source(const deck_field *f, const value_places *places, const p
 typedef struct value_sources {
   const value_places *places;
   const deck_material *whole; /* of the law where no region says otherwise */
+  const unsigned char *own;   /* [size] 1 where a particle is of the law; NULL: everywhere */
   const double *parameters;
   field_source *field; /* [varying] */
   const regional_values *regional;
   /* [varying] for the material without region, then for each with one: NULL where it is a number */
-  const deck_assignment **formula;
+  const deck_assignment **placed;
+  double **of_file; /* the same: [size] what a file says; NULL where none does */
   int regions;
-  int *region_of; /* [size] number in `regional`, or -1: the material without region; NULL */
+  int *region_of;        /* [size] number in `regional`, or -1: the material without region; NULL */
+  const double *density; /* [size] of particles, once it is known; NULL where all have one */
 } value_sources;
 
 /* Position of a parameter in law->varying, or -1 after a message. */
@@ -211,33 +233,34 @@ static bool open_fields(const deck *k, int lattice, double *parameters, value_so
   return good;
 }
 
-static bool take_formula(value_sources *s, int region, const deck_assignment *a, diagnostics *d) {
+static bool take_placed(value_sources *s, int region, const deck_assignment *a, diagnostics *d) {
   const pl_law *law = s->places->law;
   const int plane = find_plane(law, a->name, a->value_where, d);
   if (plane < 0) return false;
-  s->formula[(region + 1) * law->varying_count + plane] = a;
+  s->placed[(region + 1) * law->varying_count + plane] = a;
   const deck_field *f = s->field[plane].field;
   if (!f) return true;
   diag_report(d, DIAG_CONFLICT, f->item.where,
-              "`%s` differs at random, and the material gives it by a formula", a->name);
-  diag_note(d, a->value_where, "the formula");
+              "`%s` differs at random, and the material gives it by a %s", a->name,
+              a->placed->path ? "file" : "formula");
+  diag_note(d, a->value_where, "the %s", a->placed->path ? "file" : "formula");
   return false;
 }
 
-static bool open_formulas(int regions, value_sources *s, diagnostics *d) {
+static bool open_placed(int regions, value_sources *s, diagnostics *d) {
   bool good = true;
   for (int region = -1; region < regions; region++) {
     const deck_material *m = region < 0 ? s->whole : s->regional[region].material;
     for (int n = 0; n < m->assignment_count; n++)
-      if (m->assignments[n].formula) good = take_formula(s, region, &m->assignments[n], d) && good;
+      if (m->assignments[n].placed) good = take_placed(s, region, &m->assignments[n], d) && good;
   }
   return good;
 }
 
 /* One of a plane; or NULL. */
-static const deck_assignment *any_formula(const value_sources *s, int regions, int plane) {
+static const deck_assignment *any_placed(const value_sources *s, int regions, int plane) {
   for (int region = 0; region <= regions; region++) {
-    const deck_assignment *a = s->formula[region * s->places->law->varying_count + plane];
+    const deck_assignment *a = s->placed[region * s->places->law->varying_count + plane];
     if (a) return a;
   }
   return NULL;
@@ -317,18 +340,66 @@ static bool open_regions(const deck *k, int count, value_sources *s, diagnostics
   return good;
 }
 
+/* Of a region, or without one (-1), as far as the law asks for their values. */
+static long particles_in(const value_sources *s, int region, int32_t *particles) {
+  const rows *w = s->places->rows;
+  long count = 0;
+  for (long p = 0; p < w->particle_count; p++) {
+    const long site = w->particle_site[p];
+    if ((s->region_of ? s->region_of[site] : -1) == region &&
+        (!s->own || s->own[site] || rows_degree(w, site) > 0))
+      particles[count++] = (int32_t)p;
+  }
+  return count;
+}
+
+static bool read_file(value_sources *s, int region, int plane, int32_t *particles, diagnostics *d) {
+  const pl_law *law = s->places->law;
+  const rows *w = s->places->rows;
+  const int number = (region + 1) * law->varying_count + plane;
+  const deck_assignment *a = s->placed[number];
+  if (!a || !a->placed->path) return true;
+  const deck_placed from = placed_of_parameter(a, &law->parameters[law->varying[plane]]);
+  const long count = particles_in(s, region, particles);
+  double *values = placed_values(&from, w, particles, count, a->value_where, d);
+  if (!values) return false;
+  s->of_file[number] = must_alloc((size_t)w->size * sizeof(double));
+  for (long q = 0; q < w->size; q++)
+    s->of_file[number][q] =
+        (region < 0 ? s->parameters : s->regional[region].parameters)[law->varying[plane]];
+  for (long p = 0; p < count; p++)
+    s->of_file[number][w->particle_site[particles[p]]] = values[p];
+  free(values);
+  return true;
+}
+
+static bool read_files(value_sources *s, diagnostics *d) {
+  int32_t *particles = must_calloc((size_t)s->places->rows->particle_count + 1, sizeof *particles);
+  bool good = true;
+  for (int region = -1; region < s->regions; region++)
+    for (int plane = 0; plane < s->places->law->varying_count; plane++)
+      good = read_file(s, region, plane, particles, d) && good;
+  free(particles);
+  return good;
+}
+
 static double value_of_material(const value_sources *s, int plane, int64_t site) {
   const pl_law *law = s->places->law;
   const int region = s->region_of ? s->region_of[site] : -1;
-  const deck_assignment *by_place = s->formula[(region + 1) * law->varying_count + plane];
+  const int number = (region + 1) * law->varying_count + plane;
   double at[3];
-  if (!by_place)
+  if (s->of_file[number]) return s->of_file[number][site];
+  if (!s->placed[number])
     return (region < 0 ? s->parameters : s->regional[region].parameters)[law->varying[plane]];
   rows_place(s->places->rows, site, at);
-  return formula_value(by_place->formula, at);
+  return formula_value(s->placed[number]->placed->formula, at);
 }
 
 static double value_of(const value_sources *s, int plane, const value_place *at) {
+  const pl_law *law = s->places->law;
+  if (s->density && law->varying[plane] == law->density)
+    return at->partner < 0 ? s->density[at->site]
+                           : 0.5 * (s->density[at->site] + s->density[at->partner]);
   if (s->field[plane].field) return field_value(&s->field[plane], at);
   const double mine = value_of_material(s, plane, at->site);
   return at->partner < 0 ? mine : 0.5 * (mine + value_of_material(s, plane, at->partner));
@@ -416,7 +487,7 @@ static void name_place(const value_places *p, const value_place *at, char *text,
 /* The group of the deck that a value comes from; where it is of no plane, the first one. */
 static span where_of(const value_sources *s, int plane) {
   for (int k = plane < 0 ? 0 : plane; k < s->places->law->varying_count; k++) {
-    const deck_assignment *by_place = any_formula(s, s->regions, k);
+    const deck_assignment *by_place = any_placed(s, s->regions, k);
     if (s->field[k].field) return s->field[k].field->item.where;
     if (by_place) return by_place->value_where;
   }
@@ -459,7 +530,7 @@ static int fault_left(parameter_planes *r, const value_sources *s, const value_p
   for (int tries = 0; fault >= 0 && tries < r->count; tries++) {
     const int plane = plane_of(law, fault);
     const deck_field *f = plane < 0 ? NULL : s->field[plane].field;
-    if (!f || !f->clip || isnan(b->values[fault])) break;
+    if (!f || !f->clip || !r->value[plane] || isnan(b->values[fault])) break;
     b->values[fault] = clipped(b, fault, s->parameters[fault]);
     put(r->value[plane], at, b->values[fault]);
     fault = first_fault(law, b);
@@ -477,7 +548,7 @@ static bool check_values(parameter_planes *r, const value_sources *s, diagnostic
   for (long m = 0; m < s->places->count; m++) {
     const value_place at = place_of(s->places, m);
     for (int k = 0; k < r->count; k++)
-      b.values[law->varying[k]] = r->value[k][at.at];
+      if (r->value[k]) b.values[law->varying[k]] = r->value[k][at.at];
     const int fault = fault_left(r, s, &at, &b);
     if (fault < 0 || faults++ > 0) continue;
     first_place = m;
@@ -496,16 +567,20 @@ static bool check_values(parameter_planes *r, const value_sources *s, diagnostic
 /* --- the planes ------------------------------------------------------------------------------- */
 
 static void find_extremes(parameter_planes *r, const value_sources *s) {
-  const value_places *p = s->places;
   for (int k = 0; k < r->count; k++) {
+    const int parameter = s->places->law->varying[k];
+    const bool density = r->density && parameter == s->places->law->density;
+    const value_places particles = places_of_particles(s->places);
+    const value_places *p = density ? &particles : s->places;
+    const double *values = density ? r->density : r->value[k];
     double low = INFINITY, high = -INFINITY;
     for (long m = 0; m < p->count; m++) {
-      const double value = r->value[k][place_of(p, m).at];
+      const double value = values[place_of(p, m).at];
       low = pl_fmin(low, value);
       high = pl_fmax(high, value);
     }
-    r->smallest[k] = p->count ? low : s->parameters[p->law->varying[k]];
-    r->largest[k] = p->count ? high : s->parameters[p->law->varying[k]];
+    r->smallest[k] = p->count ? low : s->parameters[parameter];
+    r->largest[k] = p->count ? high : s->parameters[parameter];
   }
 }
 
@@ -519,41 +594,71 @@ static parameter_planes *planes_new(const value_places *p) {
   const size_t count = (size_t)p->law->varying_count + 1;
   parameter_planes *r = must_calloc(1, sizeof *r);
   r->count = p->law->varying_count;
+  r->plane_size = (size_t)planes_of(p) * (size_t)p->rows->size;
   r->value = must_calloc(count, sizeof *r->value);
   r->smallest = must_calloc(count, sizeof *r->smallest);
   r->largest = must_calloc(count, sizeof *r->largest);
-  r->random = must_calloc(count, sizeof *r->random);
-  r->placed = must_calloc(count, sizeof *r->placed);
+  r->source = must_calloc(count, sizeof *r->source);
   return r;
 }
 
+/* Of particles, whatever the law's bonds read; false after a message. */
+static bool find_density(parameter_planes *r, value_sources *s, diagnostics *d) {
+  const int plane = plane_of(s->places->law, s->places->law->density);
+  const value_places particles = places_of_particles(s->places);
+  value_sources of = *s;
+  if (plane < 0) return true;
+  of.places = &particles;
+  parameter_planes *alone = planes_new(&particles);
+  alone->value[plane] = r->density = new_plane(r, &particles);
+  fill_plane(&of, plane, r->density);
+  const bool good = check_values(alone, &of, d);
+  alone->value[plane] = NULL;
+  parameter_planes_free(alone);
+  s->density = r->density;
+  return good;
+}
+
+static plane_source source_of(const value_sources *s, int plane) {
+  const deck_assignment *by_place = any_placed(s, s->regions, plane);
+  if (s->field[plane].field) return PLANE_AT_RANDOM;
+  if (!by_place) return PLANE_BY_REGIONS;
+  return by_place->placed->path ? PLANE_BY_FILE : PLANE_BY_FORMULA;
+}
+
 static void sources_free(value_sources *s) {
+  for (int k = 0; k < (s->regions + 1) * s->places->law->varying_count; k++)
+    free(s->of_file[k]);
+  free(s->of_file);
   for (int k = 0; k < s->places->law->varying_count; k++)
     random_waves_free(s->field[k].waves);
   free(s->field);
-  free(s->formula);
+  free(s->placed);
   free(s->region_of);
 }
 
 parameter_planes *parameter_planes_new(const deck *k, int lattice, const deck_material *whole,
-                                       const rows *w, const pl_law *law, double *parameters,
-                                       const regional_values *regional, int regional_count,
-                                       diagnostics *d) {
+                                       const rows *w, const unsigned char *own, const pl_law *law,
+                                       double *parameters, const regional_values *regional,
+                                       int regional_count, diagnostics *d) {
   value_places places = places_new(w, law);
   value_sources s = {.places = &places,
                      .whole = whole,
+                     .own = own,
                      .parameters = parameters,
                      .regional = regional,
                      .regions = regional_count};
   parameter_planes *r = planes_new(&places);
   s.field = must_calloc((size_t)r->count + 1, sizeof *s.field);
-  s.formula = must_calloc((size_t)(regional_count + 1) * (size_t)(r->count + 1), sizeof *s.formula);
+  const size_t most = (size_t)(regional_count + 1) * (size_t)(r->count + 1);
+  s.placed = must_calloc(most, sizeof *s.placed);
+  s.of_file = must_calloc(most, sizeof *s.of_file);
   bool good = open_fields(k, lattice, parameters, &s, d);
-  good = open_formulas(regional_count, &s, d) && good;
-  good = open_regions(k, regional_count, &s, d) && good;
+  good = open_placed(regional_count, &s, d) && good;
+  good =
+      open_regions(k, regional_count, &s, d) && good && read_files(&s, d) && find_density(r, &s, d);
   for (int n = 0; good && n < r->count; n++) {
-    r->random[n] = s.field[n].field != NULL;
-    r->placed[n] = any_formula(&s, regional_count, n) != NULL;
+    r->source[n] = source_of(&s, n);
     r->value[n] = new_plane(r, &places);
     fill_plane(&s, n, r->value[n]);
   }
@@ -566,14 +671,25 @@ parameter_planes *parameter_planes_new(const deck *k, int lattice, const deck_ma
   return NULL;
 }
 
+uint64_t parameter_planes_fingerprint(const parameter_planes *p) {
+  uint64_t hash = HASH_START;
+  bool any = false;
+  for (int k = 0; p && k < p->count; k++) {
+    if (p->source[k] != PLANE_BY_FILE) continue;
+    hash = hash_words(hash, p->value[k], p->plane_size);
+    any = true;
+  }
+  return !any ? 0 : hash ? hash : 1;
+}
+
 void parameter_planes_free(parameter_planes *p) {
   if (!p) return;
   for (int k = 0; k < p->count; k++)
     free(p->value[k]);
   free(p->value);
+  free(p->density);
   free(p->smallest);
   free(p->largest);
-  free(p->random);
-  free(p->placed);
+  free(p->source);
   free(p);
 }

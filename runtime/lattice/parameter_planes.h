@@ -1,7 +1,7 @@
 /* Parameters of a law that differ in space: planes of their values, on bonds for laws of bonds, on
    particles for laws of families. They come from random fields (random_field.h), and from
-   materials, by formulas of the place and by regions: a particle has the value at its place, of its
-   region, a bond the mean of its ends'. */
+   materials, by formulas of the place, by files of places and by regions: a particle has the value at its place, of its
+   region, a bond the mean of its ends'. The density stands on particles, whatever else does. */
 #ifndef PERILAT_RUNTIME_PARAMETER_PLANES_H
 #define PERILAT_RUNTIME_PARAMETER_PLANES_H
 
@@ -15,26 +15,39 @@ typedef struct regional_values {
   double *parameters; /* [law->parameter_count] SI */
 } regional_values;
 
+/* Why values differ; formulas and files perhaps in regions. */
+typedef enum plane_source {
+  PLANE_BY_REGIONS,
+  PLANE_BY_FORMULA,
+  PLANE_BY_FILE,
+  PLANE_AT_RANDOM
+} plane_source;
+
 typedef struct parameter_planes {
   int count; /* law->varying_count */
   double *
       *value; /* [count], aligned, as the sweep has them (sweep.h): on particles [size], on bonds
                      [directions * size], of laws of families [2 directions * size]; the mean where
                      there is no particle or bond */
+  double *density;            /* [size] kg/m^3 of the particles; NULL where all have one */
   double *smallest, *largest; /* [count] of the particles or bonds there are */
-  bool *random;               /* [count] by a random field, not by regions or formulas */
-  bool *placed;               /* [count] by formulas, perhaps in regions */
+  plane_source *source;       /* [count] */
+  size_t plane_size;          /* doubles of one of `value` */
   size_t bytes;
 } parameter_planes;
 
 /* Evaluates all that the deck says of the law of a material on the lattice. `parameters` are those
-   of the material `whole`, `regional` those of the regions that have its law; those with a random field become its mean. NULL with diagnostics: a wrong unit, values
-   that the law does not allow (with the place of the first), two materials for one particle, a
-   kernel that takes such a parameter as the same everywhere. */
+   of the material `whole`, `regional` those of the regions that have its law; those with a random
+   field become its mean. `own`: [size] 1 where a particle is of the law, NULL: everywhere. NULL
+   with diagnostics: a wrong unit, values that the law does not allow (with the place of the first),
+   a place without one, two materials for one particle, a kernel that takes such a parameter as the
+   same everywhere. */
 parameter_planes *parameter_planes_new(const deck *k, int lattice, const deck_material *whole,
-                                       const rows *w, const pl_law *law, double *parameters,
-                                       const regional_values *regional, int regional_count,
-                                       diagnostics *d);
+                                       const rows *w, const unsigned char *own, const pl_law *law,
+                                       double *parameters, const regional_values *regional,
+                                       int regional_count, diagnostics *d);
+/* Tells values of other files from each other; 0 without a file. */
+uint64_t parameter_planes_fingerprint(const parameter_planes *p);
 void parameter_planes_free(parameter_planes *p);
 
 #endif

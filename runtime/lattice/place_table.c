@@ -1,5 +1,6 @@
 #include "runtime/lattice/place_table.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -24,7 +25,7 @@ static int only_column(text_table *t, int dimensions, diagnostics *d) {
   if (others == 1) return found;
   diag_report(d, DIAG_BAD_VALUE, text_table_header(t, d),
               "`%s` has %d columns beside those of the places", t->path, others);
-  diag_hint(d, "name the one that is meant: file = 'FILE:NAME'");
+  diag_hint(d, "name the one that is meant: 'FILE:NAME'");
   return -1;
 }
 
@@ -68,6 +69,9 @@ static double *values_of_frame(result_file *f, const deck_placed *p, long places
   else if (!unit_is(of_field, p->unit_text))
     diag_report(d, DIAG_UNITS, where, "`%s` is in %s, here a value in %s is needed", p->column,
                 of_field, p->unit_text);
+  else if (components > 1 && p->component < 0)
+    diag_report(d, DIAG_BAD_VALUE, where, "`%s` has several components, here one number is needed",
+                p->column);
   else if (components > 1 && p->component >= components)
     diag_report(d, DIAG_BAD_VALUE, where, "`%s` has no such component", p->column);
   else
@@ -129,7 +133,7 @@ static double *values_of_result(const deck_placed *p, place_table *t, span where
   char error[1024];
   if (!p->column) {
     diag_report(d, DIAG_BAD_VALUE, where, "which field of the result is meant?");
-    diag_hint(d, "name it: file = 'run.h5:displacement'");
+    diag_hint(d, "name it behind a colon: 'run.h5:displacement'");
     return NULL;
   }
   result_file *f = result_read(p->path, error, sizeof error);
@@ -171,6 +175,17 @@ void place_table_free(place_table *t) {
   for (int c = 0; c < 3; c++)
     free(t->at[c]);
   free(t->value);
+}
+
+double place_table_mean(const place_table *t) {
+  double sum = 0;
+  long count = 0;
+  for (long k = 0; k < t->count; k++) {
+    if (!isfinite(t->value[k])) continue;
+    sum += t->value[k];
+    count++;
+  }
+  return sum / (double)count;
 }
 
 static double distance_square(const place_table *t, long k, const double at[3]) {

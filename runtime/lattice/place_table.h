@@ -21,6 +21,8 @@ typedef struct place_table {
 bool place_table_read(place_table *t, const deck_placed *p, int dimensions, double spacing,
                       span where, diagnostics *d);
 void place_table_free(place_table *t);
+/* Mean of the finite values; NaN where there is none. */
+double place_table_mean(const place_table *t);
 
 /* The place nearest to `at` and not further than `within`, which is at most the spacing; -1: there
    is none. */

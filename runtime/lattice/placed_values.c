@@ -7,6 +7,12 @@
 #include "dsl/semantics/formula.h"
 #include "runtime/lattice/place_table.h"
 
+deck_placed placed_of_parameter(const deck_assignment *a, const pl_parameter *p) {
+  deck_placed placed = *a->placed;
+  placed.unit_text = p->unit && *p->unit ? p->unit : "1";
+  return placed;
+}
+
 static bool report(const rows *w, const double at[3], const char *what, span where,
                    diagnostics *d) {
   char text[ROWS_PLACE_TEXT];

@@ -141,15 +141,40 @@ int rows_degree(const rows *w, long site) {
   return count;
 }
 
+static double volume_of(const rows *w, long site) {
+  return w->site_volume ? w->site_volume[site] : w->volume;
+}
+
 void rows_set_density(rows *w, double rho) {
   const double half = w->spacing / 2;
   w->mass = rho * w->volume;
   for (long q = 0; w->site_mass && q < w->size; q++)
-    w->site_mass[q] = rho * w->site_volume[q];
+    w->site_mass[q] = rho * volume_of(w, q);
   w->inertia = 0.4 * w->mass * half * half;
 }
 
+/* That of all, where all are alike, to the last bit. */
+static double middle_density(const rows *w, const double *rho) {
+  double least = INFINITY, most = 0;
+  for (long p = 0; p < w->particle_count; p++) {
+    least = pl_fmin(least, rho[w->particle_site[p]]);
+    most = pl_fmax(most, rho[w->particle_site[p]]);
+  }
+  return 0.5 * (least + most);
+}
+
+void rows_set_densities(rows *w, const double *rho) {
+  if (!w->site_mass)
+    w->site_mass = must_align(PL_ALIGNMENT, (size_t)w->size * sizeof *w->site_mass);
+  rows_set_density(w, middle_density(w, rho));
+  for (long p = 0; p < w->particle_count; p++) {
+    const long site = w->particle_site[p];
+    w->site_mass[site] = rho[site] * volume_of(w, site);
+  }
+}
+
 double rows_radius_square(const rows *w, long site) {
+  if (!w->site_volume) return 1;
   return pl_pow(w->site_volume[site] / w->volume, 2.0 / w->dimensions);
 }
 

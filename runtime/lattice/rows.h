@@ -74,7 +74,8 @@ typedef struct rows {
   double site_area;           /* m^2 of the plane that one site stands for; 0 in space, of chains */
   double stiffness_thickness; /* m: `t` of the laws; 0 in space and of chains */
   double area;                /* m^2: `area` of the laws; 0 but of chains */
-  double mass, inertia;       /* kg, kg m^2: see rows_set_density; on lists of the mean particle */
+  double mass, inertia;       /* kg, kg m^2: see rows_set_density; of the mean particle where they
+                                 are not alike */
   neighbour_list *list;       /* NULL on lattices */
   double *site_volume, *site_mass; /* [size] m^3, kg; NULL where all particles are alike */
   uint64_t *bonds;                 /* [size] bit k: the owned bond k exists */
@@ -169,7 +170,10 @@ int rows_degree(const rows *w, long site);
    I = 2/5 m (s/2)^2 (Asadollahi 2014); on lists s is a spacing of its own, that of particles as
    large as itself. */
 void rows_set_density(rows *w, double rho);
-/* Of a particle on a list: the square of its radius over that of the mean particle. */
+/* The same where each particle has a density of its own, [size]. `mass` and `inertia` are of one
+   between the least and the largest. */
+void rows_set_densities(rows *w, const double *rho);
+/* The square of a particle's radius over that of the mean particle; 1 but on lists. */
 double rows_radius_square(const rows *w, long site);
 
 /* What a law is told about the bonds of one direction, 0 .. 2 directions - 1, wherever it is asked:

@@ -74,9 +74,9 @@ static void site_values(const frames_of *of, double *const *arrays, int componen
 /* Of the particles that are of the law. */
 static void law_site_values(const frames_of *of, const double *array, double *values) {
   const rows *g = of->body->lattice_rows;
-  const double *share = of->law->share;
+  const unsigned char *own = of->law->own;
   for (long p = 0; p < g->particle_count; p++)
-    if (!share || share[g->particle_site[p]] > 0) values[p] = array[g->particle_site[p]];
+    if (!own || own[g->particle_site[p]]) values[p] = array[g->particle_site[p]];
 }
 
 static void bond_values(const frames_of *of, const double *array, double *values) {
@@ -110,9 +110,14 @@ static void values_of_output(const frames_of *of, const frame_source *from, doub
   free(array);
 }
 
+static bool is_density(const pl_law *law, int varying) {
+  return law->varying[varying] == law->density;
+}
+
 static void values_of_parameter(const frames_of *of, const frame_source *from, double *values) {
-  const double *array = of->law->state->parameter[from->index];
-  if (of->law->law->varying_place == PL_ON_PARTICLE)
+  const bool density = is_density(of->law->law, from->index);
+  const double *array = density ? of->law->planes->density : of->law->state->parameter[from->index];
+  if (density || of->law->law->varying_place == PL_ON_PARTICLE)
     law_site_values(of, array, values);
   else
     bond_values(of, array, values);
@@ -430,7 +435,7 @@ static void add_of_law(frame_set *f, int n) {
     add(f,
         (frame_field){.name = p->name,
                       .unit = p->unit,
-                      .on_bonds = law->varying_place != PL_ON_PARTICLE,
+                      .on_bonds = law->varying_place != PL_ON_PARTICLE && !is_density(law, k),
                       .components = 1,
                       .interaction = n,
                       .of_law = true,

@@ -7,6 +7,8 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/units.h"
+#include "runtime/lattice/place_table.h"
+#include "runtime/lattice/placed_values.h"
 
 double material_density(const pl_law *law, const double *values) {
   return law->density < 0 ? 0 : values[law->density];
@@ -44,6 +46,18 @@ static bool check_unit(const deck_assignment *a, const pl_parameter *p, diagnost
   return false;
 }
 
+/* What stands for all values of a file before there are particles: their mean. */
+static bool take_mean(const deck_assignment *a, const pl_law *law, int parameter, double *value,
+                      diagnostics *d) {
+  enum { ONE_BOX = 1 }; /* m: nobody asks what is near */
+  place_table t;
+  const deck_placed from = placed_of_parameter(a, &law->parameters[parameter]);
+  const bool good = place_table_read(&t, &from, law->dimensions, ONE_BOX, a->value_where, d);
+  if (good) *value = place_table_mean(&t);
+  place_table_free(&t);
+  return good;
+}
+
 static bool assign(const deck_assignment *a, const pl_law *law, double *values, span *where,
                    bool *given, diagnostics *d) {
   const int p = find_parameter(law, a->name);
@@ -62,6 +76,7 @@ static bool assign(const deck_assignment *a, const pl_law *law, double *values, 
   given[p] = true;
   where[p] = a->value_where;
   values[p] = a->value;
+  if (a->placed && a->placed->path) return take_mean(a, law, p, &values[p], d);
   return check_unit(a, &law->parameters[p], d);
 }
 
@@ -110,16 +125,16 @@ static bool check_sizes(const deck_material *m, const pl_law *law, const double 
   return good;
 }
 
-static const deck_assignment *formula_of(const deck_material *m, const pl_parameter *p) {
+static const deck_placed *placed_of(const deck_material *m, const pl_parameter *p) {
   for (int a = 0; a < m->assignment_count; a++)
-    if (m->assignments[a].formula && strcasecmp(m->assignments[a].name, p->name) == 0)
-      return &m->assignments[a];
+    if (m->assignments[a].placed && strcasecmp(m->assignments[a].name, p->name) == 0)
+      return m->assignments[a].placed;
   return NULL;
 }
 
-/* A formula is judged at the particles (parameter_planes.h): where the law forbids its value in the
-   middle, the default answers until they are known. */
-static void replace_formulas(const deck_material *m, const pl_law *law, double *values) {
+/* What differs is judged at the particles (parameter_planes.h): where the law forbids the value of a
+   formula in the middle, or the mean of a file, the default answers until they are known. */
+static void replace_placed(const deck_material *m, const pl_law *law, double *values) {
   const size_t n = (size_t)law->parameter_count + 1;
   double *bounds = must_calloc(2 * n, sizeof *bounds);
   unsigned char *open = must_calloc(2 * n, 1);
@@ -129,7 +144,7 @@ static void replace_formulas(const deck_material *m, const pl_law *law, double *
     const bool inside = (open[p] ? v > bounds[p] : v >= bounds[p]) &&
                         (open[n + p] ? v < bounds[n + p] : v <= bounds[n + p]);
     if ((!inside || !isfinite(v)) && law->parameters[p].has_default &&
-        formula_of(m, &law->parameters[p]))
+        placed_of(m, &law->parameters[p]))
       values[p] = law->parameters[p].initial;
   }
   free(bounds);
@@ -157,8 +172,10 @@ static bool check_bounds(const deck_material *m, const pl_law *law, const double
                 "`%s` = %.8g%s%s is not in %c%s, %s%c, the range of the law `%s`",
                 law->parameters[p].name, v, pure ? "" : " ", pure ? "" : u, low_open[p] ? '(' : '[',
                 low, high, high_open[p] ? ')' : ']', law->name);
-    if (formula_of(m, &law->parameters[p]))
-      diag_hint(d, "this is the formula's value in the middle of the bodies");
+    const deck_placed *by = placed_of(m, &law->parameters[p]);
+    if (by)
+      diag_hint(d, by->path ? "this is the mean of the file's values"
+                            : "this is the formula's value in the middle of the bodies");
     if (!given[p])
       diag_hint(d, "this is the law's default; its range depends on the values given here");
     good = false;
@@ -178,7 +195,7 @@ bool material_parameters(const deck_material *m, const pl_law *law, double *valu
   for (int a = 0; a < m->assignment_count; a++)
     good = assign(&m->assignments[a], law, values, where, given, d) && good;
   good = !m->item.faulty && fill_defaults(m, law, values, given, d) && good;
-  if (good) replace_formulas(m, law, values);
+  if (good) replace_placed(m, law, values);
   good = good && check_bounds(m, law, values, where, given, d) &&
          check_sizes(m, law, values, where, given, d);
   free(given);

@@ -173,6 +173,7 @@ static monitor_time when_known(const monitor *m, const monitors *all) {
   case MONITOR_ANGULAR_MOMENTUM:
   case MONITOR_ENERGY:
   case MONITOR_FORCE:
+  case MONITOR_MOMENT:
   case MONITOR_STRESS:
     return KNOWN_WHEN_OBSERVED;
   default:

@@ -20,19 +20,19 @@ static bool has_field(const deck *k, const char *lattice) {
   return false;
 }
 
-static bool has_formula(const deck_material *m) {
+static bool has_placed(const deck_material *m) {
   for (int n = 0; n < m->assignment_count; n++)
-    if (m->assignments[n].formula) return true;
+    if (m->assignments[n].placed) return true;
   return false;
 }
 
 static bool open_planes(const run_body *b, run_law *l, const deck *k, diagnostics *d) {
   const deck_material *m = l->from->material;
   if (!(l == b->laws && has_field(k, b->name)) && l->regional_count == 0 &&
-      l->law->varying_count == 0 && !has_formula(m))
+      l->law->varying_count == 0 && !has_placed(m))
     return true;
-  l->planes = parameter_planes_new(k, b->lattice, m, l->rows, l->law, l->parameters, l->regional,
-                                   l->regional_count, d);
+  l->planes = parameter_planes_new(k, b->lattice, m, l->rows, l->own, l->law, l->parameters,
+                                   l->regional, l->regional_count, d);
   return l->planes != NULL;
 }
 
@@ -91,6 +91,7 @@ static bool open_parts(run_body *b, const deck *k, diagnostics *d) {
   b->parts = law_parts_new(k, first, b->law_count, b->lattice_rows, families, d);
   for (int n = 0; n < b->law_count && b->parts; n++) {
     b->laws[n].rows = b->parts[n].bonds;
+    b->laws[n].own = b->parts[n].own;
     b->laws[n].share = b->parts[n].share;
   }
   return b->parts != NULL;
@@ -123,17 +124,38 @@ static bool find_limit(run_body *b, const deck *k, diagnostics *d) {
   return step_limit_check(k, b->lattice, b->law, &b->limit, d);
 }
 
-static bool density_is_one(const run_body *b, diagnostics *d) {
-  const double rho = material_density(b->law, b->laws[0].parameters);
-  for (int n = 1; n < b->law_count; n++) {
-    const run_law *l = &b->laws[n];
-    if (material_density(l->law, l->parameters) == rho || !l->from->material->region) continue;
-    diag_report(d, DIAG_NOT_SUPPORTED, l->from->material->item.where,
-                "`rho` cannot differ from region to region: the particles of a lattice have one "
-                "mass");
-    return false;
+/* Of the particles that a law owns; those between regions own none. */
+static void take_densities(const run_body *b, const run_law *l, double *rho) {
+  const rows *g = b->lattice_rows;
+  const double one = material_density(l->law, l->parameters);
+  for (long p = 0; p < g->particle_count; p++) {
+    const long q = g->particle_site[p];
+    if (!l->own || l->own[q])
+      rho[q] = l->planes && l->planes->density ? l->planes->density[q] : one;
   }
-  return true;
+}
+
+static bool density_is_one(const run_body *b) {
+  const double rho = material_density(b->law, b->laws[0].parameters);
+  bool same = true;
+  for (int n = 0; n < b->law_count; n++) {
+    const run_law *l = &b->laws[n];
+    same = same && !(l->planes && l->planes->density) &&
+           (l->from->material->between[0] || material_density(l->law, l->parameters) == rho);
+  }
+  return same;
+}
+
+static void set_masses(run_body *b) {
+  if (density_is_one(b)) {
+    rows_set_density(b->lattice_rows, material_density(b->law, b->laws[0].parameters));
+    return;
+  }
+  double *rho = must_calloc((size_t)b->lattice_rows->size, sizeof *rho);
+  for (int n = 0; n < b->law_count; n++)
+    take_densities(b, &b->laws[n], rho);
+  rows_set_densities(b->lattice_rows, rho);
+  free(rho);
 }
 
 /* What asks for the values of parameters. */
@@ -143,11 +165,8 @@ static bool open_materials(run_body *b, const deck *k, diagnostics *d) {
     planes = open_planes(b, &b->laws[n], k, d) && planes;
     mass = law_fits_motion(b->laws[n].law, k, b->lattice, d) && mass;
   }
-  mass = mass && density_is_one(b, d);
-  if (mass) {
-    rows_set_density(b->lattice_rows, material_density(b->law, b->laws[0].parameters));
-    law_parts_take_masses(b->parts, b->law_count, b->lattice_rows);
-  }
+  if (mass) set_masses(b);
+  if (mass) law_parts_take_masses(b->parts, b->law_count, b->lattice_rows);
   if (deck_lacks(k, "simulation") || deck_lacks(k, "relaxation")) return false;
   return planes && mass && find_limit(b, k, d);
 }

@@ -23,6 +23,7 @@ typedef struct run_law { /* a law at work on a body: an interaction of the run *
   int regional_count;
   parameter_planes *planes; /* what differs in space; NULL without */
   const rows *rows;         /* the body's, with the bonds that the law has a part in */
+  const unsigned char *own; /* [size] 1 where a particle is of this law; NULL of the only one */
   const double *share;      /* as sweep.share */
   sweep *state;             /* the law's own fields */
   rows_bond *bonds;         /* of `rows` */

@@ -204,6 +204,75 @@ static void a_table_goes_along(void **state) {
   free(to);
 }
 
+/* --- parameters ------------------------------------------------------------------------------- */
+
+#define GRADED(given, more)                                                                        \
+  "&simulation  end_time = '20 us'  step = '0.2 us'  /\n"                                          \
+  "&lattice     name = 'c'  kind = 'square'  horizon = 2.015  spacing = '10 mm'  thickness = "     \
+  "'10 mm'  /\n&body  lattice = 'c'  shape = 'rectangle'  corner = 0, 0  size = '100 mm', '60 "    \
+  "mm'  /\n&region  name = 'all'  shape = 'rectangle'  corner = -1, -1  size = 3, 3  /\n"          \
+  "&region  name = 'top'  shape = 'rectangle'  corner = -1, '35 mm'  size = 3, 3  /\n"             \
+  "&initial_velocity  region = 'all'  component = 'x'  value = '2 [m/s]*x/60 [mm]'  /\n"           \
+  "&material    lattice = 'c'  model = 'lps'  " given "  /\n"                                      \
+  "&output      frames = 2  fields = 'displacement', 'velocity'" more "  /\n"
+#define IN_TOP(given) "/\n&material  lattice = 'c'  region = 'top'  model = 'lps'  " given
+#define BY_FORMULA    "E = '30 [GPa]*(1 + x/1 [m])'  rho = '2000 [kg/m^3]*(1 + y/60 [mm])'"
+
+/* The same bits from a formula, from the result of that run, and from a table of it; so in a region
+   and with the mass. */
+static void parameters_come_from_a_result_or_a_table(void **state) {
+  workplace *w = *state;
+  write_text(w, "formula.nml", GRADED(BY_FORMULA, ", 'E', 'rho'"));
+  write_text(w, "result.nml", GRADED("E = 'formula.h5:E'  rho = 'formula.h5:rho'", ""));
+  write_text(w, "table.nml", GRADED("E = 'table.csv:E'  rho = 'table.csv:rho'", ""));
+  write_text(w, "region.nml",
+             GRADED("E = 'table.csv:E'  rho = 'formula.h5:rho'" IN_TOP(
+                        "E = '30 [GPa]*(1 + x/1 [m])'  rho = 'table.csv:rho'"),
+                    ""));
+  assert_int_equal(shell(w, "\"$P\" run formula.nml && \"$P\" export formula.h5 --frame 0 -o "
+                            "table.csv && \"$P\" run result.nml && \"$P\" run table.nml"),
+                   0);
+  assert_non_null(strstr(w->said, "file       E differs from place to place: 3e+10 to 3.3e+10 Pa"));
+  expect_same(w, "formula.h5", 2, "result.h5", 2);
+  expect_same(w, "formula.h5", 2, "table.h5", 2);
+  assert_int_equal(shell(w, "\"$P\" run region.nml"), 0);
+  expect_same(w, "formula.h5", 2, "region.h5", 2);
+  assert_int_equal(shell(w, "\"$P\" run result.nml --set output.result=formula.h5"), 1);
+  assert_non_null(strstr(w->said, "the result would overwrite"));
+#if !defined(__SANITIZE_ADDRESS__)
+  assert_int_equal(shell(w, "\"$P\" build table.nml -o table && rm table.csv && ./table --set "
+                            "output.result=s.h5"),
+                   0);
+  expect_same(w, "formula.h5", 2, "s.h5", 2);
+#endif
+}
+
+static void slips_of_files_are_told_at_the_deck(void **state) {
+  workplace *w = *state;
+  static const struct {
+    const char *given, *said;
+  } slips[] = {
+      {"E = 'none.csv'", "cannot read `none.csv`"},
+      {"E = 'field.csv'", "`field.csv` has 2 columns beside those of the places"},
+      {"E = 'field.csv:G'", "`field.csv` has no column `G`"},
+      {"E = 'field.csv:rho'", "the unit of `rho` is one of `Pa`"},
+      {"E = 'field.csv:E'", "no value within half a spacing of the particle at (10, 0) mm"},
+      {"E = 'own.h5:displacement'", "`displacement` is in m, here a value in Pa is needed"},
+      {"nu = 'own.h5:displacement'", "`displacement` is in m, here a value in 1 is needed"}};
+  write_text(w, "own.nml", GRADED("E = '30 GPa'", ""));
+  write_text(w, "field.csv", "x, y, E [GPa], rho [kg/m^3]\n0, 0, 30, -1\n");
+  assert_int_equal(shell(w, "\"$P\" run own.nml"), 0);
+  for (size_t k = 0; k < sizeof slips / sizeof *slips; k++) {
+    char text[4096];
+    snprintf(text, sizeof text, GRADED("%s", ""), slips[k].given);
+    write_text(w, "slip.nml", text);
+    assert_int_equal(shell(w, "\"$P\" check slip.nml"), 1);
+    if (!strstr(w->said, slips[k].said)) fail_msg("expected `%s` in\n%s", slips[k].said, w->said);
+  }
+  assert_int_equal(shell(w, "\"$P\" info lps --set \"E='field.csv:E'\""), 1);
+  assert_non_null(strstr(w->said, "no particles here that a file could have values for"));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(a_solver_knows_formulas, set_up_workplace,
@@ -215,6 +284,10 @@ int main(void) {
       cmocka_unit_test_setup_teardown(rotations_in_space_go_on, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(a_table_goes_along, set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(parameters_come_from_a_result_or_a_table, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(slips_of_files_are_told_at_the_deck, set_up_workplace,
+                                      tear_down_workplace),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* The example with three lattices and three laws in one run: the figures that its page prints, its
-   picture, and a stop on the way. */
+/* Pulses along bars in one run of the example's decks: three lattices with three laws, and a chain
+   with a joint. The figures that its page prints, and its picture. */
 #define _GNU_SOURCE
 #include <math.h>
 #include <setjmp.h>
@@ -57,8 +57,52 @@ static void pulses_travel_along_three_bars(void **state) {
   expect(w, "compare three.h5 three.h5", 0, "none differs");
 }
 
+/* Highest and lowest of what a station sees, from a time on. */
+static void extremes_of(result_file *f, const char *name, double from, double *low, double *high) {
+  long count;
+  double *time = series_of(f, "time", &count), *v = series_of(f, name, &count);
+  *low = *high = 0;
+  for (long k = 0; k < count; k++) {
+    if (time[k] < from) continue;
+    *low = fmin(*low, v[k]);
+    *high = fmax(*high, v[k]);
+  }
+  free(time);
+  free(v);
+}
+
+static void a_pulse_meets_a_joint(void **state) {
+  workplace *w = *state;
+  static const struct {
+    const char *glue;
+    double on, back_low, back_high; /* over the incident peak, as printed */
+  } printed[] = {{"30 GPa", 0.3226, -0.6774, 0.0030},
+                 {"0.3 GPa", 0.1701, -0.6944, 0.5082},
+                 {"0.03 GPa", 0.0279, -0.1476, 0.9256}};
+  char error[512], command[512];
+  for (int k = 0; k < 3; k++) {
+    double none, incident, on, low, high;
+    snprintf(command, sizeof command,
+             "run '" SOURCE_DIR "/examples/wave_in_a_bar/joint.nml' --set 'material[3].E=%s'",
+             printed[k].glue);
+    expect(w, command, 0, "1 bond as `bar.concrete-steel`");
+    result_file *f = result_read(in_workplace(w, "joint.h5"), error, sizeof error);
+    if (!f) fail_msg("%s", error);
+    extremes_of(f, "before", 0, &none, &incident); /* no echo is higher */
+    extremes_of(f, "before", 0.4e-3, &low, &high);
+    extremes_of(f, "behind", 0, &none, &on);
+    print_message("glue of %s: %.4f on, %.4f and %.4f back\n", printed[k].glue, on / incident,
+                  low / incident, high / incident);
+    assert_true(fabs(on / incident - printed[k].on) < 1e-4);
+    assert_true(fabs(low / incident - printed[k].back_low) < 1e-4);
+    assert_true(fabs(high / incident - printed[k].back_high) < 1e-4);
+    result_read_close(f);
+  }
+}
+
 int main(void) {
 #define ONE(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
-  const struct CMUnitTest tests[] = {ONE(pulses_travel_along_three_bars)};
+  const struct CMUnitTest tests[] = {ONE(pulses_travel_along_three_bars),
+                                     ONE(a_pulse_meets_a_joint)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -32,8 +32,8 @@
         "&body lattice = 'l' shape = 'sphere' centre = 3*0 radius = '16 mm' /\n"                   \
         "&region name = 'a' shape = 'box' corner = 0, -1, -1 size = 1, 2, 2 /\n"
 #define HALVES                                                                                     \
-  "&region name = 'a' shape = 'rectangle' corner = 0, -1 size = 1, 2 /\n"                          \
-  "&region name = 'b' shape = 'rectangle' corner = -1, -1 size = '0.999 m', 2 /\n"
+  "&region name = 'a' lattice = 'l' shape = 'rectangle' corner = 0, -1 size = 1, 2 /\n"            \
+  "&region name = 'b' lattice = 'l' shape = 'rectangle' corner = -1, -1 size = '0.999 m', 2 /\n"
 #define WHOLE(model)  "&material lattice = 'l' model = '" model "' /\n"
 #define RIGHT(model)  "&material lattice = 'l' region = 'a' model = '" model "' /\n"
 #define COPY(model)   RIGHT(SOURCE_DIR "/models/" model ".plm")
@@ -173,6 +173,32 @@ static void forces_are_slopes_of_the_energy(void **state) {
   check_slope(DISC("hexagonal", "") WHOLE("elastic_micropolar") RIGHT("mplm_bilinear")
                   ACROSS("mplm_linear"),
               5e-9);
+}
+
+/* --- masses ----------------------------------------------------------------------------------- */
+
+/* Each particle has the density of its own law, whose bonds read its mass where they ask for it. */
+static void check_masses(const char *text) {
+  deck_case c;
+  open_text(&c, text);
+  const sweep *w = simulation_state(c.simulation, 0);
+  const rows *g = w->body->lattice;
+  for (long p = 0; p < g->particle_count; p++) {
+    const long site = g->particle_site[p];
+    const double V = g->site_volume ? g->site_volume[site] : g->volume,
+                 m = (g->x[site] > -1e-9 ? 7850 : 2300) * V;
+    assert_true(fabs(body_mass(w->body, 0, site) / m - 1) < 1e-14);
+  }
+  deck_case_close(&c);
+}
+
+static void particles_have_the_mass_of_their_law(void **state) {
+  (void)state;
+#define LIGHT(model) "&material lattice = 'l' model = '" model "' rho = 2300 /\n"
+#define HEAVY(model) "&material lattice = 'l' region = 'a' model = '" model "' rho = 7850 /\n"
+  check_masses(DISC("square", "horizon = 2.015") LIGHT("lps") HEAVY("pmb"));
+  check_masses(DISC("blue_noise", "") LIGHT("lps") HEAVY("splm_elastic"));
+  check_masses(DISC("hexagonal", "") LIGHT("mplm_bilinear") HEAVY("elastic_micropolar"));
 }
 
 /* --- the stable step -------------------------------------------------------------------------- */
@@ -371,6 +397,11 @@ static void slips_are_told_at_their_line(void **state) {
                                 "&material lattice = 'l' between = 'a', 'c' model = "
                                 "'elastic_central' /\n",
        "no bond joins `a` with `c`", "between = 'a', 'c'"},
+      {WHOLE("elastic_central") ACROSS("elastic_central") "&region name = 'c' shape = 'rectangle' "
+                                                          "corner = -1, -1 size = 1, 1 /\n"
+                                                          "&material lattice = 'l' between = 'a', "
+                                                          "'c' model = 'elastic_central' /\n",
+       "has two materials: it joins other regions, too", "between = 'a', 'c'"},
       {WHOLE("elastic_micropolar") "&region name = 'c' shape = 'point' at = 0, 0 /\n"
                                    "&material lattice = 'l' region = 'c' model = 'mplm_linear' /\n",
        "no bond has both ends in the region `c`", "region = 'c'"},
@@ -399,6 +430,7 @@ int main(void) {
       cmocka_unit_test(two_copies_of_a_law_are_the_law),
       cmocka_unit_test(a_bond_has_the_law_of_both_ends_or_none),
       cmocka_unit_test(forces_are_slopes_of_the_energy),
+      cmocka_unit_test(particles_have_the_mass_of_their_law),
       cmocka_unit_test(the_step_is_that_of_both),
       cmocka_unit_test(threads_and_a_resume_give_the_same_bits),
       ONE(a_weak_plane_breaks),

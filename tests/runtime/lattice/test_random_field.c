@@ -291,7 +291,7 @@ static void sample_read(sample *s, const char *text, pl_law law) {
   assert_true(material_parameters(&r->deck->materials[0], &law, r->parameters, &r->said));
   s->lattice = lattice_build(r->deck, 0, &r->said);
   s->bonds = rows_bonds(s->lattice);
-  s->fields = parameter_planes_new(r->deck, 0, &r->deck->materials[0], s->lattice, &law,
+  s->fields = parameter_planes_new(r->deck, 0, &r->deck->materials[0], s->lattice, NULL, &law,
                                    r->parameters, NULL, 0, &r->said);
 }
 

@@ -12,6 +12,7 @@
   " /\n"                                                                                           \
   "&monitor name = 'w6' kind = 'acceleration' component = 'x' at = 0.04, 0.02 /\n"                 \
   "&monitor name = 'w7' kind = 'force' at = 0.03, 0 normal = 1, 0.1 average = " mean " /\n"        \
+  "&monitor name = 'v3' kind = 'moment' at = 0.03, 0.01 normal = 1, 0.1 average = " mean " /\n"    \
   "&monitor name = 'w8' kind = 'stress' region = 'mid' component = 'xy' average = " mean " /\n"    \
   "&monitor name = 'w9' kind = 'strain' region = 'mid' component = 'xx' average = " mean " /\n"    \
   "&monitor name = 'v1' kind = 'tip' at = 0.1, 0 direction = -1, 0.1 above = 0.1 average = " mean  \
