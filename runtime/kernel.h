@@ -52,6 +52,8 @@
 #define PL_HAS(record, member)                                                                     \
   ((uint32_t)((const char *)(&(record)->member + 1) - (const char *)(record)) <= (record)->size)
 
+/* What a law loses: to states and damage; to rate terms. */
+enum pl_loss { PL_LOST_TO_STATES = 0, PL_LOST_TO_RATES = 1, PL_LOSSES = 2 };
 enum pl_law_kind { PL_CENTRAL = 0, PL_MICROPOLAR = 1, PL_STATE = 2 };
 enum pl_field_kind { PL_FIELD_STATE = 0, PL_FIELD_DAMAGE = 1, PL_FIELD_OUTPUT = 2 };
 /* Where a field lives: one value a bond; one a particle; one for each neighbour of a particle. */
@@ -247,6 +249,9 @@ typedef struct pl_family {
   const uint64_t *const *old_filled; /* [field_count] of old_field */
   uint64_t *const *new_filled;       /* [field_count] of new_field; written with it */
   uint64_t *const *settled;          /* [field_count] read, and written with new_field */
+  /* Of `ledger`: [count] J, added to: what the particle's halves of its bonds lose in this step.
+     Where there is no particle, or one without bonds, it means nothing. */
+  double *lost[PL_LOSSES];
 } pl_family;
 
 /* uniforms: rows: [neighbours][uniform_count], as `prepare` wrote them for the bond class of each
@@ -336,6 +341,11 @@ typedef struct pl_law {
   pl_program observe;
 
   const void *context; /* the interpreter's; NULL in compiled kernels */
+
+  /* Of laws of families that store energy and may lose some: in place of `step` the same forces and
+     fields, to the bit, and pl_family.lost. No passes: it has neither states nor rate terms, or what they
+     take is not known. A body is run with one of the two. */
+  pl_program ledger;
 } pl_law;
 
 /* The one symbol that a compiled kernel exports. */

@@ -11,6 +11,11 @@ static const family_index in_loops = {.first = " + first",
                                       .owner = "owner"};
 
 void family_loops_declare(emitter *e, ir_node n) {
+  if (expression_is_ends_input(e, n, ENDS_TIME_STEP)) {
+    say(e, SAY_DECLARE, e->scope->before, spell(e, SAY_VALUE), e->name[n],
+        spell(e, SAY_FAMILY_TIME_STEP));
+    return;
+  }
   say(e, SAY_DECLARE, e->scope->before,
       spell(e, family_is_protection(e, n) ? SAY_READ_BITS : SAY_READ),
       spell(e, SAY_INPUT_ARRAY, e->name[n]), family_input_array(e, n, &in_loops));

@@ -39,7 +39,9 @@ static void store_sum(emitter *e, const segment_root *r, const char *to, bool in
 
 void family_store(emitter *e, const segment_root *r, const char *to, bool in_register) {
   const word extreme = r->target == TO_LARGEST ? SAY_LARGER : SAY_SMALLER;
-  if (r->target == TO_SUM)
+  if (r->target == TO_DISSIPATED_STATE || r->target == TO_DISSIPATED_RATE)
+    say(e, SAY_ADD, "        ", to, expression_value(e, r->node));
+  else if (r->target == TO_SUM)
     store_sum(e, r, to, in_register);
   else if (family_root_is_reduction(r))
     store_if_present(e, r, SAY_STORE, to, spell(e, extreme, to, expression_value(e, r->node)), to);

@@ -58,6 +58,9 @@ static void write_uniforms(emitter *e) {
   unrolled *u = e->form;
   const char *neighbour = numeral(e, u->neighbour < 0 ? 0 : u->neighbour);
   for (ir_node n = 0; n < e->node_count; n++) {
+    if (e->needed[n] && expression_is_ends_input(e, n, ENDS_TIME_STEP))
+      say(e, SAY_LINE, "        ", e->name[n], spell(e, SAY_FAMILY_TIME_STEP),
+          spell(e, SAY_LINE_END));
     if (!e->needed[n] || ir_operation(e->graph, n) == IR_CONSTANT || !expression_is_uniform(e, n))
       continue;
     const char *value = spell(e, SAY_UNIFORM_OF, numeral(e, e->uniform_of[n]), neighbour);

@@ -20,6 +20,31 @@ static int chunk_of(const program_pass *p) {
   return chunk;
 }
 
+/* Fields that have marks, or have none. */
+static int fields_with(const emitter *e, bool marks) {
+  int count = 0;
+  for (int f = 0; f < e->plan->law->fields.count; f++)
+    count += program_pairs_field(&e->plan->programs[PROGRAM_STEP], f) == marks;
+  return count;
+}
+
+/* What of a chunk's fields has changed in the step; by their marks where they have such. */
+static void write_changes(emitter *e) {
+  const kernel_plan *p = e->plan;
+  if (!p->loses_by_own_fields) return;
+  if (fields_with(e, true)) say(e, SAY_CHANGED_MARKS);
+  if (fields_with(e, false)) say(e, SAY_CHANGED_PLANE);
+  say(e, SAY_CHANGES_BEGIN);
+  for (int f = 0; f < p->law->fields.count; f++) {
+    const bool on_particle = p->law->fields.items[f]->place <= ON_PARTICLE;
+    if (program_pairs_field(&p->programs[PROGRAM_STEP], f))
+      say(e, SAY_CHANGES_OF_MARKS, numeral(e, f));
+    else
+      say(e, SAY_CHANGES_OF_PLANES, numeral(e, f), on_particle ? "1" : "family->neighbours");
+  }
+  say(e, SAY_CHANGES_END);
+}
+
 /* Particles and neighbours by loops: chunk by chunk, segment after segment. */
 static void write_loops(emitter *e, const program_pass *p) {
   static void (*const forms[])(emitter *,
@@ -37,8 +62,11 @@ static void write_loops(emitter *e, const program_pass *p) {
     say(e, SAY_KEEP_PLANE, numeral(e, k));
   say(e, rows ? SAY_OVER_ROWS : SAY_ONE_RUN);
   say(e, SAY_OVER_CHUNKS);
+  const bool seldom = p == e->plan->programs[PROGRAM_LEDGER].passes && e->plan->loses_by_own_fields;
+  if (seldom) say(e, SAY_IF_FIELDS_CHANGED);
   for (int k = 0; k < p->segment_count; k++)
     forms[p->segments[k].kind](e, &p->segments[k]);
+  if (seldom) say(e, SAY_END, "    ");
   say(e, SAY_END, "  ");
   if (rows) say(e, SAY_END, "  ");
 }
@@ -57,16 +85,28 @@ static void write_pass(emitter *e, const kernel_program *q, int number) {
   kernel_function_end(&e->parts, e->out);
 }
 
-static void write_program(emitter *e, const kernel_program *q) {
-  const char *passes = NULL, *shared = NULL;
+typedef struct program_tables {
+  const char *passes, *shared;
+} program_tables;
+
+static void list_passes(emitter *e, const kernel_program *q, program_tables *t) {
   for (int k = 0; k < q->pass_count; k++) {
-    write_pass(e, q, k);
-    passes = words_join(e->memory, passes, ", ", pass_name(e, q, k));
-    shared = words_join(
-        e->memory, shared, ", ",
+    t->passes = words_join(e->memory, t->passes, ", ", pass_name(e, q, k));
+    t->shared = words_join(
+        e->memory, t->shared, ", ",
         arena_printf(e->memory, "UINT64_C(%" PRIu64 ")", program_shared_by(&q->passes[k])));
   }
-  say(e, SAY_PROGRAM_TABLES, q->name, passes, shared);
+}
+
+/* `after` NULL: none. */
+static void write_program(emitter *e, const char *name, const kernel_program *q,
+                          const kernel_program *after) {
+  program_tables t = {NULL, NULL};
+  if (after) list_passes(e, after, &t);
+  for (int k = 0; k < q->pass_count; k++)
+    write_pass(e, q, k);
+  list_passes(e, q, &t);
+  say(e, SAY_PROGRAM_TABLES, name, t.passes, t.shared);
 }
 
 static void write_strips(emitter *e) {
@@ -83,6 +123,12 @@ void programs_functions(emitter *e) {
   }
   say(e, SAY_UNIFORM_COUNT, numeral(e, e->plan->uniform_count));
   family_pairs_functions(e);
-  write_program(e, &e->plan->programs[PROGRAM_STEP]);
-  write_program(e, &e->plan->programs[PROGRAM_OBSERVE]);
+  const kernel_program *p = e->plan->programs, *step = &p[PROGRAM_STEP],
+                       *losses = &p[PROGRAM_LEDGER];
+  write_program(e, step->name, step, NULL);
+  if (losses->pass_count) {
+    write_changes(e);
+    write_program(e, "ledger", losses, step);
+  }
+  write_program(e, p[PROGRAM_OBSERVE].name, &p[PROGRAM_OBSERVE], NULL);
 }

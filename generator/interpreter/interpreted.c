@@ -98,22 +98,17 @@ static void run_family(const pl_law *kernel, const double *uniforms, const pl_fa
 
 /* One function for each pass that a program may have. */
 #define PASS_NUMBERS(X) X(0) X(1) X(2) X(3) X(4) X(5) X(6) X(7)
-#define X(n)                                                                                       \
-  static void run_step_##n(const pl_law *k, const double *u, const pl_family *f) {                 \
-    run_family(k, u, f, PROGRAM_STEP, n);                                                          \
-  }                                                                                                \
-  static void run_observe_##n(const pl_law *k, const double *u, const pl_family *f) {              \
-    run_family(k, u, f, PROGRAM_OBSERVE, n);                                                       \
+#define RUN(name, task, n)                                                                         \
+  static void run_##name##_##n(const pl_law *k, const double *u, const pl_family *f) {             \
+    run_family(k, u, f, task, n);                                                                  \
   }
+#define X(n) RUN(step, PROGRAM_STEP, n) RUN(losses, PROGRAM_LEDGER, n) RUN(observe, PROGRAM_OBSERVE, n)
 PASS_NUMBERS(X)
 #undef X
-static const pl_family_function step_passes[PLAN_MOST_PASSES] = {
-#define X(n) run_step_##n,
-    PASS_NUMBERS(X)
-#undef X
-};
-static const pl_family_function observe_passes[PLAN_MOST_PASSES] = {
-#define X(n) run_observe_##n,
+static const pl_family_function passes_of[PROGRAM_OBSERVE + 1][PLAN_MOST_PASSES] = {
+#define X(n)                                                                                       \
+  [PROGRAM_STEP][n] = run_step_##n, [PROGRAM_LEDGER][n] = run_losses_##n,                                  \
+  [PROGRAM_OBSERVE][n] = run_observe_##n,
     PASS_NUMBERS(X)
 #undef X
 };
@@ -175,6 +170,19 @@ static pl_program program_facts(arena *memory, const ir *g, const kernel_program
                       .shared = shared};
 }
 
+/* The passes of a step, then those of its losses. */
+static pl_program ledger_facts(arena *memory, const kernel_plan *plan) {
+  const kernel_program *step = &plan->programs[PROGRAM_STEP],
+                       *losses = &plan->programs[PROGRAM_LEDGER];
+  const kernel_program ledger = program_joined(memory, "ledger", step, losses);
+  pl_family_function *passes =
+      arena_alloc(memory, ((size_t)ledger.pass_count + 1) * sizeof *passes);
+  for (int k = 0; k < ledger.pass_count; k++)
+    passes[k] = k < step->pass_count ? passes_of[PROGRAM_STEP][k]
+                                     : passes_of[PROGRAM_LEDGER][k - step->pass_count];
+  return program_facts(memory, plan->graph, &ledger, passes);
+}
+
 static void describe_strips(interpreted *p) {
 #define X(task, member) p->law.member = run_##member;
   STRIP_PROGRAMS(X)
@@ -187,19 +195,22 @@ static void describe_strips(interpreted *p) {
 
 static void describe_families(interpreted *p) {
   const kernel_plan *plan = p->plan;
+  const kernel_program *programs = plan->programs;
   const law *l = plan->law;
   p->law.link_count = plan->links.of_particles;
   p->law.bond_link_count = plan->links.of_bonds;
-  p->law.sum_count = program_sum_count(&plan->programs[PROGRAM_STEP]);
+  p->law.sum_count = program_sum_count(&programs[PROGRAM_STEP]);
   p->law.reads_shape = plan->reads_shape;
   p->law.reads_share = plan->reads_share;
   p->law.reads_mass = plan->reads_mass;
   p->law.varying_place = l->tree->law == LAW_STATE ? PL_ON_PARTICLE : PL_ON_BOND;
   p->law.pairwise = l->tree->law != LAW_STATE;
   p->law.topology = l->irregular ? PL_LIST : PL_ROWS;
-  p->law.step = program_facts(p->memory, plan->graph, &plan->programs[PROGRAM_STEP], step_passes);
+  p->law.step =
+      program_facts(p->memory, plan->graph, &programs[PROGRAM_STEP], passes_of[PROGRAM_STEP]);
   p->law.observe =
-      program_facts(p->memory, plan->graph, &plan->programs[PROGRAM_OBSERVE], observe_passes);
+      program_facts(p->memory, plan->graph, &programs[PROGRAM_OBSERVE], passes_of[PROGRAM_OBSERVE]);
+  if (programs[PROGRAM_LEDGER].pass_count) p->law.ledger = ledger_facts(p->memory, plan);
 }
 
 static void describe(interpreted *p) {

@@ -166,6 +166,9 @@ static double *target_of(runner *r, const segment_root *root, const pl_family *f
     return f->new_field[root->index] + first + (own ? 0 : k * f->new_plane);
   case TO_FORCE:
     return f->force[root->index] + first;
+  case TO_DISSIPATED_STATE:
+  case TO_DISSIPATED_RATE:
+    return f->lost[root->index] + first;
   case TO_OBSERVED:
     return f->observed[root->index] + first + (own ? 0 : k * f->new_plane);
   case TO_PLANE:
@@ -195,6 +198,10 @@ static void store(runner *r, const segment_root *root, const double *value, cons
         to[q] = present ? pl_fma(value[q], factor[q], to[q]) : to[q];
       else
         to[q] += present ? value[q] : 0;
+      break;
+    case TO_DISSIPATED_STATE:
+    case TO_DISSIPATED_RATE:
+      to[q] += value[q];
       break;
     case TO_LARGEST:
       to[q] = present ? pl_max(to[q], value[q]) : to[q];

@@ -26,7 +26,7 @@ typedef struct body {
   double **parameter; /* [varying][SIZE], on bonds as many for each neighbour */
   double *share;      /* [SIZE] */
   double **before;    /* [fields] */
-  double **after[2], **link[2], **bond_link[2], **force[2], **observed[2], **sum[2];
+  double **after[2], **link[2], **bond_link[2], **force[2], **observed[2], **lost[2], **sum[2];
   uint64_t **marks[MARKS];                     /* [fields][SIZE] as in pl_family */
   uint64_t *bonds, *incoming, *held, *unusual; /* [SIZE] */
   long offset[2 * PL_MAX_DIRECTIONS];          /* rows */
@@ -90,6 +90,7 @@ static body body_new(const pl_law *law, int neighbours) {
     b.bond_link[side] = planes_new(law->bond_link_count, (long)neighbours * SIZE);
     b.force[side] = planes_new(law->dof, SIZE);
     b.observed[side] = observed_new(&b);
+    b.lost[side] = planes_new(PL_LOSSES, SIZE);
     b.sum[side] = planes_new(law->sum_count, SIZE);
   }
   for (int k = 0; k < MARKS; k++)
@@ -117,6 +118,7 @@ static void body_free(body *b) {
     planes_free(b->bond_link[side], b->law->bond_link_count);
     planes_free(b->force[side], b->law->dof);
     planes_free(b->observed[side], 1 + b->law->output_count);
+    planes_free(b->lost[side], PL_LOSSES);
     planes_free(b->sum[side], b->law->sum_count);
   }
   for (int k = 0; k < MARKS; k++) {
@@ -311,6 +313,12 @@ static bool has_bond(const body *b, int k, long q) {
   return k < half ? b->bonds[q] >> k & 1 : b->bonds[q + b->offset[k]] >> (k - half) & 1;
 }
 
+static bool has_any_bond(const body *b, long q) {
+  for (int k = 0; k < b->neighbours; k++)
+    if (has_bond(b, k, q)) return true;
+  return false;
+}
+
 /* --- the programs ----------------------------------------------------------------------------- */
 
 static void poison_values(double *const *v, const body *b, const pl_field *fields, int count) {
@@ -331,10 +339,16 @@ static void settle_pieces(const body *b, int side) {
   }
 }
 
+static void planes_clear(double **planes, int count) {
+  for (int k = 0; k < count; k++)
+    memset(planes[k], 0, SIZE * sizeof **planes);
+}
+
 static void poison(const body *b, int side) {
   poison_values(b->after[side], b, b->law->fields, b->law->field_count);
   settle_pieces(b, side);
   planes_poison(b->force[side], b->law->dof, SIZE);
+  planes_clear(b->lost[side], PL_LOSSES);
   planes_poison(b->observed[side], 1, SIZE);
   poison_values(b->observed[side] + 1, b, b->law->outputs, b->law->output_count);
 }
@@ -409,7 +423,8 @@ static void run_part(const law_readers *l, const body *b, int side, pl_family_fu
                  .unusual = b->unusual + site / PL_LANES,
                  .share = b->share + site,
                  .mass = b->particle[1] + site,
-                 .time_step = 1.7e-7};
+                 .time_step = 1.7e-7,
+                 .lost = {b->lost[side][0] + site, b->lost[side][1] + site}};
   f.shape = (const double *const *)from_site(&s, b->shape, PL_SHAPE_PLANES(law->dimensions), site);
   f.old_field = (const double *const *)from_site(&s, b->before, law->field_count, site);
   f.parameter = (const double *const *)from_site(&s, b->parameter, law->varying_count, site);
@@ -427,8 +442,7 @@ static void run_part(const law_readers *l, const body *b, int side, pl_family_fu
 }
 
 static void clear_sums(const body *b, int side) {
-  for (int s = 0; s < b->law->sum_count; s++)
-    memset(b->sum[side][s], 0, SIZE * sizeof(double));
+  planes_clear(b->sum[side], b->law->sum_count);
 }
 
 /* Bonds of the sites before reach the others: their fields are written as another thread would,
@@ -439,8 +453,12 @@ static void run_before(const law_readers *l, const body *b, int side, pl_family_
   run_part(l, b, side, pass, -REACH, REACH, true);
 }
 
+const pl_program *kernel_check_step(const pl_law *law) {
+  return law->ledger.pass_count ? &law->ledger : &law->step;
+}
+
 static void run_program(const law_readers *l, const body *b, int side, bool observe) {
-  const pl_program *p = observe ? &l->law[side]->observe : &l->law[side]->step;
+  const pl_program *p = observe ? &l->law[side]->observe : kernel_check_step(l->law[side]);
   poison(b, side);
   for (int k = 0; k < p->pass_count; k++) {
     if (b->law->sum_count && !observe) run_before(l, b, side, p->pass[k]);
@@ -471,6 +489,20 @@ static void compare_links(comparison *c, const body *b, const char *program) {
                    (long)b->neighbours * SIZE);
 }
 
+/* Particles without bonds lose nothing, whatever a law says that divides by what a family has. */
+static void clear_lonely(const body *b, double *lost) {
+  for (long q = MARGIN; q < MARGIN + SITES; q++)
+    if (!has_any_bond(b, q)) lost[q] = 0;
+}
+
+static void compare_losses(comparison *c, const body *b) {
+  for (int k = 0; k < PL_LOSSES && b->law->ledger.pass_count; k++) {
+    clear_lonely(b, b->lost[0][k]);
+    clear_lonely(b, b->lost[1][k]);
+    comparison_add(c, "ledger", "lost", k, b->lost[0][k] + MARGIN, b->lost[1][k] + MARGIN, SITES);
+  }
+}
+
 static void compare_step(comparison *c, const body *b) {
   const pl_law *law = b->law;
   compare_links(c, b, "step");
@@ -478,6 +510,7 @@ static void compare_step(comparison *c, const body *b) {
     compare_values(c, b, "step", &law->fields[f], b->after[0][f], b->after[1][f]);
   for (int d = 0; d < law->dof; d++)
     comparison_add(c, "step", "force", d, b->force[0][d] + MARGIN, b->force[1][d] + MARGIN, SITES);
+  compare_losses(c, b);
 }
 
 static void compare_observe(comparison *c, const body *b) {
@@ -525,9 +558,7 @@ static long changed_where_held(const body *b, int field) {
 static long loaded_without_bonds(const body *b) {
   long count = 0;
   for (long q = MARGIN; q < MARGIN + SITES; q++) {
-    bool any = false;
-    for (int k = 0; k < b->neighbours && !any; k++)
-      any = has_bond(b, k, q);
+    const bool any = has_any_bond(b, q);
     for (int d = 0; d < b->law->dof; d++)
       count += !any && b->force[0][d][q] != 0;
   }

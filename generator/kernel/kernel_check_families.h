@@ -11,4 +11,7 @@
    they take at a time. */
 long kernel_check_families(const law_readers *l, long wanted, uint64_t *seed, comparison *c);
 
+/* The program that is run as the step: with what is lost in it where the law says that. */
+const pl_program *kernel_check_step(const pl_law *law);
+
 #endif

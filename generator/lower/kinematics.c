@@ -126,11 +126,12 @@ static void find_end_rotations(ir *g, ir_node s, ir_node per_length, const chord
   *theta_j = end_rotation(g, m, small, j, of_chord, "theta_j");
 }
 
-static void rotation_rates(ir *g, bond_kinematics *k, vector e, vector dv) {
-  ir_node chord_rate = ir_mul(g, cross(g, e, dv), k->per_length);
+static void rates_against_chord(ir *g, vector e, vector dv, ir_node per_length, ir_node *of_i,
+                                ir_node *of_j) {
+  ir_node chord_rate = ir_mul(g, cross(g, e, dv), per_length);
   named(g, chord_rate, "chord_rotation_rate");
-  k->theta_rate_i = ir_sub(g, kinematics_input(g, ENDS_OMEGA_I), chord_rate);
-  k->theta_rate_j = ir_sub(g, kinematics_input(g, ENDS_OMEGA_J), chord_rate);
+  *of_i = ir_sub(g, kinematics_input(g, ENDS_OMEGA_I), chord_rate);
+  *of_j = ir_sub(g, kinematics_input(g, ENDS_OMEGA_J), chord_rate);
 }
 
 /* The stretch e/s with e = L - s: from L^2 - s^2 = 2 s e + e^2 follows e = (L^2 - s^2 - e^2)/(2 s).
@@ -215,7 +216,7 @@ bond_kinematics kinematics_bond(ir *g, bool rotations, bool twists) {
   k.twist = k.twist_rate = IR_NONE;
   if (rotations) {
     find_end_rotations(g, k.s, k.per_length, &m, &k.theta_i, &k.theta_j);
-    rotation_rates(g, &k, e, dv);
+    rates_against_chord(g, e, dv, k.per_length, &k.theta_rate_i, &k.theta_rate_j);
   }
   if (twists) {
     ir_node i = kinematics_input(g, ENDS_PHI_IX), j = kinematics_input(g, ENDS_PHI_JX);
@@ -292,13 +293,16 @@ static void find_stretch_near(ir *g, family_kinematics *k, int dimensions, ir_no
 }
 
 /* With `near` as of strips. */
-static void rotations_in_plane(ir *g, family_kinematics *k, ir_node s, bool near) {
+static void rotations_in_plane(ir *g, family_kinematics *k, ir_node s, bool near,
+                               const ir_node *dv) {
   chord_motion m = {.chord = {k->reference_chord[0], k->reference_chord[1]},
                     .d = {k->d[0], k->d[1]},
                     .now = {k->chord[0], k->chord[1]},
                     .near = IR_NONE};
   if (near) m.near = is_near(g, s, dot(g, m.d, m.d));
   find_end_rotations(g, s, k->per_length, &m, &k->theta_i, &k->theta_j);
+  rates_against_chord(g, (vector){k->now[0], k->now[1]}, (vector){dv[0], dv[1]}, k->per_length,
+                      &k->theta_rate[0], &k->theta_rate[1]);
 }
 
 /* Both ends compute the same bits: exchanging them changes signs only. */
@@ -329,7 +333,7 @@ family_kinematics kinematics_family(ir *g, int dimensions, bool rotations, bool 
     k.now[c] = named(g, ir_mul(g, k.chord[c], k.per_length), e_names[c]);
   ir_node rate = dot_of(g, dimensions, k.now, dv);
   k.stretch_rate = named(g, ir_mul(g, rate, per_s), "stretch_rate");
-  if (rotations) rotations_in_plane(g, &k, s, near);
+  if (rotations) rotations_in_plane(g, &k, s, near, dv);
   return k;
 }
 

@@ -127,6 +127,7 @@ typedef struct family_kinematics {
   ir_node reference_chord[3];
   ir_node d[3];             /* relative displacement, m */
   ir_node theta_i, theta_j; /* rad, with rotations in the plane */
+  ir_node theta_rate[2];    /* rad/s, of end i and j */
 } family_kinematics;
 family_kinematics kinematics_family(ir *g, int dimensions, bool rotations, bool near);
 

@@ -16,7 +16,9 @@
 
 typedef enum program_task {
   PROGRAM_STEP,    /* forces and new fields */
-  PROGRAM_LEDGER,  /* the same, and the energies that are lost */
+  /* The same, and the energies that are lost; of families the latter: passes that follow those of a
+     step. */
+  PROGRAM_LEDGER,
   PROGRAM_OBSERVE, /* stored energy and outputs */
   PROGRAM_STATES,  /* a bond alone, state by state (pl_states) */
   PROGRAM_TANGENT, /* its derivatives */
@@ -66,6 +68,9 @@ typedef struct kernel_plan {
                         uniforms[k] and nothing before it */
   int uniform_count;
   double flops_per_bond, divisions_per_bond; /* of `step`, without what is hoisted */
+  /* Of families: what is lost follows from fields of the particle's own: nothing is where none has
+     changed. */
+  bool loses_by_own_fields;
   program_links links;
   bool reads_shape;         /* inverse shape matrices */
   bool reads_share;         /* shares of particles */

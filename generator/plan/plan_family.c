@@ -11,6 +11,7 @@
 #include "generator/lower/lower_energy.h"
 #include "generator/lower/lower_inputs.h"
 #include "generator/plan/particle_parts.h"
+#include "generator/plan/plan_losses.h"
 #include "generator/plan/plan_roots.h"
 
 typedef struct family_planner {
@@ -21,8 +22,18 @@ typedef struct family_planner {
 
 /* Stand for the motion until it is known: components of the present direction; 1/length and chord,
    of which it is the product (where forces act along reference directions: of the reference
-   bond); what end_rotations.h has of a bond in space. */
-enum { DIRECTION, PER_LENGTH = 3, CHORD, BENT = 7, ALONG = 11, TURN, PRESENT_COUNT = TURN + 3 };
+   bond); what end_rotations.h has of a bond in space; how quickly the ends of one in the plane turn
+   against it. */
+enum {
+  DIRECTION,
+  PER_LENGTH = 3,
+  CHORD,
+  BENT = 7,
+  ALONG = 11,
+  TURN,
+  TURNING = TURN + 3,
+  PRESENT_COUNT = TURNING + 2
+};
 
 static ir_node present(ir *g, int which) {
   return ir_input(g, IR_FROM_QUANTITY, QUANTITY_COUNT + 2 * BENDING_AXES + which, "e", ON_BOND);
@@ -168,6 +179,21 @@ static segment observe_roots(family_planner *p) {
   return r;
 }
 
+/* What is lost in the step with these roots; empty where nothing can be, or it is not known. */
+static segment loss_roots(family_planner *p, const law_energy *of, const segment *step) {
+  const int fields = p->plan->law->fields.count;
+  const bool loses = fields > 0 || p->plan->reads_rates;
+  ir_node lost[PL_LOSSES], *new_fields = must_alloc(((size_t)fields + 1) * sizeof *new_fields);
+  segment r = {.root_count = 0};
+  for (int k = 0; k < fields; k++)
+    new_fields[k] = step->roots[k].node;
+  if (p->plan->stores && loses && plan_losses(p->plan, of, new_fields, lost))
+    for (int k = 0; k < PL_LOSSES; k++)
+      plan_want(p->plan, &r, lost[k], TO_DISSIPATED_STATE + k, OVER_PARTICLES, k);
+  free(new_fields);
+  return r;
+}
+
 /* --- motion ----------------------------------------------------------------------------------- */
 
 enum { MOST_MOTION = 4 + PRESENT_COUNT + 2 * BENDING_AXES };
@@ -175,7 +201,9 @@ enum { MOST_MOTION = 4 + PRESENT_COUNT + 2 * BENDING_AXES };
 static int motion_in_plane(ir *g, const family_kinematics *k, ir_node *from, ir_node *to) {
   from[0] = lower_quantity(g, QUANTITY_THETA_I), to[0] = k->theta_i;
   from[1] = lower_quantity(g, QUANTITY_THETA_J), to[1] = k->theta_j;
-  return 2;
+  for (int end = 0; end < 2; end++)
+    from[2 + end] = present(g, TURNING + end), to[2 + end] = k->theta_rate[end];
+  return 4;
 }
 
 static int motion_in_space(const kernel_plan *plan, const family_kinematics *k, ir_node *from,
@@ -352,6 +380,13 @@ static bool reads(const kernel_plan *plan, bool (*wanted)(const ir *g, ir_node i
   return c.found;
 }
 
+static bool program_reads(const kernel_plan *plan, const kernel_program *q,
+                          bool (*wanted)(const ir *g, ir_node input)) {
+  input_search c = {.plan = plan, .wanted = wanted};
+  plan_visit_program(q, look_for_input, &c);
+  return c.found;
+}
+
 static bool is_shape(const ir *g, ir_node input) {
   return ir_input_source(g, input) == IR_FROM_SHAPE;
 }
@@ -379,6 +414,20 @@ static program_sharing sharing(const family_planner *p) {
   if (p->plan->form == FORM_PAIRS) return SHARE_PAIRS;
   if (p->plan->form == FORM_UNROLLED) return p->plan->dimensions == 2 ? SHARE_MOST : SHARE_MORE;
   return !l->irregular && (p->plan->dimensions == 2 || !on_bonds) ? SHARE_DEAR : SHARE_NOTHING;
+}
+
+static bool is_of_neighbours_fields(const ir *g, ir_node input) {
+  return ir_input_source(g, input) == IR_FROM_NEIGHBOUR_FIELD;
+}
+
+/* It computes new fields once more: seldom, where a pass can tell that none have changed. */
+static void build_losses(family_planner *p, const segment *r, const program_motion *motion) {
+  kernel_plan *plan = p->plan;
+  kernel_program *losses = &plan->programs[PROGRAM_LEDGER];
+  program_build(losses, "losses", p->g, plan->memory, r, motion, SHARE_NOTHING, &plan->links);
+  plan->loses_by_own_fields = losses->pass_count == 1 &&
+                              ir_is_number(p->g, r->roots[PL_LOST_TO_RATES].node, 0) &&
+                              !program_reads(plan, losses, is_of_neighbours_fields);
 }
 
 static bool reads_thickness(const family_planner *p) {
@@ -414,25 +463,35 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
     diag_hint(d, "say `for plane_stress` after `law state`, or give another value `when space`");
     return false;
   }
+  law_energy energy = {.frozen = &p.frozen,
+                       .stored = stored_energy(&p),
+                       .theta_rate = {IR_NONE, IR_NONE},
+                       .forces = plan_force_fields(plan, &p.step, &p.frozen)};
+  for (int end = 0; end < 2 && plan->rotations && plan->dimensions == 2; end++)
+    energy.theta_rate[end] = present(p.g, TURNING + end);
   share_reciprocals(&p);
   segment step = step_roots(&p), observe = observe_roots(&p);
   plan->reads_rates = plan_reads_rates(plan, &p.step);
   share_reciprocals_of_roots(p.g, &observe);
   rewrite_last(p.g, &step, &observe);
+  segment losses = loss_roots(&p, &energy, &step);
   program_motion motion = plan_motion(plan, p.step.along_reference);
   fuse_motion(plan, &motion);
   if (l->irregular || v->masses) {
     const program_motion each = l->irregular ? list_inputs(plan) : masses(plan);
     read_of_each(plan, &each, &step);
     read_of_each(plan, &each, &observe);
+    read_of_each(plan, &each, &losses);
     motion_of_each(plan, &each, &motion);
   }
   kernel_program *programs = plan->programs;
   program_build(&programs[PROGRAM_STEP], "step", p.g, plan->memory, &step, &motion, sharing(&p),
                 &plan->links);
+  if (losses.root_count) build_losses(&p, &losses, &motion);
   program_build(&programs[PROGRAM_OBSERVE], "observe", p.g, plan->memory, &observe, &motion,
                 SHARE_NOTHING, &plan->links);
   if (programs[PROGRAM_STEP].pass_count > PLAN_MOST_PASSES ||
+      programs[PROGRAM_LEDGER].pass_count > PLAN_MOST_PASSES ||
       programs[PROGRAM_OBSERVE].pass_count > PLAN_MOST_PASSES) {
     diag_report(d, DIAG_NOT_SUPPORTED, l->tree->law_where,
                 "values of neighbours of neighbours are needed more than %d deep in one step",

@@ -15,13 +15,15 @@ segment *plan_single(kernel_plan *p, program_task task, const char *name, segmen
   return a;
 }
 
+void plan_visit_program(const kernel_program *q, plan_visitor visit, void *context) {
+  for (int k = 0; k < q->pass_count; k++)
+    for (int s = 0; s < q->passes[k].segment_count; s++)
+      visit(context, &q->passes[k].segments[s]);
+}
+
 void plan_visit(const kernel_plan *p, plan_visitor visit, void *context) {
   for (int task = 0; task < PROGRAM_BOUNDS; task++)
-    for (int k = 0; k < p->programs[task].pass_count; k++) {
-      const program_pass *pass = &p->programs[task].passes[k];
-      for (int s = 0; s < pass->segment_count; s++)
-        visit(context, &pass->segments[s]);
-    }
+    plan_visit_program(&p->programs[task], visit, context);
 }
 
 bool plan_reads_rates(const kernel_plan *plan, const lowered_law *step) {

@@ -10,6 +10,7 @@ segment *plan_single(kernel_plan *p, program_task task, const char *name, segmen
 /* Every segment of the plan but that of bounds, in order. */
 typedef void (*plan_visitor)(void *context, const segment *a);
 void plan_visit(const kernel_plan *p, plan_visitor visit, void *context);
+void plan_visit_program(const kernel_program *q, plan_visitor visit, void *context);
 
 /* Whether forces or new fields depend on the stretch rate. */
 bool plan_reads_rates(const kernel_plan *p, const lowered_law *step);

@@ -1,8 +1,19 @@
 #include "generator/plan/program_facts.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "dsl/base/arena.h"
+
+kernel_program program_joined(arena *memory, const char *name, const kernel_program *first,
+                              const kernel_program *then) {
+  const size_t count = (size_t)(first->pass_count + then->pass_count);
+  kernel_program p = {.name = name, .pass_count = (int)count};
+  p.passes = arena_alloc(memory, (count + 1) * sizeof *p.passes);
+  memcpy(p.passes, first->passes, (size_t)first->pass_count * sizeof *p.passes);
+  memcpy(p.passes + first->pass_count, then->passes, (size_t)then->pass_count * sizeof *p.passes);
+  return p;
+}
 
 /* --- bonds that add to both ends -------------------------------------------------------------- */
 

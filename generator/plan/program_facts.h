@@ -2,6 +2,7 @@
 #ifndef PERILAT_GENERATOR_PROGRAM_FACTS_H
 #define PERILAT_GENERATOR_PROGRAM_FACTS_H
 
+#include "dsl/base/arena.h"
 #include "generator/plan/segment.h"
 
 /* pl_program.at_hand */
@@ -28,6 +29,9 @@ int program_constant_sums(const ir *g, const kernel_program *p, const segment *b
    later; NULL: none. Later segments may expect only what it has asked of the motion. */
 const segment *program_asks(const ir *g, const kernel_program *p);
 bool program_is_told(const ir *g, const kernel_program *p, const segment *a);
+/* The passes of one program, then those of another that has been built after it. */
+kernel_program program_joined(arena *memory, const char *name, const kernel_program *first,
+                              const kernel_program *then);
 /* Sums that one pass adds to far ends, the most. */
 int program_sum_count(const kernel_program *p);
 

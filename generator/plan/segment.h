@@ -30,8 +30,8 @@ static inline segment_kind segment_kind_at(placement on) {
 typedef enum segment_target {
   TO_FORCE,            /* force[index] = node */
   TO_FIELD,            /* field[index] = node, of families new_field */
-  TO_DISSIPATED_STATE, /* dissipated_state += node */
-  TO_DISSIPATED_RATE,  /* dissipated_rate += node */
+  TO_DISSIPATED_STATE, /* dissipated_state += node; of families lost[index] */
+  TO_DISSIPATED_RATE,  /* dissipated_rate += node; the same */
   TO_OBSERVED,         /* observed[index] = node */
   TO_OUT,              /* out[index] = node, behind these new_field: of single states */
   TO_LOWER,

@@ -160,6 +160,8 @@
   X(NEW_FIELD_TOWARD, "family->new_field[$1]$2 + $3*family->new_plane")                            \
   X(FORCE, "family->force[$1]$2")                                                                  \
   X(OBSERVED, "family->observed[$1]$2")                                                            \
+  X(LOST, "family->lost[$1]$2")                                                                    \
+  X(FAMILY_TIME_STEP, "family->time_step")                                                         \
   X(OBSERVED_TOWARD, "family->observed[$1]$2 + $3*family->new_plane")                              \
   X(LINK, "family->link[$1]$2")                                                                    \
   X(BOND_LINK, "family->bond_link[$1]$2 + $3*family->link_plane")                                  \
@@ -326,6 +328,38 @@
     "    *same = settled ? *same | bit : *same & ~bit;\n"                                          \
     "  }\n"                                                                                        \
     "}\n\n")                                                                                       \
+  /* losses: nothing is lost where no field has changed */                                         \
+  X(CHANGED_PLANE, "static uint64_t changed_plane(const double *old, const double *now, "           \
+    "long lanes) {\n"                                                                              \
+    "  uint64_t bits = 0;\n"                                                                       \
+    "  for (long q = 0; q < lanes; q++)\n"                                                         \
+    "    bits |= pl_to_bits(old[q]) - pl_to_bits(now[q]);\n"                                       \
+    "  return bits;\n"                                                                             \
+    "}\n\n")                                                                                       \
+  X(CHANGED_MARKS,                                                                                 \
+    "/* By marks of the particles' own bonds, and of those that lead here. */\n"                   \
+    "static uint64_t changed_marks(const pl_family *family, long field, long first, "              \
+    "long lanes) {\n"                                                                              \
+    "  const uint64_t *settled = family->settled[field];\n"                                        \
+    "  const long half = family->neighbours / 2;\n"                                                \
+    "  uint64_t bits = some_marked(settled + first / PL_LANES, lanes, UINT64_MAX);\n"              \
+    "  bits &= (UINT64_C(1) << half) - 1;\n"                                                       \
+    "  for (long k = 0; k < half; k++) {\n"                                                        \
+    "    const long begin = (first - family->offset[k]) >> 3;\n"                                   \
+    "    const long end = (first - family->offset[k] + lanes - 1) >> 3;\n"                         \
+    "    for (long q = begin; q <= end; q++)\n"                                                    \
+    "      bits |= ~settled[q] & UINT64_C(1) << k;\n"                                              \
+    "  }\n"                                                                                        \
+    "  return bits;\n"                                                                             \
+    "}\n_Static_assert(PL_LANES == 8, \"sites of a mark\");\n\n")                                 \
+  X(CHANGES_BEGIN, "static uint64_t changes(const pl_family *family, long first, "                 \
+    "long lanes) {\n  uint64_t bits = 0;\n")                                                      \
+  X(CHANGES_OF_MARKS, "  bits |= changed_marks(family, $1, first, lanes);\n")                      \
+  X(CHANGES_OF_PLANES, "  for (long k = 0; k < $2 && bits == 0; k++)\n"                            \
+    "    bits |= changed_plane(family->old_field[$1] + first + k*family->plane,\n"                 \
+    "                          family->new_field[$1] + first + k*family->new_plane, lanes);\n")    \
+  X(CHANGES_END, "  return bits;\n}\n\n")                                                          \
+  X(IF_FIELDS_CHANGED, "    if (changes(family, first, lanes) != 0) {\n")                          \
                                                                                                    \
   /* --- before all: what the compiler is told --- */                                              \
   /* gcc would ask one question of a case several times, and of strips keep what it had better     \

@@ -24,6 +24,7 @@ enum { BODY_APART = 128 };
 typedef struct body_block { /* what one thread works on */
   int first, last;          /* rows first .. last-1 */
   double *next;             /* [dof][pitch] velocities after the kick */
+  bool aside;               /* forces are found of the present state, and not for a step */
   long bad_site;            /* first site whose velocity left the limits in this step, or -1 */
   int bad_component;
   double bad_velocity;
@@ -117,6 +118,11 @@ static inline double body_mass(const body *w, int component, long site) {
   return relative ? w->mass[component] * relative[site] : w->mass[component];
 }
 
+/* Nothing is bad as yet. */
+static inline void body_step_begins(body *w, int block) {
+  w->blocks[block].bad_site = -1;
+  w->blocks[block].aside = false;
+}
 /* Block with the lowest bad site after the last stage, or -1. Bad rows were not moved from there
    on. */
 int body_bad(const body *w);

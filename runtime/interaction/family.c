@@ -42,7 +42,7 @@ static int program_stages(const family *f, const pl_program *program) {
 }
 
 static void run_program(sweep *w, const pl_program *program, int stage, int block) {
-  const bool pairs = family_of(w)->pairs && program == &w->law->step;
+  const bool pairs = family_of(w)->pairs && program == family_of(w)->march;
   if (family_of(w)->windows)
     family_window_run(w, program, block, NULL);
   else if (pairs)
@@ -55,7 +55,7 @@ static void step_in_windows(sweep *w, int stage, int block) {
   const body_block *b = &w->body->blocks[block];
   int first, last;
   if (stage == 0) {
-    family_window_run(w, &w->law->step, block, move_rows);
+    family_window_run(w, family_of(w)->march, block, move_rows);
     return;
   }
   family_window_inner(w, block, &first, &last);
@@ -65,17 +65,35 @@ static void step_in_windows(sweep *w, int stage, int block) {
 
 static void step(sweep *w, int stage, int block) {
   const body_block *b = &w->body->blocks[block];
-  if (stage == 0) w->body->blocks[block].bad_site = -1;
+  if (stage == 0) body_step_begins(w->body, block);
   if (family_of(w)->windows)
     step_in_windows(w, stage, block);
-  else if (stage < w->law->step.pass_count)
-    run_program(w, &w->law->step, stage, block);
+  else if (stage < family_of(w)->march->pass_count)
+    run_program(w, family_of(w)->march, stage, block);
   else
     move_rows(w, block, b->first, b->last);
 }
 
+/* What the law takes in the state observed, to begin with. */
+static void clear_lost(sweep *w, int block) {
+  const body_block *b = &w->body->blocks[block];
+  if (!w->lost_state || !b->aside) return;
+  for (int row = b->first; row < b->last; row++) {
+    const size_t bytes = (size_t)w->body->count[row] * sizeof(double);
+    memset(w->lost_state + body_start(w->body, row), 0, bytes);
+    memset(w->lost_rate + body_start(w->body, row), 0, bytes);
+  }
+}
+
+/* Begins to find forces: of a law beside others, for a step or for a look at the present state. */
+static void look(sweep *w, int block) {
+  if (!w->beside) w->body->blocks[block].aside = true;
+  clear_lost(w, block);
+}
+
 static void find_forces(sweep *w, int stage, int block) {
-  run_program(w, &w->law->step, stage, block);
+  if (stage == 0) look(w, block);
+  run_program(w, family_of(w)->march, stage, block);
 }
 
 /* What was new is now at hand. */
@@ -98,6 +116,17 @@ static bool stores(const rows *g, long site) {
   return g->present[site] && (g->bonds[site] || rows_degree(g, site) > 0);
 }
 
+/* At the other sites what passes have added means nothing. */
+void family_add_losses(sweep *w, int row) {
+  double *const energies[] = {w->dissipated_state, w->dissipated_rate, w->lost_state, w->lost_rate};
+  const long start = body_start(w->body, row);
+  if (!w->lost_state) return;
+  for (long q = start; q < start + w->body->count[row]; q++)
+    for (int k = 0; k < 4 && !stores(w->lattice, q); k++)
+      energies[k][q] = 0;
+  sweep_add_losses(w, row);
+}
+
 double family_stored_in_row(const sweep *w, int row) {
   const long start = body_start(w->body, row);
   double sum = 0;
@@ -114,6 +143,7 @@ static void observe_rows(sweep *w, int block) {
     advance_kick(w->body, b, row, force);
     motion_observe(w->body, b, row);
     w->body->observed[row].stored = family_stored_in_row(w, row);
+    family_add_losses(w, row);
   }
 }
 
@@ -121,10 +151,11 @@ static void observe_rows(sweep *w, int block) {
    again by the next one. Then energy and outputs with these. */
 static void observe(sweep *w, int stage, int block) {
   const family *f = family_of(w);
-  const int forces = program_stages(f, &w->law->step),
+  const int forces = program_stages(f, f->march),
             all = forces + program_stages(f, &w->law->observe);
+  if (stage == 0) look(w, block);
   if (stage < forces)
-    run_program(w, &w->law->step, stage, block);
+    run_program(w, f->march, stage, block);
   else if (stage < all)
     run_program(w, &w->law->observe, stage - forces, block);
   else
@@ -233,13 +264,22 @@ static int reach_of(const rows *g) {
   return g->list ? g->row_count : (int)most;
 }
 
+/* Losses are not kept where a law at work on the body does not say what it takes. */
+static void choose_march(sweep *w, family *f) {
+  const bool says = PL_HAS(w->law, ledger) && w->law->ledger.pass_count > 0;
+  const bool kept = says && w->body->ledger && !w->body->works;
+  f->march = kept ? &w->law->ledger : &w->law->step;
+  if (kept) sweep_new_losses(w);
+}
+
 sweep_engine family_engine(sweep *w, const double *parameters) {
   const pl_law *law = w->law;
   family *f = must_calloc(1, sizeof *f);
   assert(law->neighbours == 0 || law->neighbours == 2 * w->lattice->directions);
+  choose_march(w, f);
   f->neighbours = 2 * w->lattice->directions;
   f->reach = reach_of(w->lattice);
-  assert(law->step.pass_count <= FAMILY_MOST_PASSES);
+  assert(f->march->pass_count <= FAMILY_MOST_PASSES);
   f->uniforms = family_uniforms(law, w->lattice, parameters);
   new_planes(w, f);
   new_blocks(w, f);
@@ -249,7 +289,7 @@ sweep_engine family_engine(sweep *w, const double *parameters) {
   f->pairs = family_pairs_new(w, f);
   f->windows = f->pairs ? NULL : family_windows(w, f);
   if (!f->windows) new_links(w, f);
-  const int forces = program_stages(f, &law->step), looks = program_stages(f, &law->observe);
+  const int forces = program_stages(f, f->march), looks = program_stages(f, &law->observe);
   const int move = w->beside ? 0 : 1;
   return (sweep_engine){.step_stages = forces + move,
                         .force_stages = forces,

@@ -23,6 +23,8 @@ sweep_engine family_engine(sweep *w, const double *parameters);
 
 /* J that the particles of a row store, once it was observed. */
 double family_stored_in_row(const sweep *w, int row);
+/* Adds what a row's particles have lost (sweep_add_losses), where that is kept. */
+void family_add_losses(sweep *w, int row);
 
 /* What the law's `prepare` gives for the neighbours of a lattice: [neighbours][uniform_count], on
    lists [uniform_count]; to be freed. */

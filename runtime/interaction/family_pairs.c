@@ -57,7 +57,7 @@ static void run_row(const sweep *w, int pass, int block, int row, bool ahead_onl
   run->sum = pair_sums_at(w, &b->sums, start);
   run->ahead_only = ahead_only;
   run->held_near = f->pairs->held_near[row];
-  w->law->step.pass[pass](w->law, f->uniforms, run);
+  f->march->pass[pass](w->law, f->uniforms, run);
 }
 
 /* Bonds of the rows before reach the block's own: they are done once more here, for these ends
@@ -67,7 +67,7 @@ void family_pairs_stage(const sweep *w, int pass, int block) {
   pair_sums *s = &family_of(w)->pairs->blocks[block].sums;
   const double begun = family_run_pass_begins(w);
   pl_family run;
-  family_run_begin(w, &w->law->step, block, &run);
+  family_run_begin(w, family_of(w)->march, block, &run);
   for (int row = s->before; row < b->last; row++)
     run_row(w, pass, block, row, row < b->first, &run);
   pair_sums_clear_ahead(w, s);

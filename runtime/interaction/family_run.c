@@ -64,6 +64,11 @@ void family_run_part(const sweep *w, int block, row_part at, pl_family *run) {
   if (w->law->reads_mass)
     run->mass = (w->lattice->site_mass ? w->lattice->site_mass : family_of(w)->mass) + start;
   if (w->law->reads_share) run->share = (w->share ? w->share : family_of(w)->whole) + start;
+  if (w->lost_state) {
+    const bool aside = w->body->blocks[block].aside;
+    run->lost[PL_LOST_TO_STATES] = (aside ? w->lost_state : w->dissipated_state) + start;
+    run->lost[PL_LOST_TO_RATES] = (aside ? w->lost_rate : w->dissipated_rate) + start;
+  }
   point_at_neighbours(w->lattice, at.row, start, run);
   for (int d = 0; d < w->body->dof; d++) {
     run->displacement[d] = w->body->displacement[d] + start;

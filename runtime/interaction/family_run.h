@@ -25,6 +25,7 @@ struct family_window;
 struct family_pairs;
 
 typedef struct family {
+  const pl_program *march;       /* of the law: `step`, or in its place `ledger` */
   int neighbours, reach;         /* rows between a particle and its farthest neighbour */
   double *uniforms;              /* [neighbours][uniform_count]; lists: [uniform_count] */
   double **link;                 /* [links][size]; NULL where blocks have windows */

@@ -44,6 +44,7 @@ struct family_window { /* row r stands in place r mod rows */
   double *force[PL_MAX_DOF];
   double *memory;             /* [links + neighbours*links of bonds + forces][plane] */
   double **field, **observed; /* [planes][pitch] what other blocks write for their rows */
+  double *lost[PL_LOSSES];    /* the same */
   long *offset;               /* [neighbours] of links, from the row at hand */
   int *row_offset;            /* [neighbours] rows to the neighbour */
   sites *
@@ -102,7 +103,7 @@ static bool suits(const sweep *w, const family *f) {
   const int least = w->lattice->row_count / w->body->block_count;
   return !w->lattice->list && f->neighbours <= MOST_NEIGHBOURS &&
          (w->body->block_count == 1 ||
-          least >= ROWS_TO_HALO * most(halo(f, &w->law->step), halo(f, &w->law->observe)));
+          least >= ROWS_TO_HALO * most(halo(f, f->march), halo(f, &w->law->observe)));
 }
 
 /* Short rows are done many at a time, and as many as are alike in one run: a call sets up as much
@@ -163,7 +164,7 @@ static void find_straight(family_window *v, int neighbours) {
 }
 
 static void find_inner(const sweep *w, const family *f, const body_block *b, family_window *v) {
-  const int lost = halo(f, &w->law->step);
+  const int lost = halo(f, f->march);
   v->inner = b->first == 0 ? 0 : b->first + lost;
   v->inner_end = b->last == w->lattice->row_count ? b->last : b->last - lost;
 }
@@ -173,13 +174,15 @@ static void open_window(sweep *w, const family *f, const body_block *b, family_w
   const rows *g = w->lattice;
   find_inner(w, f, b, v);
   choose_runs(v, law, g->pitch);
-  v->rows = v->at_a_time + most(rows_kept(f, &law->step), rows_kept(f, &law->observe));
+  v->rows = v->at_a_time + most(rows_kept(f, f->march), rows_kept(f, &law->observe));
   open_planes(w, f, v);
   v->field = scratch_rows(w, law->fields, law->field_count, 0);
   v->observed = scratch_rows(w, law->outputs, law->output_count, 1);
+  for (int k = 0; k < PL_LOSSES && w->lost_state; k++)
+    v->lost[k] = body_doubles(w->body, g->pitch);
   v->offset = must_calloc((size_t)f->neighbours, sizeof *v->offset);
   v->row_offset = must_calloc((size_t)f->neighbours, sizeof *v->row_offset);
-  v->left = must_calloc((size_t)(law->step.pass_count * v->rows), sizeof *v->left);
+  v->left = must_calloc((size_t)(f->march->pass_count * v->rows), sizeof *v->left);
   for (int k = 0; k < f->neighbours; k++)
     v->row_offset[k] = (int)rint((double)g->offset[0][k] / (double)g->pitch);
   find_straight(v, f->neighbours);
@@ -229,7 +232,8 @@ static void clear_sites(const sweep *w, const family_window *v, uint64_t shared,
 static void take_places(const sweep *w, const pl_program *program, int pass, int block, int first,
                         int last) {
   const family_window *v = &family_of(w)->windows[block];
-  const uint64_t shared = program == &w->law->step && program->shared ? program->shared[pass] : 0;
+  const uint64_t shared =
+      program != &w->law->observe && program->shared ? program->shared[pass] : 0;
   for (int row = first; row < last && shared; row++) {
     const int here = (row % v->rows + v->rows) % v->rows;
     sites *left = &v->left[pass * v->rows + here], was = *left;
@@ -268,6 +272,8 @@ static void write_nowhere(const sweep *w, int block, int row, pl_family *run) {
     b->new_field[k] = v->field[k] + w->body->begin[row];
   for (int k = 0; k <= w->law->output_count; k++)
     b->observed[k] = v->observed[k] + w->body->begin[row];
+  for (int k = 0; k < PL_LOSSES && w->lost_state; k++)
+    run->lost[k] = v->lost[k] + w->body->begin[row];
   run->new_plane = w->lattice->pitch;
 }
 

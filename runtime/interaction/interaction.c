@@ -14,14 +14,16 @@ sweep *interaction_new(const rows *lattice, const pl_law *law, const double *par
                       families ? BODY_SHARE_ROWS : BODY_SHARE_SITES);
   of->ledger = ledger;
   of->forces = ledger || forces;
-  of->works = ledger && families;
+  of->works = ledger && !sweep_knows_losses(law);
   return sweep_new(of, law, parameters, families ? family_engine : pairwise_engine);
 }
 
 sweep *interaction_joint(const rows *lattice, const interaction_law *laws, int count,
                          double time_step, int threads, bool ledger, sweep **parts) {
   body *of = body_new(lattice, laws[0].law->dof, time_step, threads, BODY_SHARE_ROWS);
-  of->ledger = of->works = ledger;
+  of->ledger = ledger;
+  for (int k = 0; k < count; k++)
+    of->works = of->works || (ledger && !sweep_knows_losses(laws[k].law));
   of->forces = true;
   for (int k = 0; k < count; k++) {
     const interaction_law *l = &laws[k];

@@ -48,7 +48,8 @@ static void forces_of_row(const body *of, int row, const double *force[PL_MAX_DO
 }
 
 static void find_forces(sweep *w, int stage, int block) {
-  const body_block *b = &w->body->blocks[block];
+  body_block *b = &w->body->blocks[block];
+  b->aside = true;
   if (stage < w->engine.force_stages - 1)
     find_parts(w, stage, block);
   else
@@ -69,7 +70,7 @@ static void move_rows(sweep *w, int block) {
 }
 
 static void step(sweep *w, int stage, int block) {
-  if (stage == 0) w->body->blocks[block].bad_site = -1;
+  if (stage == 0) body_step_begins(w->body, block);
   if (stage < w->engine.step_stages - 1)
     find_parts(w, stage, block);
   else
@@ -99,10 +100,13 @@ static void observe_rows(sweep *w, int block) {
     w->body->observed[row].stored = 0;
     for (int k = 0; k < own(w)->count; k++)
       w->body->observed[row].stored += family_stored_in_row(own(w)->parts[k], row);
+    for (int k = 0; k < own(w)->count; k++)
+      family_add_losses(own(w)->parts[k], row);
   }
 }
 
 static void observe(sweep *w, int stage, int block) {
+  w->body->blocks[block].aside = true;
   if (stage == w->engine.observe_stages - 1) {
     observe_rows(w, block);
     return;

@@ -430,19 +430,6 @@ static void stored_values(sweep *w, double *values) {
     }
 }
 
-/* Since the start: all steps, and what the law takes in the present state. Rate terms, like other
-   forces, count half a step until the state is reached; they are none of those that a step must be
-   short enough for (body_row.free). */
-static void sum_lost(sweep *w, int row) {
-  const long start = body_start(w->body, row), count = w->body->count[row];
-  const double pending = 0.5 * lane_total(count, w->lost_rate + start);
-  body_row *r = &w->body->observed[row];
-  r->state =
-      lane_total(count, w->dissipated_state + start) + lane_total(count, w->lost_state + start);
-  r->rate = lane_total(count, w->dissipated_rate + start) + pending;
-  r->free += pending;
-}
-
 static void observe_row(sweep *w, int block, int row, const row_forces *here,
                         const row_forces *below) {
   body_block *b = &w->body->blocks[block];
@@ -457,7 +444,7 @@ static void observe_row(sweep *w, int block, int row, const row_forces *here,
   motion_observe(w->body, b, row);
   if (!w->body->ledger) return;
   w->body->observed[row].stored = stored_in_row(w, &own(w)->blocks[block], row);
-  sum_lost(w, row);
+  sweep_add_losses(w, row);
 }
 
 static void observe(sweep *w, int stage, int block) {
@@ -563,10 +550,7 @@ sweep_engine pairwise_engine(sweep *w, const double *parameters) {
   p->blocks = must_calloc((size_t)w->body->block_count, sizeof *p->blocks);
   for (int k = 0; k < w->body->block_count; k++)
     new_block(w, p, &p->blocks[k]);
-  double **const energies[] = {&w->dissipated_state, &w->dissipated_rate, &w->lost_state,
-                               &w->lost_rate};
-  for (int k = 0; k < 4 && w->body->ledger; k++)
-    *energies[k] = body_doubles(w->body, w->body->lattice->size);
+  if (w->body->ledger) sweep_new_losses(w);
   list_streams(w, p);
   return (sweep_engine){.step_stages = 1,
                         .force_stages = 1,

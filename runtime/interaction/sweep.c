@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/base/lane_sum.h"
 #include "runtime/base/subnormals.h"
 
 /* --- set-up ----------------------------------------------------------------------------------- */
@@ -105,6 +106,32 @@ void sweep_find_forces(sweep *w) {
 
 void sweep_observe(sweep *w) {
   do_stages(w, w->engine.observe_stages, w->engine.observe);
+}
+
+void sweep_new_losses(sweep *w) {
+  double **const energies[] = {&w->dissipated_state, &w->dissipated_rate, &w->lost_state,
+                               &w->lost_rate};
+  for (int k = 0; k < 4; k++)
+    *energies[k] = body_doubles(w->body, w->lattice->size);
+}
+
+/* Rate terms, like other forces, count half a step until the state is reached; they are none of
+   those that a step must be short enough for (body_row.free). */
+void sweep_add_losses(sweep *w, int row) {
+  const long start = body_start(w->body, row), count = w->body->count[row];
+  const double pending = 0.5 * lane_total(count, w->lost_rate + start);
+  body_row *r = &w->body->observed[row];
+  r->state +=
+      lane_total(count, w->dissipated_state + start) + lane_total(count, w->lost_state + start);
+  r->rate += lane_total(count, w->dissipated_rate + start) + pending;
+  r->free += pending;
+}
+
+bool sweep_knows_losses(const pl_law *law) {
+  if (law->kind != PL_STATE) return true;
+  if (!law->stores) return false;
+  const bool may_lose = law->field_count > 0 || law->reads_rates;
+  return !may_lose || (PL_HAS(law, ledger) && law->ledger.pass_count > 0);
 }
 
 void sweep_output(sweep *w, int output, double *values) {

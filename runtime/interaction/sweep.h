@@ -47,8 +47,8 @@ struct sweep {
      owned */
   double *const *parameter;
   const double *share; /* [size] of laws that read it (pl_family); NULL: 1 everywhere; not owned */
-  /* [size] J at the site that owns the bond, of all steps and of what the law takes in the state
-     observed; NULL without ledger and for laws of families. */
+  /* [size] J at the site that owns the bond, of laws of families at each particle half of its bonds':
+     of all steps, and of what the law takes in the state observed; NULL where they are not kept. */
   double *dissipated_state, *dissipated_rate, *lost_state, *lost_rate;
   sweep_engine engine;
 };
@@ -85,6 +85,14 @@ void sweep_observe(sweep *w);
 /* Value in a bond of a field, an output, or a parameter that stands on bonds or neighbours; of a
    law of families the mean of both sides. */
 double sweep_bond_value(const sweep *w, const double *values, const rows_bond *bond);
+/* For engines: makes the arrays of losses; adds those of a row, since the start and in the state
+   observed, to what is known of it (body_row). */
+void sweep_new_losses(sweep *w);
+void sweep_add_losses(sweep *w, int row);
+/* Whether what the law loses can be known: of laws of bonds on strips it is what they say, of laws of
+   families, which then store energy, too, if they may lose any. */
+bool sweep_knows_losses(const pl_law *law);
+
 /* An output in the state observed last: values[sweep_planes * size], defined where bonds or
    particles are. */
 void sweep_output(sweep *w, int output, double *values);

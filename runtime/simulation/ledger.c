@@ -17,11 +17,7 @@ const char *const ledger_words[LEDGER_COUNT] = {
 
 const char *ledger_unchecked(const pl_law *law) {
   if (!law->stores) return "the law has no stored energy";
-  if (law->kind != PL_STATE) return NULL;
-  if (law->field_count > 0)
-    return "what the states and the damage of a law of families take is not counted by itself";
-  return law->reads_rates ? "what the rate terms of a law of families take is not counted by itself"
-                          : NULL;
+  return sweep_knows_losses(law) ? NULL : "the law does not say what it takes";
 }
 
 void ledger_add_law(ledger_laws *of, const pl_law *law) {
@@ -31,10 +27,10 @@ void ledger_add_law(ledger_laws *of, const pl_law *law) {
   of->reads_rates = of->reads_rates || law->reads_rates;
 }
 
-/* What the laws have taken by states, damage and, in families, rate terms. */
+/* What the laws have taken by states and damage; where some of families do not say it, all that is
+   missing. */
 static double taken(const ledger *g, const ledger_laws *of, const body_totals *t, double lost) {
-  if (!of->families) return t->dissipated_state;
-  return of->unchecked ? lost - g->lost : 0;
+  return of->unchecked && of->families ? lost - g->lost : t->dissipated_state;
 }
 
 static bool is_sound(const ledger *g, const ledger_laws *of, double step, const body_totals *t,

@@ -9,12 +9,26 @@
    For linear springs they balance to rounding whatever the step (summation by parts of the leapfrog
    scheme).
 
-   A law of families states what it stores, not what it takes. Where it takes nothing (no states, no
-   damage, no rate terms) nothing is dissipated, and the imbalance shows what the steps have lost or
-   won. Where it does, dissipated_damage is the work done against the forces of the bonds, -f (v- +
-   v+)/2 dt for each step and half of it for step n, less the change of the stored energy. It holds
-   all that the law takes, its dampers too, and the error of the steps; the imbalance would be 0 by
-   definition, and is NaN. */
+   What damage and states take in a step is what is stored with the old fields less what is with the
+   new ones. Where is a matter of order. With W(u, d) stored, forces F = dW/du, and the way du of a
+   step the work of the mean force of both ends is W(u + du, d) - W(u, d) up to du^3 for fields d that
+   stay. Forces of step n are F(u_n, d_n): they work over half of the way that led there, where the
+   fields were still d_(n-1). So the balance wants
+
+     lost_n = W(u_n, d_(n-1)) - W(u_n, d_n) - (F(u_n, d_(n-1)) - F(u_n, d_n)) du/2
+
+   which is the difference of the two energies at places halfway, up to du^2. With it the imbalance
+   falls with the square of the step, also where damage jumps. Laws of families book so (pl_law.ledger;
+   those whose forces are of the old fields with the other sign), laws of bonds on strips without the
+   last term: there the imbalance falls with the step. So it does where rate terms take energy: they
+   know the velocity v- and are booked with it, while they work over the mean of v- and v+; what is
+   missed is about c v^2 dt/4, v being how fast a damper c now moves.
+
+   Of a law that does not say what it stores, or of families what it takes, nothing can be balanced:
+   dissipated_damage is then the work done against the forces of the bonds, -f (v- + v+)/2 dt for each
+   step and half of it for step n, less the change of the stored energy. It holds all that the law
+   takes, its dampers too, and the error of the steps; the imbalance would be 0 by definition, and is
+   NaN. */
 #ifndef PERILAT_RUNTIME_LEDGER_H
 #define PERILAT_RUNTIME_LEDGER_H
 
@@ -28,8 +42,9 @@
   X(KINETIC, "energy/kinetic", "kinetic energy")                                                   \
   X(STORED, "energy/stored", "energy stored in the bonds")                                         \
   X(DISSIPATED_DAMAGE, "energy/dissipated_damage",                                                 \
-    "energy dissipated by the law: damage, rate terms")                                            \
-  X(DISSIPATED_DAMPING, "energy/dissipated_damping", "energy dissipated by mass damping")          \
+    "energy dissipated by damage and states of the law")                                           \
+  X(DISSIPATED_DAMPING, "energy/dissipated_damping",                                               \
+    "energy dissipated by mass damping and rate terms of the law")                                 \
   X(EXTERNAL, "energy/external", "work of loads and drives")                                       \
   X(IMBALANCE, "energy/imbalance", "work of loads and drives less all other energies")
 

@@ -23,6 +23,9 @@ static void add_fields(part_list *l, const sweep *w) {
   for (int f = 0; f < w->law->field_count; f++)
     add_part(l, w->law->fields[f].name, w->field[f],
              site * (size_t)sweep_planes(w, w->law->fields[f].place));
+  if (!w->dissipated_state) return;
+  add_part(l, "dissipated_state", w->dissipated_state, site);
+  add_part(l, "dissipated_rate", w->dissipated_rate, site);
 }
 
 static void add_state(part_list *l, const run_body *of) {
@@ -35,10 +38,6 @@ static void add_state(part_list *l, const run_body *of) {
   }
   for (int n = 0; n < of->law_count; n++)
     add_fields(l, of->laws[n].state);
-  if (w->dissipated_state) {
-    add_part(l, "dissipated_state", w->dissipated_state, site);
-    add_part(l, "dissipated_rate", w->dissipated_rate, site);
-  }
   if (w->body->weight) {
     add_part(l, "work_of_gravity", w->body->row_gravity, row);
     add_part(l, "gravity", w->body->gravity, sizeof w->body->gravity);
