@@ -106,10 +106,10 @@ const char *family_root_array(const emitter *e, const segment_root *r, const fam
                [TO_LARGEST] = {.toward = SAY_SLOT},
                [TO_SMALLEST] = {.toward = SAY_SLOT},
                [TO_FORCE] = {.own = SAY_FORCE},
-               [TO_LINK] = {SAY_LINK, SAY_BOND_LINK},
-               [TO_FIELD] = {SAY_NEW_FIELD, SAY_NEW_FIELD_TOWARD},
                [TO_DISSIPATED_STATE] = {.own = SAY_LOST},
                [TO_DISSIPATED_RATE] = {.own = SAY_LOST},
+               [TO_LINK] = {SAY_LINK, SAY_BOND_LINK},
+               [TO_FIELD] = {SAY_NEW_FIELD, SAY_NEW_FIELD_TOWARD},
                [TO_OBSERVED] = {SAY_OBSERVED, SAY_OBSERVED_TOWARD},
                [TO_PLANE] = {.toward = SAY_PLANE}};
   if (r->target == TO_SHARED) return shared(e, r->index, at, at->k, "0");

@@ -1,5 +1,7 @@
 #include "generator/emit/family_loops.h"
 
+#include <stdlib.h>
+
 #include "generator/emit/family_segment.h"
 
 static const family_index in_loops = {.first = " + first",
@@ -59,14 +61,37 @@ static void write_stores(emitter *e, const segment *a) {
                  false);
 }
 
-static void write_loop(emitter *e, const segment *a) {
-  expression_declare(e);
-  declare_outputs(e, a);
+/* With `expects` the loop notes where not all is as expected. */
+static void write_lanes(emitter *e, const segment *a, bool expects) {
   say(e, SAY_OVER_LANES, e->scope->before);
   expression_lines(e);
+  if (expects) say(e, SAY_GATHER_UNEXPECTED, family_expected(e), "1");
   if (a->kind != OVER_PARTICLES && family_segment_asks(a)) say(e, SAY_PRESENT_BY_BIT);
   write_stores(e, a);
   say(e, SAY_END, e->scope->before);
+}
+
+static void write_loop(emitter *e, const segment *a) {
+  expression_declare(e);
+  declare_outputs(e, a);
+  write_lanes(e, a, false);
+}
+
+/* A loop that relies on what is expected, and the same with both sides where some particle of the
+   chunk is not so. */
+static void write_expected_loop(emitter *e, const segment *a) {
+  ir_node *nodes = must_alloc((2 * (size_t)a->root_count + 1) * sizeof *nodes);
+  const int count = segment_nodes(e->graph, a, nodes);
+  expression_declare(e);
+  declare_outputs(e, a);
+  say(e, SAY_SOME_UNEXPECTED);
+  unsigned char *before = family_narrow(e, nodes, count, RELIES_ON_EXPECTED);
+  write_lanes(e, a, true);
+  family_widen(e, before);
+  say(e, SAY_IF_SOME_UNEXPECTED);
+  write_lanes(e, a, false);
+  say(e, SAY_END, "    ");
+  free(nodes);
 }
 
 void family_loops_particles(emitter *e, const segment *a) {
@@ -77,7 +102,7 @@ void family_loops_particles(emitter *e, const segment *a) {
                            .input = family_loops_input};
   expression_open_segment(e, &in, a);
   say(e, SAY_OVER_PARTICLES);
-  write_loop(e, a);
+  (family_expected(e) ? write_expected_loop : write_loop)(e, a);
   say(e, SAY_END, "    ");
   expression_close(e);
 }

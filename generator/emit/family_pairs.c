@@ -11,9 +11,11 @@
    for the second. */
 typedef struct pair_loops {
   const segment *of;
-  ir_node *node;    /* [count] */
-  int count;        /* roots, then factors that are read again */
+  ir_node *node; /* [count] */
+  int count;
+  ir_node *factor;  /* [root_count] of these, what is read again for the root's sum; or IR_NONE */
   int *kept;        /* [root_count] where the value is kept; -1: of constant sums */
+  int *kept_far;    /* [root_count] and that at the far end; -1: none of its own */
   ir_node *to_keep; /* [kept_count] */
   int kept_count;
   int constants;   /* roots that are constant sums */
@@ -97,76 +99,51 @@ static void write_marks(emitter *e, const segment *a) {
 
 /* --- two loops -------------------------------------------------------------------------------- */
 
-static bool expects(const emitter *e) {
-  for (ir_node n = 0; n < e->node_count; n++)
-    if (e->needed[n] && choice_is_expected(e, n)) return true;
-  return false;
+static int keep(pair_loops *l, ir_node n) {
+  int k = 0;
+  while (k < l->kept_count && l->to_keep[k] != n)
+    k++;
+  if (k == l->kept_count) l->to_keep[l->kept_count++] = n;
+  return k;
 }
 
 static pair_loops loops_of(const emitter *e, const segment *a) {
   const size_t size = 2 * (size_t)a->root_count + 1;
   pair_loops l = {.of = a,
                   .node = must_alloc(size * sizeof *l.node),
+                  .factor = must_alloc(size * sizeof *l.factor),
                   .kept = must_alloc(size * sizeof *l.kept),
+                  .kept_far = must_alloc(size * sizeof *l.kept_far),
                   .to_keep = must_alloc(size * sizeof *l.to_keep)};
   l.finds_out = program_asks(e->graph, &e->plan->programs[PROGRAM_STEP]) == a;
   l.knows = program_is_told(e->graph, &e->plan->programs[PROGRAM_STEP], a);
-  l.one = l.knows || !expects(e);
+  l.one = l.knows || !family_expected(e);
   l.count = segment_nodes(e->graph, a, l.node);
-  for (int k = 0; k < a->root_count; k++) {
-    const bool keep = !is_constant(e, &a->roots[k]);
-    l.kept[k] = keep ? 0 : -1;
-    l.constants += !keep;
-    while (keep && l.kept[k] < l.kept_count && l.to_keep[l.kept[k]] != l.node[k])
-      l.kept[k]++;
-    if (keep && l.kept[k] == l.kept_count) l.to_keep[l.kept_count++] = l.node[k];
+  for (int k = 0, second = a->root_count; k < a->root_count; k++) {
+    const segment_root *r = &a->roots[k];
+    const bool fuses = segment_fuses(e->graph, r);
+    l.factor[k] = fuses ? l.node[second] : IR_NONE;
+    second += fuses || segment_has_far(r);
+    l.constants += is_constant(e, r);
+    l.kept[k] = is_constant(e, r) ? -1 : keep(&l, l.node[k]);
+    l.kept_far[k] = segment_has_far(r) ? keep(&l, r->far) : -1;
   }
   return l;
 }
 
 static void loops_free(pair_loops *l) {
   free(l->node);
+  free(l->factor);
   free(l->kept);
+  free(l->kept_far);
   free(l->to_keep);
-}
-
-/* From here on to `widen` lines are those that these nodes need; of choices by what is relied on
-   only what is chosen then. Returns what was needed before. */
-static unsigned char *narrow(emitter *e, const ir_node *nodes, int count, unsigned relies) {
-  unsigned char *before = e->needed;
-  e->needed = must_calloc((size_t)e->node_count + 1, 1);
-  e->relies = relies;
-  for (int k = 0; k < count; k++)
-    e->needed[nodes[k]] = 1;
-  choice_mark_operands(e, relies, e->needed);
-  return before;
-}
-
-static void widen(emitter *e, unsigned char *before) {
-  free(e->needed);
-  e->needed = before;
-  e->relies = RELIES_ON_NOTHING;
-}
-
-/* Bonds that are not as expected leave their bits. One line for all conditions: gcc does not
-   vectorise two. */
-static void write_expectations(emitter *e) {
-  const char *all = NULL;
-  for (ir_node n = 0; n < e->node_count; n++) {
-    bool again = !e->needed[n] || !choice_is_expected(e, n);
-    const ir_node asked = again ? IR_NONE : ir_operand(e->graph, n, 0);
-    for (ir_node before = 0; before < n && !again; before++)
-      again = e->needed[before] && choice_is_expected(e, before) &&
-              ir_operand(e->graph, before, 0) == asked;
-    if (!again) all = words_join(e->memory, all, ") && (", expression_condition(e, asked));
-  }
-  say(e, SAY_GATHER_UNEXPECTED, all);
 }
 
 /* Whether kept value k is that of a field, or of a sum. */
 static bool is_kept_for(const pair_loops *l, int k, bool field) {
   for (int n = 0; n < l->of->root_count; n++)
-    if (l->kept[n] == k && is_field(&l->of->roots[n]) == field) return true;
+    if ((l->kept[n] == k || l->kept_far[n] == k) && is_field(&l->of->roots[n]) == field)
+      return true;
   return false;
 }
 
@@ -177,41 +154,39 @@ static void write_value(emitter *e, const pair_loops *l, int k) {
   if (!l->one || is_kept_for(l, k, true)) say(e, SAY_KEEP_VALUE, numeral(e, k));
 }
 
-/* Adds a root's value, or its product with node `factor`, to both ends. */
-static void write_sum(emitter *e, const pair_loops *l, int k, ir_node factor) {
-  const bool odd = l->of->roots[k].parity <= 0;
+/* Adds a root's value to both ends, its product with a factor, or to each end its own. */
+static void write_sum(emitter *e, const pair_loops *l, int k) {
+  const bool odd = l->of->roots[k].parity < 0;
   const char *root = numeral(e, k), *value = numeral(e, l->kept[k]);
-  if (factor == IR_NONE)
+  if (l->kept_far[k] >= 0)
+    say(e, SAY_ADD_TO_EACH, root, value, numeral(e, l->kept_far[k]));
+  else if (l->factor[k] == IR_NONE)
     say(e, SAY_ADD_TO_BOTH, root, value, odd ? "-" : "+");
   else
-    say(e, SAY_ADD_PRODUCT_TO_BOTH, root, value, expression_value(e, factor), odd ? "-" : "");
+    say(e, SAY_ADD_PRODUCT_TO_BOTH, root, value, expression_value(e, l->factor[k]), odd ? "-" : "");
 }
 
 static void write_sums(emitter *e, const pair_loops *l) {
-  for (int k = 0, factors = l->of->root_count; k < l->of->root_count; k++) {
-    const segment_root *r = &l->of->roots[k];
-    const bool fuses = segment_fuses(e->graph, r);
-    if (!is_field(r) && !is_constant(e, r)) write_sum(e, l, k, fuses ? l->node[factors] : IR_NONE);
-    factors += fuses;
-  }
+  for (int k = 0; k < l->of->root_count; k++)
+    if (!is_field(&l->of->roots[k]) && !is_constant(e, &l->of->roots[k])) write_sum(e, l, k);
 }
 
 /* The first loop, or the only one. */
 static void write_values(emitter *e, pair_loops *l, bool usual, bool constant_0) {
   const unsigned relies = usual ? RELIES_ON_EXPECTED : RELIES_ON_NOTHING;
-  unsigned char *before =
-      l->one ? narrow(e, l->node, l->count, relies) : narrow(e, l->to_keep, l->kept_count, relies);
+  unsigned char *before = l->one ? family_narrow(e, l->node, l->count, relies)
+                                 : family_narrow(e, l->to_keep, l->kept_count, relies);
   l->constant_0 = constant_0;
   say(e, SAY_OVER_LANES, "      ");
   expression_lines(e);
-  if (!l->one) write_expectations(e);
+  if (!l->one) say(e, SAY_GATHER_UNEXPECTED, family_expected(e), "bonds[q]");
   say(e, SAY_PRESENT_BY_SIGN);
   for (int k = 0; k < l->kept_count; k++)
     write_value(e, l, k);
   if (l->one) write_sums(e, l);
   say(e, SAY_END, "      ");
   l->constant_0 = false;
-  widen(e, before);
+  family_widen(e, before);
 }
 
 static bool reads_protection(const emitter *e) {
@@ -295,17 +270,16 @@ static void write_constants(emitter *e, const pair_loops *l) {
 }
 
 static void write_second(emitter *e, const pair_loops *l) {
-  const int roots = l->of->root_count;
   write_constants(e, l);
   if (l->one) return;
-  unsigned char *before = narrow(e, l->node + roots, l->count - roots, RELIES_ON_NOTHING);
+  unsigned char *before = family_narrow(e, l->factor, l->of->root_count, RELIES_ON_NOTHING);
   say(e, SAY_OVER_LANES, "      ");
   expression_lines(e);
   for (int k = 0; k < l->kept_count; k++)
     if (is_kept_for(l, k, false)) say(e, SAY_KEPT_VALUE, numeral(e, k));
   write_sums(e, l);
   say(e, SAY_END, "      ");
-  widen(e, before);
+  family_widen(e, before);
 }
 
 /* What the particles have got from behind; from then on the sums are 0 for the next pass. */

@@ -18,4 +18,12 @@ const char *family_reduction_start(const emitter *e, const segment_root *r);
    a register may stay. */
 void family_store(emitter *e, const segment_root *r, const char *to, bool in_register);
 
+/* That all is as expected, as one condition, since gcc does not vectorise two; NULL where nothing
+   is expected of what is needed. */
+const char *family_expected(const emitter *e);
+/* From here on to family_widen lines are those that these nodes (IR_NONE: none) need; of choices by
+   what is relied on only what is chosen then. Returns what was needed before. */
+unsigned char *family_narrow(emitter *e, const ir_node *nodes, int count, unsigned relies);
+void family_widen(emitter *e, unsigned char *before);
+
 #endif

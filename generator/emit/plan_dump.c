@@ -60,9 +60,9 @@ static const char *root_name(const kernel_plan *p, const segment_root *r, char *
     snprintf(text, size, "field %s", p->law->fields.items[r->index]->name);
     break;
   case TO_DISSIPATED_STATE:
-    return "dissipated by states";
+    return "lost to states";
   case TO_DISSIPATED_RATE:
-    return "dissipated by rates";
+    return "lost to rates";
   case TO_OBSERVED:
     return observed_name(p, r->index);
   case TO_OUT:
@@ -162,7 +162,7 @@ static void dump_segment(const kernel_plan *p, const segment *a, FILE *out) {
           "\n    %-12s %d additions, %d multiplications, %d selects, %d divisions and roots, "
           "%d functions; %d bytes%s\n",
           "cost", c.additions, c.multiplications, c.selects, c.divisions, c.functions,
-          8 * (reads + a->root_count), each[a->kind]);
+          8 * (reads + segment_value_count(a)), each[a->kind]);
 }
 
 /* Of families passes are numbered; over strips, and of what knows no body, they stand alone. */
@@ -216,12 +216,14 @@ static void dump_segment_nodes(const kernel_plan *p, const segment *a, FILE *out
   arena *memory = arena_new();
   char text[160];
   ir_node *nodes = segment_values(a);
-  const char **names = arena_alloc(memory, ((size_t)a->root_count + 1) * sizeof *names);
-  for (int k = 0; k < a->root_count; k++) {
+  const int count = segment_value_count(a);
+  const char **names = arena_alloc(memory, ((size_t)count + 1) * sizeof *names);
+  for (int k = 0, far = a->root_count; k < a->root_count; k++) {
     const char *name = root_name(p, &a->roots[k], text, sizeof text);
     names[k] = arena_text(memory, name, strlen(name));
+    if (segment_has_far(&a->roots[k])) names[far++] = arena_printf(memory, "%s, far end", names[k]);
   }
-  ir_dump(p->graph, nodes, names, a->root_count, out);
+  ir_dump(p->graph, nodes, names, count, out);
   free(nodes);
   arena_free(memory);
 }

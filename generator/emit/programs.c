@@ -123,12 +123,13 @@ void programs_functions(emitter *e) {
   }
   say(e, SAY_UNIFORM_COUNT, numeral(e, e->plan->uniform_count));
   family_pairs_functions(e);
-  const kernel_program *p = e->plan->programs, *step = &p[PROGRAM_STEP],
-                       *losses = &p[PROGRAM_LEDGER];
+  const kernel_program *step = &e->plan->programs[PROGRAM_STEP],
+                       *losses = &e->plan->programs[PROGRAM_LEDGER],
+                       *observe = &e->plan->programs[PROGRAM_OBSERVE];
   write_program(e, step->name, step, NULL);
   if (losses->pass_count) {
     write_changes(e);
     write_program(e, "ledger", losses, step);
   }
-  write_program(e, p[PROGRAM_OBSERVE].name, &p[PROGRAM_OBSERVE], NULL);
+  write_program(e, observe->name, observe, NULL);
 }

@@ -102,12 +102,13 @@ static void run_family(const pl_law *kernel, const double *uniforms, const pl_fa
   static void run_##name##_##n(const pl_law *k, const double *u, const pl_family *f) {             \
     run_family(k, u, f, task, n);                                                                  \
   }
-#define X(n) RUN(step, PROGRAM_STEP, n) RUN(losses, PROGRAM_LEDGER, n) RUN(observe, PROGRAM_OBSERVE, n)
+#define X(n)                                                                                       \
+  RUN(step, PROGRAM_STEP, n) RUN(losses, PROGRAM_LEDGER, n) RUN(observe, PROGRAM_OBSERVE, n)
 PASS_NUMBERS(X)
 #undef X
-static const pl_family_function passes_of[PROGRAM_OBSERVE + 1][PLAN_MOST_PASSES] = {
+static const pl_family_function passes_of[PROGRAM_COUNT][PLAN_MOST_PASSES] = {
 #define X(n)                                                                                       \
-  [PROGRAM_STEP][n] = run_step_##n, [PROGRAM_LEDGER][n] = run_losses_##n,                                  \
+  [PROGRAM_STEP][n] = run_step_##n, [PROGRAM_LEDGER][n] = run_losses_##n,                          \
   [PROGRAM_OBSERVE][n] = run_observe_##n,
     PASS_NUMBERS(X)
 #undef X
@@ -173,8 +174,8 @@ static pl_program program_facts(arena *memory, const ir *g, const kernel_program
 /* The passes of a step, then those of its losses. */
 static pl_program ledger_facts(arena *memory, const kernel_plan *plan) {
   const kernel_program *step = &plan->programs[PROGRAM_STEP],
-                       *losses = &plan->programs[PROGRAM_LEDGER];
-  const kernel_program ledger = program_joined(memory, "ledger", step, losses);
+                       ledger =
+                           program_joined(memory, "ledger", step, &plan->programs[PROGRAM_LEDGER]);
   pl_family_function *passes =
       arena_alloc(memory, ((size_t)ledger.pass_count + 1) * sizeof *passes);
   for (int k = 0; k < ledger.pass_count; k++)
@@ -195,8 +196,8 @@ static void describe_strips(interpreted *p) {
 
 static void describe_families(interpreted *p) {
   const kernel_plan *plan = p->plan;
-  const kernel_program *programs = plan->programs;
   const law *l = plan->law;
+  const kernel_program *programs = plan->programs;
   p->law.link_count = plan->links.of_particles;
   p->law.bond_link_count = plan->links.of_bonds;
   p->law.sum_count = program_sum_count(&programs[PROGRAM_STEP]);

@@ -215,18 +215,21 @@ static void store(runner *r, const segment_root *root, const double *value, cons
   }
 }
 
-/* A value of a bond at both of its ends; `factor` as above. */
+/* A value of a bond at both of its ends; `second`: a factor as above, or what the far end has. */
 static void store_at_ends(runner *r, const segment_root *root, const double *value,
-                          const double *factor, const pl_family *f, long first, long k,
+                          const double *second, const pl_family *f, long first, long k,
                           long lanes) {
+  const bool own = segment_has_far(root);
+  const double *factor = own ? NULL : second, *value_there = own ? second : value;
   const long there = first + f->offset[k];
   double *far = root->target == TO_SUM
                     ? f->sum[root->sum] + there
                     : f->new_field[root->index] + there + (k + f->neighbours / 2) * f->new_plane;
   for (long q = 0; q < lanes; q++) {
-    const double here = is_present(f, first, k, q) ? value[q] : 0;
+    const double here = is_present(f, first, k, q) ? value_there[q] : 0;
     if (root->target == TO_SUM)
-      far[q] = pl_fma(root->parity * here, factor && here != 0 ? factor[q] : 1, far[q]);
+      far[q] =
+          pl_fma(own ? here : root->parity * here, factor && here != 0 ? factor[q] : 1, far[q]);
     else if (!f->ahead_only)
       far[q] = here;
   }
@@ -273,13 +276,14 @@ static void run_segment(runner *r, interpreter *run, const program_pass *now, co
       point_at_planes(r, now, k);
     }
     interpreter_run(run, &r->in, (int)lanes, r->result);
-    for (int n = 0, factors = a->root_count; n < a->root_count; n++) {
-      const bool fuses = segment_fuses(r->plan->graph, &a->roots[n]);
-      const double *factor = fuses ? r->result[factors++] : NULL;
+    for (int n = 0, seconds = a->root_count; n < a->root_count; n++) {
+      const segment_root *root = &a->roots[n];
+      const bool has = segment_fuses(r->plan->graph, root) || segment_has_far(root);
+      const double *second = has ? r->result[seconds++] : NULL;
       if (a->kind == OVER_PAIRS)
-        store_at_ends(r, &a->roots[n], r->result[n], factor, f, first, k, lanes);
+        store_at_ends(r, root, r->result[n], second, f, first, k, lanes);
       else
-        store(r, &a->roots[n], r->result[n], factor, f, first, k, lanes);
+        store(r, root, r->result[n], second, f, first, k, lanes);
     }
   }
   if (a->kind == OVER_PAIRS) take_sums(r, a, f, first, lanes);

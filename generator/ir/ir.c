@@ -68,7 +68,7 @@ static uint32_t hash_of(const node *n) {
   const uint64_t parts[] = {(uint64_t)n->op,         (uint32_t)n->operand[0],
                             (uint32_t)n->operand[1], (uint32_t)n->operand[2],
                             pl_to_bits(n->value),    (uint64_t)n->source,
-                            (uint32_t)n->index};
+                            (uint32_t)n->index,      (uint64_t)n->place};
   uint64_t h = 0;
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
     h = (h ^ parts[k]) * UINT64_C(0x9e3779b97f4a7c15);
@@ -80,7 +80,7 @@ static uint32_t hash_of(const node *n) {
 static bool is_same(const node *a, const node *b) {
   return a->op == b->op && a->operand[0] == b->operand[0] && a->operand[1] == b->operand[1] &&
          a->operand[2] == b->operand[2] && pl_to_bits(a->value) == pl_to_bits(b->value) &&
-         a->source == b->source && a->index == b->index;
+         a->source == b->source && a->index == b->index && a->place == b->place;
 }
 
 static void grow_table(ir *g) {
@@ -129,7 +129,6 @@ ir_node ir_input(ir *g, ir_source from, int index, const char *name, placement o
   n.place = on;
   const ir_node made = intern(g, &n);
   node *input = &g->nodes[made];
-  assert(input->place == on);
   if (name && !input->name) input->name = arena_text(g->names, name, strlen(name));
   return made;
 }

@@ -45,6 +45,17 @@ static vector cross(ir *g, vector a, vector b) {
   return v;
 }
 
+/* v + a x b, with a rounding for each product. These begin with b, as those of v = b' x a' do: so
+   what the ends of a bond exchange looks alike. */
+static vector cross_added(ir *g, vector v, vector a, vector b) {
+  for (int k = 0; k < 3; k++) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const ir_node first = ir_mul(g, b.of[j], a.of[i]), second = ir_mul(g, b.of[i], a.of[j]);
+    v.of[k] = ir_sub(g, ir_add(g, v.of[k], first), second);
+  }
+  return v;
+}
+
 static void keep(ir *g, ir_node *to, vector v, const char *const *names) {
   for (int k = 0; k < 3; k++) {
     ir_set_name(g, v.of[k], names[k], (span){0, 0, 0});
@@ -80,31 +91,36 @@ typedef struct quaternion {
 } quaternion;
 
 /* Of the rotation vector: (cos(|r|/2), r sin(|r|/2)/|r|), for |r| < 1/4 Taylor's series. */
-static quaternion quaternion_of(ir *g, vector r, ir_node square, ir_node expected) {
+static quaternion quaternion_of(ir *g, vector r, bool near) {
+  static const char *const names[] = {"turned_x", "turned_y", "turned_z"};
   static const double of_cosine[] =
       {1, -1.0 / 8, 1.0 / 384, -1.0 / 46080, 1.0 / 10321920, -1.0 / 3715891200},
                       of_sine[] = {1.0 / 2, -1.0 / 48, 1.0 / 3840, -1.0 / 645120, 1.0 / 185794560};
+  const ir_node square = dot(g, r, r), limit = ir_constant(g, 1.0 / 16);
+  const ir_node expected = near ? ir_expect(g, ir_binary(g, IR_LT, square, limit)) : IR_NONE;
   const ir_node length = at_least(g, ir_unary(g, IR_SQRT, square), 1e-100);
   const ir_node half = ir_mul(g, ir_constant(g, 0.5), length);
   const ir_node sine = ir_div(g, ir_unary(g, IR_SIN, half), length);
   const ir_node near_sine = polynomial(g, square, of_sine, 5);
   const ir_node near_cosine = polynomial(g, square, of_cosine, 6);
-  const ir_node scale = choose(g, expected, near_sine, sine);
-  return (quaternion){choose(g, expected, near_cosine, ir_unary(g, IR_COS, half)),
-                      times(g, scale, r)};
+  const ir_node w = choose(g, expected, near_cosine, ir_unary(g, IR_COS, half));
+  quaternion q = {w, times(g, choose(g, expected, near_sine, sine), r)};
+  ir_set_name(g, w, "turned_w", (span){0, 0, 0});
+  keep(g, q.v.of, q.v, names);
+  return q;
 }
 
-/* By how much the unit vector n turns: 2 (w v x n + v x (v x n)). */
+/* Half of what is added to the unit vector n as it turns: w v x n + v x (v x n). */
 static vector turned_by(ir *g, quaternion q, vector n) {
   const vector once = cross(g, q.v, n), again = cross(g, q.v, once);
-  return times(g, ir_constant(g, 2), sum(g, times(g, q.w, once), again));
+  return sum(g, times(g, q.w, once), again);
 }
 
 /* From one end to the other. */
 static quaternion relative(ir *g, quaternion i, quaternion j) {
   const ir_node w = ir_add(g, ir_mul(g, i.w, j.w), dot(g, i.v, j.v));
   const vector apart = difference(g, times(g, i.w, j.v), times(g, j.w, i.v));
-  return (quaternion){w, sum(g, apart, cross(g, i.v, j.v))};
+  return (quaternion){w, cross_added(g, apart, i.v, j.v)};
 }
 
 /* --- an end against the bond ------------------------------------------------------------------ */
@@ -115,17 +131,19 @@ typedef struct end {
 } end;
 
 /* e x t without cancellation, since the reference chord is along its own direction n:
-   (C + d) x (n + dn) = (C + d) x dn + d x n. */
+   e x (n + dn) = d x n/L + e x dn. */
 static end end_of(ir *g, const moving_chord *c, quaternion q) {
-  const vector n = from(c->reference), e = from(c->e), dn = turned_by(g, q, n);
-  const vector across = cross(g, from(c->chord), dn), moved = cross(g, from(c->d), n);
-  return (end){times(g, c->per_length, sum(g, across, moved)), dot(g, e, sum(g, n, dn))};
+  const vector n = from(c->reference), e = from(c->e), half = turned_by(g, q, n);
+  const vector twice = times(g, ir_constant(g, 2), e);
+  const vector moved = times(g, c->per_length, cross(g, from(c->d), n));
+  const ir_node straight = dot(g, e, n);
+  return (end){cross_added(g, moved, twice, half), ir_add(g, straight, dot(g, twice, half))};
 }
 
 /* theta, h and k. (1 - |x| cot|x|)/x^2 = 1/3 + x^2/45 + ... */
 static void find_bending(ir *g, const end *t, ir_node expected, vector *theta, ir_node *h,
                          ir_node *k) {
-  static const double series[] = {1.0 / 3, 1.0 / 45, 2.0 / 945, 1.0 / 4725, 2.0 / 93555};
+  static const double series[] = {1.0 / 3, 1.0 / 45, 2.0 / 945, 1.0 / 4725};
   const ir_node one = ir_constant(g, 1), square = dot(g, t->sine, t->sine);
   const ir_node sine = at_least(g, ir_unary(g, IR_SQRT, square), 1e-100);
   const ir_node far = ir_div(g, ir_binary(g, IR_ATAN2, sine, t->cosine), sine);
@@ -135,7 +153,7 @@ static void find_bending(ir *g, const end *t, ir_node expected, vector *theta, i
   *h = ir_mul(g, ratio, t->cosine);
   const ir_node angle = dot(g, *theta, *theta);
   const ir_node k_far = ir_div(g, ir_sub(g, one, *h), at_least(g, angle, 1e-200));
-  *k = choose(g, expected, polynomial(g, angle, series, 5), k_far);
+  *k = choose(g, expected, polynomial(g, angle, series, 4), k_far);
 }
 
 /* twist, along and turn; q and -q are one rotation. (1 - x^2)^(-1/2) = 1 + x^2/2 + ... */
@@ -176,12 +194,8 @@ end_rotations end_rotations_in_space(ir *g, const moving_chord *c, bool near) {
     r_i.of[k] = kinematics_input(g, phi_i[k]);
     r_j.of[k] = kinematics_input(g, phi_j[k]);
   }
-  const ir_node square_i = dot(g, r_i, r_i), square_j = dot(g, r_j, r_j);
-  const ir_node larger = ir_binary(g, IR_MAX, square_i, square_j);
-  const ir_node small =
-      near ? ir_expect(g, ir_binary(g, IR_LT, larger, ir_constant(g, 1.0 / 16))) : IR_NONE;
-  const quaternion q_i = quaternion_of(g, r_i, square_i, small),
-                   q_j = quaternion_of(g, r_j, square_j, small), q = relative(g, q_i, q_j);
+  const quaternion q_i = quaternion_of(g, r_i, near), q_j = quaternion_of(g, r_j, near),
+                   q = relative(g, q_i, q_j);
   const end t_i = end_of(g, c, q_i), t_j = end_of(g, c, q_j);
   const ir_node least = smaller(g, smaller(g, t_i.cosine, t_j.cosine), q.w);
   const ir_node along =
@@ -197,51 +211,44 @@ end_rotations end_rotations_in_space(ir *g, const moving_chord *c, bool near) {
 
 /* --- what acts -------------------------------------------------------------------------------- */
 
-static ir_node half_of(ir *g, ir_node n) {
-  return ir_mul(g, ir_constant(g, 0.5), n);
-}
-
 bond_actions end_actions_in_plane(ir *g, const lowered_law *p, const ir_node *e,
                                   ir_node per_length) {
-  bond_actions a = {.force = {ir_mul(g, p->N, e[0]), ir_mul(g, p->N, e[1]), IR_NONE}};
-  const ir_node sum = ir_add(g, p->M_i[0], p->M_j[0]), apart = ir_sub(g, p->M_i[0], p->M_j[0]);
+  bond_actions a = {.force = {ir_mul(g, p->N, e[0]), ir_mul(g, p->N, e[1]), IR_NONE},
+                    .moment = {p->M_i[0]}};
+  const ir_node sum = ir_add(g, p->M_i[0], p->M_j[0]);
   const ir_node shear = ir_mul(g, sum, per_length); /* along n = (-e_y, e_x), on j */
   a.force[0] = ir_add(g, a.force[0], ir_mul(g, shear, e[1]));
   a.force[1] = ir_sub(g, a.force[1], ir_mul(g, shear, e[0]));
-  a.even[0] = half_of(g, sum);
-  a.odd[0] = half_of(g, apart);
   return a;
 }
 
-/* A M. */
-static vector carried(ir *g, vector moment, vector theta, ir_node h, ir_node k) {
+/* v + A M. */
+static vector carried(ir *g, vector v, vector moment, vector theta, ir_node h, ir_node k) {
   const ir_node along = ir_mul(g, k, dot(g, moment, theta));
-  return sum(g, times(g, h, moment), times(g, along, theta));
+  return sum(g, sum(g, v, times(g, h, moment)), times(g, along, theta));
 }
 
 bond_actions end_actions_in_space(ir *g, const lowered_law *p, const ir_node *direction,
                                   ir_node per_length, const end_rotations *r) {
+  const ir_node zero = ir_constant(g, 0), half = ir_constant(g, 0.5);
   const vector e = from(direction), M_i = from(p->M_i), M_j = from(p->M_j),
                theta_i = from(r->theta_i), theta_j = from(r->theta_j);
-  const vector m_i = carried(g, M_i, theta_i, r->h[0], r->k[0]);
-  const vector m_j = carried(g, M_j, theta_j, r->h[1], r->k[1]);
-  const vector across_i = cross(g, theta_i, e), across_j = cross(g, theta_j, e);
-  const ir_node of_i = dot(g, M_i, across_i), of_j = dot(g, M_j, across_j);
-  const ir_node half = ir_constant(g, 0.5);
-  ir_node about = ir_mul(g, half, ir_sub(g, of_i, of_j));
-  vector even = times(g, half, sum(g, m_i, m_j)), odd = times(g, half, difference(g, m_i, m_j));
+  const vector turning = cross_added(g, cross(g, M_i, theta_i), theta_j, M_j);
+  ir_node about = ir_mul(g, half, dot(g, turning, e));
+  vector twisting = {{zero, zero, zero}};
   if (p->T != IR_NONE) {
     about = ir_add(g, ir_mul(g, p->T, r->along), about);
-    even = sum(g, times(g, p->T, from(r->turn)), even);
+    twisting = times(g, p->T, from(r->turn));
   }
-  odd = difference(g, odd, times(g, about, e));
-  const vector couple = times(g, ir_mul(g, ir_constant(g, 2), per_length), cross(g, even, e));
-  const vector force = difference(g, times(g, p->N, e), couple);
+  const vector of_i = carried(g, twisting, M_i, theta_i, r->h[0], r->k[0]),
+               of_j = carried(g, twisting, M_j, theta_j, r->h[1], r->k[1]);
+  const vector couple = cross(g, sum(g, of_i, of_j), e), along = times(g, about, e);
+  const vector force = difference(g, times(g, p->N, e), times(g, per_length, couple));
+  const vector moment = difference(g, of_i, along);
   bond_actions a;
   for (int k = 0; k < 3; k++) {
     a.force[k] = force.of[k];
-    a.even[k] = even.of[k];
-    a.odd[k] = odd.of[k];
+    a.moment[k] = moment.of[k];
   }
   return a;
 }

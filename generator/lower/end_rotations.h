@@ -43,11 +43,10 @@ typedef struct moving_chord {
 } moving_chord;
 end_rotations end_rotations_in_space(ir *g, const moving_chord *c, bool near);
 
-/* What a bond does to its particles: the force on i (on j the opposite), and half of the sum and of
-   the difference of the moments m_i, m_j on the bond's ends; the particles receive the opposite. */
+/* What a bond does to its particles: the force on i (on j the opposite), and the moment m_i on its
+   end i; the particle receives the opposite. */
 typedef struct bond_actions {
-  ir_node force[3];
-  ir_node even[BENDING_AXES], odd[BENDING_AXES];
+  ir_node force[3], moment[BENDING_AXES];
 } bond_actions;
 bond_actions end_actions_in_plane(ir *g, const lowered_law *p, const ir_node *e,
                                   ir_node per_length);

@@ -129,7 +129,8 @@ static ir_node lower_scalar_binary(ir *g, binary_op op, ir_node a, ir_node b) {
   const ir_op by = computed[op].by;
   const operator_reading reading = computed[op].reading;
   if (by == IR_POW) return ir_power(g, a, b);
-  const ir_node result = reading == READ_EXCHANGED ? ir_binary(g, by, b, a) : ir_binary(g, by, a, b);
+  const ir_node result =
+      reading == READ_EXCHANGED ? ir_binary(g, by, b, a) : ir_binary(g, by, a, b);
   return reading == READ_NEGATED ? ir_unary(g, IR_NOT, result) : result;
 }
 

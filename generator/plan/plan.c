@@ -64,7 +64,7 @@ kernel_plan *plan_kernel_of_families(const law *l, const law_variation *v, diagn
   if (is_for_pairs(l)) {
     kernel_plan *plan = plan_families(l, v, FORM_PAIRS, d);
     if (!plan || program_sum_count(&plan->programs[PROGRAM_STEP]) > 0) return plan;
-    plan_free(plan); /* nothing is the same or opposite at both ends */
+    plan_free(plan); /* no pass finds what far ends add */
   }
   const bool few = l->neighbours <= MOST_WRITTEN_OUT;
   return plan_families(l, v, few ? FORM_UNROLLED : FORM_LOOPS, d);

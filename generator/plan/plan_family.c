@@ -101,8 +101,7 @@ void plan_want(const kernel_plan *plan, segment *wanted, ir_node node, segment_t
               (segment_root){.node = node, .target = target, .over = over, .index = index});
 }
 
-/* Particles receive the opposite of the moments on the bond's ends. What is the same at both ends
-   and what is the opposite are sums of their own, so that a bond can add them to both. */
+/* Particles receive the opposite of the moments on the bond's ends. */
 static void plan_forces_and_moments(const kernel_plan *plan, const lowered_law *of,
                                     segment *wanted) {
   ir *g = plan->graph;
@@ -110,9 +109,8 @@ static void plan_forces_and_moments(const kernel_plan *plan, const lowered_law *
   for (int d = 0; d < plan->dimensions; d++)
     plan_want(plan, wanted, family_sum(g, a.force[d]), TO_FORCE, OVER_PARTICLES, d);
   for (int k = 0; k < plan->rotations; k++) {
-    const ir_node even = family_sum(g, a.even[k]), odd = family_sum(g, a.odd[k]);
-    plan_want(plan, wanted, ir_neg(g, ir_add(g, even, odd)), TO_FORCE, OVER_PARTICLES,
-              plan->dimensions + k);
+    const ir_node sum = family_sum(g, a.moment[k]);
+    plan_want(plan, wanted, ir_neg(g, sum), TO_FORCE, OVER_PARTICLES, plan->dimensions + k);
   }
 }
 
@@ -334,8 +332,15 @@ static void share_reciprocals_of_roots(ir *g, segment *r) {
   free(all);
 }
 
+/* Of what both ends of a bond in space see alike fused products would tell nothing: where one end
+   computes it, they are fused later. */
+static bool fuses_late(const kernel_plan *plan) {
+  return plan->rotations == 3 && plan->form == FORM_PAIRS;
+}
+
 /* All at once: what several passes compute they compute in the same way. */
-static void rewrite_last(ir *g, segment *step, segment *observe) {
+static void rewrite_last(const kernel_plan *plan, segment *step, segment *observe) {
+  ir *g = plan->graph;
   const int count = step->root_count + observe->root_count;
   ir_node *all = must_alloc(((size_t)count + 1) * sizeof *all);
   for (int k = 0; k < step->root_count; k++)
@@ -344,16 +349,14 @@ static void rewrite_last(ir *g, segment *step, segment *observe) {
     all[step->root_count + k] = observe->roots[k].node;
   rewrite_choices(g, all, count, all);
   rewrite_factors(g, all, count, all);
-  rewrite_fused(g, all, count, all);
+  if (!fuses_late(plan)) rewrite_fused(g, all, count, all);
   segment_replace(step, all);
   segment_replace(observe, all + step->root_count);
   free(all);
 }
 
-/* Of what both ends of a bond in space see alike fused products would tell nothing: where one end
-   computes it, they are fused later. */
 static void fuse_motion(const kernel_plan *plan, program_motion *motion) {
-  if (plan->rotations == 3 && plan->form == FORM_PAIRS) return;
+  if (fuses_late(plan)) return;
   ir_node *to = arena_alloc(plan->memory, MOST_MOTION * sizeof *to);
   rewrite_fused(plan->graph, motion->to, motion->count, to);
   motion->to = to;
@@ -473,7 +476,7 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   segment step = step_roots(&p), observe = observe_roots(&p);
   plan->reads_rates = plan_reads_rates(plan, &p.step);
   share_reciprocals_of_roots(p.g, &observe);
-  rewrite_last(p.g, &step, &observe);
+  rewrite_last(plan, &step, &observe);
   segment losses = loss_roots(&p, &energy, &step);
   program_motion motion = plan_motion(plan, p.step.along_reference);
   fuse_motion(plan, &motion);

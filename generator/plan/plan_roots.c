@@ -76,7 +76,7 @@ void plan_hoist(kernel_plan *p) {
 
 ir_cost plan_cost(const kernel_plan *p, const segment *a, placement at_least) {
   ir_node *nodes = segment_values(a);
-  ir_cost cost = ir_count_cost(p->graph, nodes, a->root_count, at_least);
+  ir_cost cost = ir_count_cost(p->graph, nodes, segment_value_count(a), at_least);
   free(nodes);
   return cost;
 }

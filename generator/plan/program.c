@@ -6,6 +6,7 @@
 
 #include "generator/plan/program_absent.h"
 #include "generator/plan/program_builder.h"
+#include "generator/plan/program_ends.h"
 #include "generator/plan/program_mirror.h"
 #include "generator/plan/program_parity.h"
 #include "generator/plan/program_schedule.h"
@@ -39,7 +40,8 @@ typedef struct pass_view {
   builder *b;
   int now;
   const segment *wanted; /* of the program */
-  node_map seen, parity; /* parity + 1 of what a sum adds up; of sums as the pass sees them */
+  node_map seen;
+  pass_ends ends;
 } pass_view;
 
 /* The field toward neighbours that an earlier pass has computed the value for, which later ones
@@ -54,6 +56,15 @@ static const segment_root *field_before(const pass_view *v, ir_node n) {
   return NULL;
 }
 
+static ir_node seen_in_pass(pass_view *v, ir_node n);
+
+/* What the sum `image` of n adds up at the other end of a bond. */
+static void find_ends(pass_view *v, ir_node image, ir_node n) {
+  ir_node far;
+  map_set(&v->ends.parity, image, program_parity_of_root(v->b, n, &far) + 1);
+  if (far != IR_NONE) map_set(&v->ends.far, image, seen_in_pass(v, far));
+}
+
 static ir_node seen_in_pass(pass_view *v, ir_node n) {
   builder *b = v->b;
   ir *g = b->g;
@@ -62,7 +73,7 @@ static ir_node seen_in_pass(pass_view *v, ir_node n) {
   ir_node image = n, operand[3] = {IR_NONE, IR_NONE, IR_NONE};
   if (!is_leaf(g, n)) {
     const bool kept =
-        is_of_one_particle(g, n) ? program_goes_over_family(b, n) : map_get(&b->linked, n) >= 0;
+        is_of_one_particle(g, n) ? program_is_left(b, n) : map_get(&b->linked, n) >= 0;
     const segment_root *field = field_before(v, n);
     if (field)
       image = ir_input(g, IR_FROM_NEW_FIELD, field->index, ir_name(g, n) ? ir_name(g, n) : "new",
@@ -74,7 +85,7 @@ static ir_node seen_in_pass(pass_view *v, ir_node n) {
         operand[k] = seen_in_pass(v, ir_operand(g, n, k));
       image = program_made_again(g, n, operand);
       if (ir_is_reduction(ir_operation(g, n)) && b->sharing == SHARE_PAIRS)
-        map_set(&v->parity, image, program_parity_of_root(b, ir_operand(g, n, 0)) + 1);
+        find_ends(v, image, ir_operand(g, n, 0));
     }
   }
   map_set(&v->seen, n, image);
@@ -109,8 +120,9 @@ static void build_pass(builder *b, program_pass *pass, int now, const segment *r
   segment wanted = {.root_count = 0};
   for (int k = 0; k < roots->root_count; k++) {
     segment_root r = roots->roots[k];
+    ir_node far;
     if (level_of(b, r.node) != now) continue;
-    if (pairs) r.parity = program_parity_of_root(b, r.node);
+    if (pairs) r.parity = program_parity_of_root(b, r.node, &far);
     segment_add(b->memory, &wanted, r);
   }
   want_links(b, &wanted, now, links);
@@ -120,9 +132,10 @@ static void build_pass(builder *b, program_pass *pass, int now, const segment *r
         r->target == TO_LINK && r->over == OVER_PARTICLES && is_leaf(b->g, r->node);
     if (!of_link) r->node = seen_in_pass(&v, r->node);
   }
-  program_schedule(b->g, b->memory, pass, &wanted, &v.parity, pairs);
+  program_schedule(b->g, b->memory, pass, &wanted, &v.ends, pairs);
   map_clear(&v.seen);
-  map_clear(&v.parity);
+  map_clear(&v.ends.parity);
+  map_clear(&v.ends.far);
 }
 
 void program_build(kernel_program *out, const char *name, ir *g, arena *memory,
@@ -140,6 +153,7 @@ void program_build(kernel_program *out, const char *name, ir *g, arena *memory,
     own.roots[k].node = program_resolve(&b, wanted->roots[k].node);
   }
   program_substitute(&b, &own, motion->from, motion->to, motion->count);
+  program_leave_ends(&b, &own);
   if (sharing != SHARE_NOTHING && sharing != SHARE_PAIRS) program_share(&b, &own);
   for (int k = 0; k < own.root_count; k++) {
     int level = level_of(&b, own.roots[k].node);
@@ -152,8 +166,7 @@ void program_build(kernel_program *out, const char *name, ir *g, arena *memory,
     build_pass(&b, &out->passes[p], p, &own);
   assert(!b.shared_count || b.first_shared + b.shared_count <= MOST_SHARED);
   if (b.shared_count) program_find_vanishing(g, out);
-  if (b.links.of_particles > links->of_particles) links->of_particles = b.links.of_particles;
-  if (b.links.of_bonds > links->of_bonds) links->of_bonds = b.links.of_bonds;
+  *links = b.links;
   map_clear(&b.resolved);
   map_clear(&b.mirrored);
   map_clear(&b.linked);
@@ -166,4 +179,6 @@ void program_build(kernel_program *out, const char *name, ir *g, arena *memory,
   map_clear(&b.users);
   map_clear(&b.partner);
   map_clear(&b.partner_sign);
+  map_clear(&b.far);
+  map_clear(&b.far_sign);
 }

@@ -20,6 +20,7 @@ typedef struct builder {
   int shared_count, first_shared, round;
   node_map resolved, mirrored, linked, reduced, sided, level, parity, plain, counted, users;
   node_map partner, partner_sign; /* a node that the other end has for it, and +1 with which sign */
+  node_map far, far_sign;         /* the same, made where there was none */
 } builder;
 
 static inline bool is_leaf(const ir *g, ir_node n) {

@@ -51,13 +51,20 @@ bool program_goes_over_family(builder *b, ir_node n) {
   return does;
 }
 
+/* A number for the link of n, which some program may have left already. */
+static int number_of(builder *b, ir_node n) {
+  if (!is_of_one_particle(b->g, n)) return b->links.of_bonds++;
+  for (int k = 0; k < b->links.left_count; k++)
+    if (b->links.left[k] == n) return b->links.left_in[k];
+  return b->links.of_particles++;
+}
+
 static int link_of(builder *b, ir_node n) {
   int known = map_get(&b->linked, n);
   if (known >= 0) return known;
   assert(b->link_count < MOST_LINKS);
   b->link[b->link_count] = n;
-  b->link_number[b->link_count] =
-      is_of_one_particle(b->g, n) ? b->links.of_particles++ : b->links.of_bonds++;
+  b->link_number[b->link_count] = number_of(b, n);
   map_set(&b->linked, n, b->link_count);
   return b->link_count++;
 }
@@ -77,7 +84,7 @@ static const char *link_name(builder *b, int link) {
   return name ? name : arena_printf(b->memory, "link_%d", link);
 }
 
-static ir_node neighbour_link(builder *b, ir_node n) {
+ir_node program_neighbour_link(builder *b, ir_node n) {
   int link = link_of(b, n);
   const char *name = arena_printf(b->memory, "%s_j", link_name(b, link));
   const bool of_particle = is_of_one_particle(b->g, n);
@@ -162,10 +169,15 @@ static ir_node mirror_input(builder *b, ir_node n) {
   case IR_FROM_SHARED_ODD:
     return ir_neg(g, n);
   case IR_FROM_SHAPE:
-    return neighbour_link(b, n);
+    return program_neighbour_link(b, n);
   default:
     return n;
   }
+}
+
+bool program_is_left(builder *b, ir_node n) {
+  return is_of_one_particle(b->g, n) &&
+         (program_goes_over_family(b, n) || map_get(&b->linked, n) >= 0);
 }
 
 ir_node program_mirror(builder *b, ir_node n) {
@@ -176,8 +188,8 @@ ir_node program_mirror(builder *b, ir_node n) {
     image = n;
   else if (is_leaf(b->g, n))
     image = mirror_input(b, n);
-  else if (is_of_one_particle(b->g, n) && program_goes_over_family(b, n))
-    image = neighbour_link(b, n);
+  else if (program_is_left(b, n))
+    image = program_neighbour_link(b, n);
   else
     image = with_images(b, n, program_mirror);
   map_set(&b->mirrored, n, image);
@@ -213,7 +225,7 @@ ir_node program_resolve(builder *b, ir_node n) {
   ir_node image = n;
   if (ir_operation(b->g, n) == IR_NEIGHBOUR) {
     ir_node theirs = program_resolve(b, ir_operand(b->g, n, 0));
-    image = is_dear(b, theirs) ? neighbour_link(b, theirs) : program_mirror(b, theirs);
+    image = is_dear(b, theirs) ? program_neighbour_link(b, theirs) : program_mirror(b, theirs);
   } else if (!is_leaf(b->g, n))
     image = with_images(b, n, program_resolve);
   map_set(&b->resolved, n, image);

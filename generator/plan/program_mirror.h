@@ -10,8 +10,13 @@ ir_node program_resolve(builder *b, ir_node n);
 /* What the neighbour has for a resolved value. */
 ir_node program_mirror(builder *b, ir_node n);
 
-/* The link that holds a value, as its own particle reads it; what the link that an input reads from
+/* Whether the particle leaves the value to its neighbours: they cannot compute it, or it is linked
+   since they need not. */
+bool program_is_left(builder *b, ir_node n);
+/* The link that holds a value, as the neighbour at the other end reads it, and as its own particle
+   does; what the link that an input reads from
    the neighbour holds. */
+ir_node program_neighbour_link(builder *b, ir_node n);
 ir_node program_own_link(builder *b, ir_node n);
 ir_node program_linked_node(const builder *b, ir_node input);
 

@@ -180,6 +180,52 @@ int program_parity(builder *b, ir_node n) {
   return p;
 }
 
+/* --- the far end ------------------------------------------------------------------------------ */
+
+/* The same operation of what the other end has for the operands: signs are taken out of it where
+   they can be, so that the other end's own values are found again. */
+static ir_node far_of_operation(builder *b, ir_node n, const ir_node *far, const int *signs,
+                                int *sign) {
+  ir *g = b->g;
+  const ir_op op = ir_operation(g, n);
+  const bool linear = op == IR_ADD || op == IR_SUB || op == IR_SELECT;
+  const int first = op == IR_SELECT;
+  ir_node operand[3] = {far[0], far[1], far[2]};
+  *sign = linear ? signs[first] : 1;
+  if ((op == IR_ADD || op == IR_SUB) && signs[0] != signs[1])
+    return ir_make(g, op == IR_ADD ? IR_SUB : IR_ADD, far[0], far[1], IR_NONE);
+  if (op == IR_MUL || op == IR_DIV) *sign = signs[0] * signs[1];
+  if (operation_has(op, ODD)) *sign = signs[0];
+  const bool taken =
+      op == IR_MUL || op == IR_DIV || operation_has(op, ODD) || operation_has(op, EVEN);
+  for (int k = 0; k < ir_arity(op) && !taken; k++)
+    if (signs[k] != (linear && k >= first ? *sign : 1)) operand[k] = ir_neg(g, far[k]);
+  return program_made_again(g, n, operand);
+}
+
+static ir_node far_of(builder *b, ir_node n, int *sign) {
+  const ir_node known = map_get(&b->far, n);
+  *sign = program_parity(b, n);
+  if (*sign) return n;
+  if (known >= 0) {
+    *sign = map_get(&b->far_sign, n) - 1;
+    return known;
+  }
+  ir_node operand[3] = {IR_NONE, IR_NONE, IR_NONE}, made;
+  int signs[3] = {1, 1, 1};
+  *sign = 1;
+  if (is_whole(b, n)) {
+    made = program_mirror(b, n);
+  } else {
+    for (int k = 0; k < ir_arity(ir_operation(b->g, n)); k++)
+      operand[k] = far_of(b, ir_operand(b->g, n, k), &signs[k]);
+    made = far_of_operation(b, n, operand, signs, sign);
+  }
+  map_set(&b->far, n, made);
+  map_set(&b->far_sign, n, *sign + 1);
+  return made;
+}
+
 /* Whether links tell the other end all that it cannot compute. */
 static bool is_told(builder *b, ir_node n, node_map *seen) {
   if (map_get(seen, n) >= 0 || map_get(&b->linked, n) >= 0) return true;
@@ -193,9 +239,15 @@ static bool is_told(builder *b, ir_node n, node_map *seen) {
   return told;
 }
 
-int program_parity_of_root(builder *b, ir_node n) {
+int program_parity_of_root(builder *b, ir_node n, ir_node *far) {
   node_map seen = {0};
   const bool told = is_told(b, n, &seen);
+  int sign;
   map_clear(&seen);
-  return told ? program_parity(b, n) : 0;
+  *far = IR_NONE;
+  if (!told) return 0;
+  if (program_parity(b, n)) return program_parity(b, n);
+  *far = far_of(b, n, &sign);
+  if (sign < 0) *far = ir_neg(b->g, *far);
+  return 0;
 }

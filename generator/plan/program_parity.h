@@ -14,8 +14,9 @@
 /* What the other end of a bond computes for a value: 1: the same; -1: the opposite; 0: something
    else, as far as can be seen. */
 int program_parity(builder *b, ir_node n);
-/* The same, and 0 where the other end would need links that nothing else asks for. */
-int program_parity_of_root(builder *b, ir_node n);
+/* The same; of 0 *far is what the other end computes, made of values that this one has where that
+   can be, or IR_NONE where it would need links that nothing else asks for. */
+int program_parity_of_root(builder *b, ir_node n, ir_node *far);
 /* The terms of a sum, or the factors of a product. */
 enum { MOST_TERMS = 24 };
 typedef struct term_list {

@@ -10,7 +10,7 @@ typedef struct scheduler {
   arena *memory;
   program_pass *pass;
   node_map phase, slot, plane;
-  const node_map *parity; /* of sums, as pass_view has it */
+  const pass_ends *ends;
   bool pairs;
   int loop_count;
 } scheduler;
@@ -56,14 +56,15 @@ static ir_node slot_of(scheduler *s, ir_node n) {
     slot = s->pass->slot_count++;
     map_set(&s->slot, n, slot);
     ir_op op = ir_operation(s->g, n);
+    const int parity = map_get(&s->ends->parity, n), far = map_get(&s->ends->far, n);
     if (ir_is_reduction(op))
-      segment_add(
-          s->memory, neighbours_in(s, phase_of(s, n) - 1),
-          (segment_root){.node = ir_operand(s->g, n, 0),
-                         .target = target_of_reduction(op),
-                         .over = OVER_NEIGHBOURS,
-                         .index = slot,
-                         .parity = map_get(s->parity, n) >= 0 ? map_get(s->parity, n) - 1 : 0});
+      segment_add(s->memory, neighbours_in(s, phase_of(s, n) - 1),
+                  (segment_root){.node = ir_operand(s->g, n, 0),
+                                 .target = target_of_reduction(op),
+                                 .over = OVER_NEIGHBOURS,
+                                 .index = slot,
+                                 .parity = parity >= 0 ? parity - 1 : 0,
+                                 .far = far >= 0 ? far : IR_NONE});
     else
       segment_add(
           s->memory, particles_after(s, phase_of(s, n)),
@@ -139,6 +140,10 @@ static ir_node seen_in_segment(segment_view *v, ir_node n) {
   return image;
 }
 
+static bool has_far(const segment_root *r) {
+  return r->target == TO_SUM && r->parity == 0 && r->far != IR_NONE;
+}
+
 /* Roots in terms of what the segment can read. A root that is itself kept in a slot or a plane is
    computed here. */
 static void view_segment(scheduler *s, segment *a, int loop) {
@@ -149,6 +154,7 @@ static void view_segment(scheduler *s, segment *a, int loop) {
         !is_leaf(s->g, n) && !ir_is_uniform(s->g, n) && !ir_is_reduction(ir_operation(s->g, n)) &&
         (a->kind == OVER_PARTICLES) == is_of_one_particle(s->g, n) && phase_of(s, n) == loop;
     a->roots[k].node = here ? computed_here(&v, n) : seen_in_segment(&v, n);
+    if (has_far(&a->roots[k])) a->roots[k].far = seen_in_segment(&v, a->roots[k].far);
   }
   map_clear(&v.seen);
 }
@@ -165,13 +171,34 @@ static void drop_empty_segments(program_pass *p) {
 /* Where one end computes a value, products and sums may round once. */
 static void fuse_segment(ir *g, segment *a) {
   ir_node *values = segment_values(a);
-  rewrite_fused(g, values, a->root_count, values);
+  rewrite_fused(g, values, segment_value_count(a), values);
   segment_replace(a, values);
   free(values);
 }
 
-/* A pass whose one loop over neighbours the two ends of a bond would do alike does it bond by bond:
-   what the far end gets is complete when its turn comes. */
+static int cost_of(const ir *g, const ir_node *nodes, int count) {
+  const ir_cost c = ir_count_cost(g, nodes, count, ON_BOND);
+  enum { DEAR = 10 };
+  return c.additions + c.multiplications + c.selects + DEAR * (c.divisions + c.functions);
+}
+
+/* Whether bonds find what their far ends add nearly at no cost, in what they compute anyway. */
+static bool are_ends_alike(const ir *g, const segment *a) {
+  const double little = 1.0 / 16;
+  ir_node *values = must_alloc(2 * ((size_t)a->root_count + 1) * sizeof *values);
+  int count = 0;
+  for (int k = 0; k < a->root_count; k++)
+    values[count++] = a->roots[k].node;
+  const int own = cost_of(g, values, count);
+  for (int k = 0; k < a->root_count; k++)
+    if (has_far(&a->roots[k])) values[count++] = a->roots[k].far;
+  const int both = cost_of(g, values, count);
+  free(values);
+  return both <= (1 + little) * own;
+}
+
+/* A pass with one loop over neighbours, of which each end of a bond knows what the other adds up,
+   does it bond by bond: what the far end gets is complete when its turn comes. */
 static void pair_ends(ir *g, program_pass *p) {
   segment *loop = NULL;
   int sums = 0;
@@ -182,9 +209,11 @@ static void pair_ends(ir *g, program_pass *p) {
   }
   for (int k = 0; loop && k < loop->root_count; k++) {
     const segment_root *r = &loop->roots[k];
-    if (!(r->target == TO_SUM && r->parity) && !(r->target == TO_FIELD && r->parity == 1)) return;
+    if (!(r->target == TO_SUM && (r->parity || has_far(r))) &&
+        !(r->target == TO_FIELD && r->parity == 1))
+      return;
   }
-  if (!loop) return;
+  if (!loop || !are_ends_alike(g, loop)) return;
   loop->kind = OVER_PAIRS;
   for (int k = 0; k < loop->root_count; k++) {
     loop->roots[k].over = OVER_PAIRS;
@@ -196,8 +225,8 @@ static void pair_ends(ir *g, program_pass *p) {
 /* --- the pass --------------------------------------------------------------------------------- */
 
 void program_schedule(ir *g, arena *memory, program_pass *pass, const segment *wanted,
-                      const node_map *parity, bool pairs) {
-  scheduler s = {.g = g, .memory = memory, .pass = pass, .parity = parity, .pairs = pairs};
+                      const pass_ends *ends, bool pairs) {
+  scheduler s = {.g = g, .memory = memory, .pass = pass, .ends = ends, .pairs = pairs};
   for (int k = 0; k < wanted->root_count; k++) {
     const segment_root *r = &wanted->roots[k];
     int loops = phase_of(&s, r->node) + (r->over == OVER_NEIGHBOURS);

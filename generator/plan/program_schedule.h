@@ -18,10 +18,16 @@
 
 #include "generator/plan/program_builder.h"
 
-/* Makes the segments of a pass that computes the roots of `wanted`. parity: of sums over the
-   family, what the other end adds up, plus 1 (program_parity_of_root). With `pairs` a loop that
+/* What the other end of a bond adds up, of sums over the family as a pass sees them
+   (program_parity_of_root). */
+typedef struct pass_ends {
+  node_map parity; /* + 1 */
+  node_map far;    /* where parity is 0 and it is known */
+} pass_ends;
+
+/* Makes the segments of a pass that computes the roots of `wanted`. With `pairs` a loop that
    both ends of a bond would do alike is done bond by bond. */
 void program_schedule(ir *g, arena *memory, program_pass *pass, const segment *wanted,
-                      const node_map *parity, bool pairs);
+                      const pass_ends *ends, bool pairs);
 
 #endif

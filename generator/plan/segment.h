@@ -50,12 +50,18 @@ typedef struct segment_root {
   segment_target target;
   segment_kind over; /* what it is written for: its segment's kind */
   int index;         /* force plane, field, observed plane, out plane, parameter, slot, ... */
-  int parity; /* at the other end of the bond: 1: the same; -1: the opposite; 0: something else */
-  int sum;    /* OVER_PAIRS: which pl_family.sum TO_SUM adds to at the far end */
+  int parity;  /* at the other end of the bond: 1: the same; -1: the opposite; 0: something else */
+  ir_node far; /* OVER_PAIRS: that, where parity is 0 */
+  int sum;     /* OVER_PAIRS: which pl_family.sum TO_SUM adds to at the far end */
   /* Where the bond is absent TO_SHARED writes 0, TO_SUM adds what is 0 by itself, and does not
      ask. */
   bool vanishes;
 } segment_root;
+
+/* What adds to what is lost already. */
+static inline bool segment_is_loss(const segment_root *r) {
+  return r->target == TO_DISSIPATED_STATE || r->target == TO_DISSIPATED_RATE;
+}
 
 /* Whether it matters for a root over neighbours or bonds that the bond exists. */
 static inline bool segment_asks(const segment_root *r) {
@@ -95,9 +101,13 @@ typedef enum program_sharing {
 } program_sharing;
 
 /* Values that passes leave to later ones: of particles, and toward each neighbour. Shared values
-   stand in pairs among the latter, since only owners write them. */
+   stand in pairs among the latter, since only owners write them. What particles leave by themselves
+   (program_ends.h) all programs leave in the same link. */
+enum { MOST_LEFT = 32 };
 typedef struct program_links {
   int of_particles, of_bonds;
+  ir_node left[MOST_LEFT];
+  int left_in[MOST_LEFT], left_count;
 } program_links;
 
 /* Where shared value `index` of owned bond k, of 0 .. half-1, stands: plane half*upper + k of link
@@ -111,7 +121,14 @@ static inline shared_place program_shared_place(int index) {
 }
 
 void segment_add(arena *memory, segment *a, segment_root root);
-/* [root_count], to be freed; and new ones in their place. */
+/* Whether the other end of a bond adds another value. */
+static inline bool segment_has_far(const segment_root *r) {
+  return r->over == OVER_PAIRS && r->target == TO_SUM && r->parity == 0;
+}
+
+/* [segment_value_count] of the roots, then those at far ends that are others; to be freed. And new
+   ones in their place. */
+int segment_value_count(const segment *a);
 ir_node *segment_values(const segment *a);
 void segment_replace(segment *a, const ir_node *values);
 /* Marks [ir_count] the nodes that the roots need; to be freed. */
@@ -120,7 +137,7 @@ unsigned char *segment_needed(const ir *g, const segment *a);
 /* A sum of what is the same for all bonds of a class: it does not change from step to step
    (pl_family.constant_sum). */
 static inline bool segment_is_constant(const ir *g, const segment_root *r) {
-  return r->over == OVER_PAIRS && r->target == TO_SUM && ir_is_uniform(g, r->node);
+  return r->over == OVER_PAIRS && r->target == TO_SUM && r->parity && ir_is_uniform(g, r->node);
 }
 
 /* A sum of products, which differ from bond to bond, adds each with one rounding. Of pairs one
@@ -129,8 +146,8 @@ static inline bool segment_is_constant(const ir *g, const segment_root *r) {
 bool segment_fuses(const ir *g, const segment_root *r);
 
 /* What a segment computes for its roots: nodes[at most 2 root_count]; first their values, or first
-   factors, then the second factors of those that fuse (of pairs the finite ones). Returns how
-   many. */
+   factors, then, of those that have one, the second factor (of pairs the finite one) or the value
+   at the far end. Returns how many. */
 int segment_nodes(const ir *g, const segment *a, ir_node *nodes);
 
 #endif

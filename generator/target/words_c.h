@@ -197,6 +197,8 @@
   X(RETURN_IF_AHEAD, "  if (family->ahead_only) return;\n")                                        \
   /* loops over particles and neighbours */                                                        \
   X(OVER_PARTICLES, "    { /* particle by particle */\n")                                          \
+  X(SOME_UNEXPECTED, "    uint64_t unusual = 0;\n")                                                \
+  X(IF_SOME_UNEXPECTED, "    if (unusual != 0) {\n")                                                \
   X(OVER_LANES, "$1PL_INDEPENDENT\n$1for (long q = 0; q < lanes; q++) {\n")                        \
   X(OVER_NEIGHBOURS, "    for (long k = 0; k < family->neighbours; k++) { "                        \
     "/* neighbour by neighbour */\n"                                                               \
@@ -251,6 +253,7 @@
   X(KEEP_VALUE, "        kept[$1][q] = value_$1;\n")                                               \
   X(KEPT_VALUE, "        const double value_$1 = kept[$1][q];\n")                                  \
   X(ADD_TO_BOTH, "        to_$1[q] += value_$2;\n        far_$1[q] $3= value_$2;\n")               \
+  X(ADD_TO_EACH, "        to_$1[q] += value_$2;\n        far_$1[q] += value_$3;\n")               \
   X(ADD_PRODUCT_TO_BOTH, "        to_$1[q] = pl_fma(value_$2, $3, to_$1[q]);\n"                    \
     "        far_$1[q] = pl_fma($4value_$2, $3, far_$1[q]);\n")                                    \
   X(TAKE_SUM, "    {\n    double *restrict got = family->sum[$1] + first;\n"                       \
@@ -264,7 +267,7 @@
     "slot_$2[q];\n    }\n")                                                                        \
   X(NEXT_IF_AHEAD, "    if (family->ahead_only) continue;\n")                                      \
   /* what is not as expected, now and when the pass was here last */                               \
-  X(GATHER_UNEXPECTED, "        unusual |= (($1)) ? 0 : bonds[q];\n")                              \
+  X(GATHER_UNEXPECTED, "        unusual |= (($1)) ? 0 : $2;\n")                                    \
   X(AS_BEFORE, "      uint64_t unusual = before & present_bit;\n")                                 \
   X(AS_EXPECTED, "      uint64_t unusual = 0;\n")                                                  \
   X(IF_EXPECTED, "      if ((unusual & present_bit) == 0) {\n")                                    \

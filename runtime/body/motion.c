@@ -1,9 +1,10 @@
 #include "runtime/body/motion.h"
 
 #include <math.h>
+#include <string.h>
 
-#include "dsl/base/elementary.h"
 #include "runtime/base/lane_sum.h"
+#include "runtime/body/rotation_vector.h"
 
 /* Absent sites have no weight: they stay where they are. */
 static int64_t add_push(long count, double push, double limit, const double *restrict weight,
@@ -39,64 +40,39 @@ static inline __attribute__((always_inline)) void drift(const body *w, int dof, 
     }
 }
 
-/* Of a rotation vector r half the angle's cosine, and its sine over the angle: the unit quaternion
-   is (*cosine, sine r). */
-static inline __attribute__((always_inline)) double half_sine(const double r[3], double *cosine) {
-  const double length = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
-  const double angle = pl_fmax(length, 1e-150), sine = pl_sin(0.5 * angle);
-  *cosine = pl_cos(0.5 * angle);
-  return sine / angle;
-}
-
-/* The rotation vector r, then a turn by a: the product of their quaternions. Of all vectors of one
-   rotation, which are whole turns apart, that nearest to r + a, so that turns about one axis add
-   up. */
-static inline __attribute__((always_inline)) void turn(double r[3], const double a[3]) {
-  double here, by;
-  const double s = half_sine(r, &here), t = half_sine(a, &by), both = s * t;
-  double v[3];
+static void turn_part(const body *w, row_part at, const double *next) {
+  const long start = body_start(w, at.row) + at.first, count = at.end - at.first;
+  const double *rate[3];
+  double *turned[3];
   for (int k = 0; k < 3; k++) {
-    const int l = (k + 1) % 3, m = (k + 2) % 3;
-    v[k] = by * s * r[k] + here * t * a[k] + both * (a[l] * r[m] - a[m] * r[l]);
+    rate[k] = next + (3 + k) * w->lattice->pitch + at.first;
+    turned[k] = w->displacement[3 + k] + start;
+    memcpy(w->velocity[3 + k] + start, rate[k], (size_t)count * sizeof *rate[k]);
   }
-  const double cosine = here * by - both * (r[0] * a[0] + r[1] * a[1] + r[2] * a[2]);
-  const double sine = pl_fmax(sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]), 1e-150);
-  const double angle = 2 * pl_atan2(sine, cosine);
-  const double along = (v[0] * (r[0] + a[0]) + v[1] * (r[1] + a[1]) + v[2] * (r[2] + a[2])) / sine;
-  const double turns = (along - angle) / (2 * M_PI) + PL_ROUNDER - PL_ROUNDER;
-  const double scale = (angle + turns * (2 * M_PI)) / sine;
-  for (int k = 0; k < 3; k++)
-    r[k] = scale * v[k];
+  rotation_vector_turn_all(count, w->time_step, rate, turned);
 }
 
-static void turn_row(const body *w, row_part at, const double *next) {
-  const long start = body_start(w, at.row), pitch = w->lattice->pitch;
-  const double step = w->time_step;
-  INDEPENDENT
-  for (long q = at.first; q < at.end; q++) {
-    double r[3], a[3];
-    for (int k = 0; k < 3; k++) {
-      const double now = next[(3 + k) * pitch + q];
-      w->velocity[3 + k][start + q] = now;
-      r[k] = w->displacement[3 + k][start + q];
-      a[k] = step * now;
-    }
-    turn(r, a);
-    for (int k = 0; k < 3; k++)
-      w->displacement[3 + k][start + q] = r[k];
+void motion_turned_before(const body *w, long site, double r[3]) {
+  double back[3];
+  for (int k = 0; k < 3; k++) {
+    r[k] = w->displacement[3 + k][site];
+    back[k] = -w->time_step * w->velocity[3 + k][site];
   }
+  rotation_vector_turn(r, back);
 }
 
-void motion_shift(body *w, int component, long site, double way) {
+void motion_change(body *w, int component, long site, double change) {
   if (w->dof < 6 || component < 3) {
-    w->displacement[component][site] += way;
+    w->velocity[component][site] += change;
+    w->displacement[component][site] += w->time_step * change;
     return;
   }
-  double r[3], a[3] = {0, 0, 0};
-  a[component - 3] = way;
+  double r[3], turn[3];
+  motion_turned_before(w, site, r);
+  w->velocity[component][site] += change;
   for (int k = 0; k < 3; k++)
-    r[k] = w->displacement[3 + k][site];
-  turn(r, a);
+    turn[k] = w->time_step * w->velocity[3 + k][site];
+  rotation_vector_turn(r, turn);
   for (int k = 0; k < 3; k++)
     w->displacement[3 + k][site] = r[k];
 }
@@ -141,7 +117,7 @@ void motion_drift(body *w, body_block *b, row_part at) {
     drift(w, 2, at, b->next);
   else
     drift(w, 3, at, b->next);
-  if (w->dof == 6) turn_row(w, at, b->next);
+  if (w->dof == 6) turn_part(w, at, b->next);
 }
 
 void motion_observe(body *w, const body_block *b, int row) {

@@ -5,12 +5,6 @@
 
 #include "runtime/body/body.h"
 
-#if defined(__clang__)
-#define INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
-#else
-#define INDEPENDENT _Pragma("GCC ivdep")
-#endif
-
 /* Mass damping resists with the mean of the velocities before and after the step,
      m (v+ - v-) = dt f - tanh(c dt/2) m (v+ + v-),
    which is v+ = decay v- + part dt f/m with decay = exp(-c dt): exact without forces, of the second
@@ -42,8 +36,11 @@ void motion_note_bad(const body *w, body_block *b, int row, long first);
    and gravity goes on. Rotations in space are rotation vectors, velocities rates of turning about
    x, y and z: a step turns the particle further, exp(dt w) after what it has turned. */
 void motion_drift(body *w, body_block *b, row_part at);
-/* Moves one component of a particle further, m or rad: in space a rotation about that axis. */
-void motion_shift(body *w, int component, long site, double way);
+/* A particle that has moved turns out to have another velocity after the step, by `change` (m/s,
+   rad/s): its place follows. */
+void motion_change(body *w, int component, long site, double change);
+/* In space, what a particle that has moved had turned before the step. */
+void motion_turned_before(const body *w, long site, double r[3]);
 /* What a row's motion says of the energies, with the block's `next` and the forces at hand. */
 void motion_observe(body *w, const body_block *b, int row);
 

@@ -4,6 +4,7 @@
 
 #include "dsl/base/elementary.h"
 #include "runtime/body/motion.h"
+#include "runtime/body/rotation_vector.h"
 
 /* Of which a cause's forces are shares. */
 static const time_function *cause_of(const loads *l, int cause) {
@@ -191,6 +192,40 @@ static void set_gravity(const loads *l, body *w, long step) {
   }
 }
 
+/* Of a particle that rotates in space all constraints on its rotations together: what holds one
+   component may turn it about all axes (rotation_vector.h). They stand side by side. */
+typedef struct held_turn {
+  constraint *first;
+  int count;
+} held_turn;
+
+static int axis_of(const body *w, const constraint *c) {
+  return c->component - w->dimensions;
+}
+
+/* Those that begin with constraint i; count 0: it is none of them. */
+static held_turn turn_at(const loads *l, const body *w, long i) {
+  held_turn t = {.first = &l->constraints[i]};
+  if (w->dof < 6 || axis_of(w, t.first) < 0) return t;
+  while (i + t.count < l->constraint_count && t.first[t.count].site == t.first->site)
+    t.count++;
+  return t;
+}
+
+static void keep_turning(const body *w, const held_turn *t) {
+  for (int k = 0; k < 3; k++)
+    t->first->turning[k] = w->velocity[w->dimensions + k][t->first->site];
+}
+
+static void keep_all_turning(const loads *l, const body *w) {
+  for (long i = 0; i < l->constraint_count; i++) {
+    const held_turn t = turn_at(l, w, i);
+    if (!t.count) continue;
+    keep_turning(w, &t);
+    i += t.count - 1;
+  }
+}
+
 void load_steps_increment(loads *l, const body *w, load_clock clock) {
   l->clock = clock;
   for (long i = 0; i < l->constraint_count; i++) {
@@ -207,6 +242,7 @@ void load_steps_begin(loads *l, body *w) {
     c->velocity = w->velocity[c->component][c->site];
     take_up(l, w, c, 0);
   }
+  keep_all_turning(l, w);
   for (long i = 0; i < l->force_count; i++) {
     l->forces[i].now = l->forces[i].share * factor_at(l, w, &l->forces[i], 0);
     l->forces[i].velocity = w->velocity[l->forces[i].component][l->forces[i].site];
@@ -257,6 +293,7 @@ void load_steps_set_back(loads *l, body *w) {
     else
       c->velocity = *v;
   }
+  keep_all_turning(l, w);
   for (long i = 0; i < l->force_count; i++)
     l->forces[i].velocity = w->velocity[l->forces[i].component][l->forces[i].site];
 }
@@ -322,11 +359,10 @@ static void apply_forces(const load_run *r) {
   for (long i = r->first_force; i < r->last_force; i++) {
     applied *f = &r->l->forces[i];
     if (!has_moved(r, f->site)) continue;
-    double *v = &w->velocity[f->component][f->site];
+    const double v = w->velocity[f->component][f->site];
     const double change = given_by(w, f->component, f->site, f->now);
-    correct_free_way(w, f->component, f->site, f->velocity, *v, change, &f->sums);
-    *v += change;
-    motion_shift(r->w, f->component, f->site, w->time_step * change);
+    correct_free_way(w, f->component, f->site, f->velocity, v, change, &f->sums);
+    motion_change(r->w, f->component, f->site, change);
   }
 }
 
@@ -363,78 +399,135 @@ static double force_after(const load_run *r, const applied *f, remembered *m) {
 }
 
 /* Force that gives a particle one velocity instead of another after a step. */
-static double force_for(const body *w, const constraint *c, double change) {
-  return body_mass(w, c->component, c->site) * change / (w->time_step * motion_force_part(w));
+static double force_for(const body *w, int component, int64_t site, double change) {
+  return body_mass(w, component, site) * change / (w->time_step * motion_force_part(w));
 }
 
-/* Moves the particle to `target` instead of where it would go (take_place). What this takes works
-   with the mean of the velocities before and after. */
-static double pull(body *w, constraint *c, double target) {
-  double *v = &w->velocity[c->component][c->site];
-  const double before = c->velocity, prescribed = (target - c->held) / w->time_step;
-  const double force = force_for(w, c, prescribed - *v);
-  correct_free_way(w, c->component, c->site, before, *v, prescribed - *v, &c->sums);
-  c->sums.work += 0.5 * w->time_step * force * (before + prescribed);
-  motion_shift(w, c->component, c->site, w->time_step * (prescribed - *v));
-  c->held = target;
+/* Gives a particle the velocity `prescribed` instead of the one it would have. What this takes
+   works with the mean of the velocities before and after. */
+static double push(body *w, int component, int64_t site, double before, double prescribed,
+                   load_sums *sums) {
+  double *v = &w->velocity[component][site];
+  const double force = force_for(w, component, site, prescribed - *v);
+  correct_free_way(w, component, site, before, *v, prescribed - *v, sums);
+  sums->work += 0.5 * w->time_step * force * (before + prescribed);
   *v = prescribed;
   return force;
 }
 
+/* Moves the particle to `target` instead of where it would go. */
+static double pull(body *w, constraint *c, double target) {
+  const double free = w->velocity[c->component][c->site];
+  const double prescribed = (target - c->held) / w->time_step;
+  const double force = push(w, c->component, c->site, c->velocity, prescribed, &c->sums);
+  w->displacement[c->component][c->site] += w->time_step * (prescribed - free);
+  c->held = target;
+  return force;
+}
+
+/* The same of rotations in space, for the components in `held`. The particle has come from where it
+   is by its velocities; of the components in `before` that is known to the bit. */
+static void pull_turn(body *w, const held_turn *t, int held, int before, const double target[3],
+                      double moment[3]) {
+  const int first = w->dimensions;
+  const int64_t site = t->first->site;
+  double r[3], now[3], turn[3];
+  motion_turned_before(w, site, r);
+  for (int k = 0; k < 3; k++)
+    now[k] = w->velocity[first + k][site];
+  for (int k = 0; k < t->count; k++)
+    if (before >> axis_of(w, &t->first[k]) & 1) r[axis_of(w, &t->first[k])] = t->first[k].held;
+  rotation_vector_reach(r, w->time_step, held, target, now);
+  for (int k = 0; k < 3; k++) {
+    turn[k] = w->time_step * now[k];
+    moment[k] = push(w, first + k, site, t->first->turning[k], now[k], &t->first->sums);
+  }
+  rotation_vector_turn(r, turn);
+  for (int k = 0; k < 3; k++)
+    w->displacement[first + k][site] = held >> k & 1 ? target[k] : r[k];
+}
+
 /* Part of the force in the step that a motion begins with: its impulse. */
 static double impulsive(const body *w, const constraint *c) {
-  return c->impulse == 0 ? 0 : force_for(w, c, w->decay * c->impulse);
+  return c->impulse == 0 ? 0 : force_for(w, c->component, c->site, w->decay * c->impulse);
 }
 
 /* A motion that begins between the ends of the step: until then the particle was free. */
-static void begin_on_the_way(const load_run *r, constraint *c, remembered *after) {
+static bool begins_on_the_way(const load_run *r, constraint *c, remembered *after, double *target) {
   body *w = r->w;
-  if (has_ended(r->l, w, c, r->step)) return;
+  if (has_ended(r->l, w, c, r->step)) return false;
   const double rest = load_clock_time(&r->l->clock, w, r->step + 1) - start_of(r->l, c);
-  if (r->l->clock.ramp > 0 || rest <= hardly(w)) return;
+  if (r->l->clock.ramp > 0 || rest <= hardly(w)) return false;
   const double v = w->velocity[c->component][c->site],
                here = w->displacement[c->component][c->site];
   c->active = 1;
   c->anchor = here - rest * v;
   c->held = here - w->time_step * v;
-  pull(w, c, c->anchor + motion_after(r, c, after));
+  *target = c->anchor + motion_after(r, c, after);
+  return true;
 }
 
-/* The part of the step that the drive still covers decides its force. */
-static void let_go(const load_run *r, constraint *c) {
+/* Where the motion takes the particle in the step; false: it is free. Of the step that it lets go
+   in, the part that the drive still covers decides. */
+static bool aims(const load_run *r, constraint *c, remembered *after, double *target) {
   body *w = r->w;
-  const double free = w->velocity[c->component][c->site];
-  const double velocity = velocity_let_go(r->l, w, c, r->step, free);
-  c->reaction = pull(w, c, c->held + w->time_step * velocity) - impulsive(w, c);
-  c->active = 0;
+  if (!c->active) return begins_on_the_way(r, c, after, target);
+  if (lets_go(r->l, w, c, r->step)) {
+    const double free = w->velocity[c->component][c->site];
+    *target = c->held + w->time_step * velocity_let_go(r->l, w, c, r->step, free);
+  } else {
+    *target = c->anchor + motion_after(r, c, after);
+  }
+  return true;
 }
 
-static void apply_motion(const load_run *r, constraint *c, remembered *after) {
+/* After the step, in which `force` was needed; `held`: from its beginning. */
+static void settle(const load_run *r, constraint *c, bool held, double force) {
   body *w = r->w;
-  const bool held = c->active;
-  c->reaction = 0;
-  if (held && lets_go(r->l, w, c, r->step))
-    let_go(r, c);
-  else if (held)
-    c->reaction = pull(w, c, c->anchor + motion_after(r, c, after)) - impulsive(w, c);
-  else
-    begin_on_the_way(r, c, after);
+  c->reaction = held ? force - impulsive(w, c) : 0;
+  if (held && lets_go(r->l, w, c, r->step)) c->active = 0;
   c->velocity = w->velocity[c->component][c->site];
   if (is_summed(r->l, c) && r->l->clock.ramp == 0) c->anchor = c->held;
   c->impulse = c->active && !held ? impulse_of(r->l, w, c, r->step + 1) : 0;
 }
 
-/* After all have moved: in space a turn about one axis moves the rotations about the others. */
-static void take_place(const load_run *r, const constraint *c) {
-  if (c->active && has_moved(r, c->site)) r->w->displacement[c->component][c->site] = c->held;
+static void apply_motion(const load_run *r, constraint *c, remembered *after) {
+  const bool held = c->active;
+  double target, force = 0;
+  if (aims(r, c, after, &target)) force = pull(r->w, c, target);
+  settle(r, c, held, force);
+  if (c->active) r->w->displacement[c->component][c->site] = c->held;
+}
+
+static void apply_turn(const load_run *r, const held_turn *t, remembered *after) {
+  double target[3] = {0, 0, 0}, moment[3] = {0, 0, 0};
+  int held = 0, before = 0;
+  for (int k = 0; k < t->count; k++) {
+    const int axis = axis_of(r->w, &t->first[k]);
+    if (t->first[k].active) before |= 1 << axis;
+    if (aims(r, &t->first[k], after, &target[axis])) held |= 1 << axis;
+  }
+  if (held) pull_turn(r->w, t, held, before, target, moment);
+  for (int k = 0; k < t->count; k++) {
+    const int axis = axis_of(r->w, &t->first[k]);
+    if (held >> axis & 1) t->first[k].held = target[axis];
+    settle(r, &t->first[k], before >> axis & 1, moment[axis]);
+  }
+  keep_turning(r->w, t);
 }
 
 static void apply_motions(const load_run *r) {
   remembered after = {{0}, {0}};
-  for (long i = r->first_constraint; i < r->last_constraint; i++)
-    if (has_moved(r, r->l->constraints[i].site)) apply_motion(r, &r->l->constraints[i], &after);
-  for (long i = r->first_constraint; i < r->last_constraint; i++)
-    take_place(r, &r->l->constraints[i]);
+  for (long i = r->first_constraint; i < r->last_constraint; i++) {
+    const held_turn turn = turn_at(r->l, r->w, i);
+    if (has_moved(r, r->l->constraints[i].site)) {
+      if (turn.count)
+        apply_turn(r, &turn, &after);
+      else
+        apply_motion(r, &r->l->constraints[i], &after);
+    }
+    if (turn.count) i += turn.count - 1;
+  }
 }
 
 /* A force works with the mean of its values at both ends of the way. */
@@ -509,20 +602,89 @@ static double force_at_rest(const body *w, const constraint *c) {
   return w->force[c->component][c->site] + body_mass(w, c->component, c->site) * weight;
 }
 
+/* What a constraint adds that changes a velocity by `change` in the coming step; returns the
+   force. */
+static double look_at(const body *w, int component, int64_t site, double velocity, double change,
+                      load_look *sum) {
+  const double mass = body_mass(w, component, site), force = force_for(w, component, site, change);
+  sum->kinetic += 0.5 * mass * velocity * change;
+  sum->dissipated += 0.5 * mass * motion_drag(w) * velocity * change;
+  sum->work += 0.5 * w->time_step * velocity * force;
+  return force;
+}
+
+/* Rates of turning after the coming step; false where nothing is held. */
+static bool turning_ahead(const loads *l, const body *w, const held_turn *t, long step,
+                          double now[3]) {
+  const int64_t site = t->first->site;
+  double r[3], target[3];
+  int held = 0;
+  for (int k = 0; k < 3; k++) {
+    r[k] = target[k] = w->displacement[w->dimensions + k][site];
+    now[k] = loaded_velocity(l, w, w->dimensions + k, site);
+  }
+  for (int k = 0; k < t->count; k++) {
+    const constraint *c = &t->first[k];
+    if (!c->active) continue;
+    held |= 1 << axis_of(w, c);
+    target[axis_of(w, c)] = c->held + w->time_step * prescribed_velocity(l, w, c, step);
+  }
+  if (held) rotation_vector_reach(r, w->time_step, held, target, now);
+  return held;
+}
+
+int load_steps_release(const loads *l, const body *w, long i, double moment[3]) {
+  const held_turn t = turn_at(l, w, i);
+  double r[3];
+  int held = 0;
+  if (!t.count) return 0;
+  for (int k = 0; k < 3; k++)
+    r[k] = w->displacement[w->dimensions + k][t.first->site];
+  for (int k = 0; k < t.count; k++)
+    held |= t.first[k].active ? 1 << axis_of(w, &t.first[k]) : 0;
+  rotation_vector_release(r, held, moment);
+  return t.count;
+}
+
+static void settle_look(const loads *l, const body *w, constraint *c, double force) {
+  c->reaction = l->clock.ramp > 0 ? -force_at_rest(w, c) : force - impulsive(w, c);
+}
+
+/* Applied moments on components that are held are taken off later. */
+static void look_at_turn(const loads *l, const body *w, const held_turn *t, long step,
+                         load_look *sum) {
+  constraint *of[3] = {NULL, NULL, NULL};
+  double now[3];
+  for (int k = 0; k < t->count; k++) {
+    t->first[k].reaction = 0;
+    if (t->first[k].active) of[axis_of(w, &t->first[k])] = &t->first[k];
+  }
+  if (!turning_ahead(l, w, t, step, now)) return;
+  for (int k = 0; k < 3; k++) {
+    const int component = w->dimensions + k;
+    const int64_t site = t->first->site;
+    const double free =
+        of[k] ? free_velocity(w, component, site) : loaded_velocity(l, w, component, site);
+    const double force = look_at(w, component, site, t->first->turning[k], now[k] - free, sum);
+    if (of[k]) settle_look(l, w, of[k], force);
+  }
+}
+
 load_look load_steps_observe(loads *l, const body *w, long step) {
   load_look sum = {0, 0, 0};
   for (long i = 0; i < l->constraint_count; i++) {
     constraint *c = &l->constraints[i];
+    const held_turn turn = turn_at(l, w, i);
+    if (turn.count) {
+      look_at_turn(l, w, &turn, step, &sum);
+      i += turn.count - 1;
+      continue;
+    }
     c->reaction = 0;
     if (!c->active) continue;
-    const double mass = body_mass(w, c->component, c->site);
     const double change =
         prescribed_velocity(l, w, c, step) - free_velocity(w, c->component, c->site);
-    const double force = force_for(w, c, change);
-    c->reaction = l->clock.ramp > 0 ? -force_at_rest(w, c) : force - impulsive(w, c);
-    sum.kinetic += 0.5 * mass * c->velocity * change;
-    sum.dissipated += 0.5 * mass * motion_drag(w) * c->velocity * change;
-    sum.work += 0.5 * w->time_step * c->velocity * force;
+    settle_look(l, w, c, look_at(w, c->component, c->site, c->velocity, change, &sum));
   }
   for (long i = 0; i < l->force_count; i++) {
     const applied *f = &l->forces[i];
@@ -543,15 +705,20 @@ velocity_instant load_steps_velocities(const loads *l, const body *w, int compon
                                        long step) {
   const double before = w->velocity[component][site];
   const long count = l->constraint_count;
+  double after = loaded_velocity(l, w, component, site), impulse = 0, turning[3];
   long i = first_at(l->constraints, count, sizeof *l->constraints, site);
-  for (; i < count && l->constraints[i].site == site; i++) {
+  for (bool turned = false; i < count && l->constraints[i].site == site; i++) {
     const constraint *c = &l->constraints[i];
+    const held_turn turn = turn_at(l, w, i);
+    if (turn.count && !turned && component >= w->dimensions &&
+        turning_ahead(l, w, &turn, step, turning))
+      after = turning[component - w->dimensions];
+    turned = turn.count;
     if (c->component != component || !c->active) continue;
-    const double after = prescribed_velocity(l, w, c, step);
-    return (velocity_instant){c->velocity, 0.5 * (c->velocity + c->impulse + after), after};
+    impulse = c->impulse;
+    if (!turn.count) after = prescribed_velocity(l, w, c, step);
   }
-  const double after = loaded_velocity(l, w, component, site);
-  return (velocity_instant){before, 0.5 * (before + after), after};
+  return (velocity_instant){before, 0.5 * (before + impulse + after), after};
 }
 
 double load_steps_velocity(const loads *l, const body *w, int component, int64_t site, long step) {

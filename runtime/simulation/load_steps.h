@@ -21,7 +21,11 @@
    A drive that ends at t_e lets go in the step whose middle is the first after t_e,
      v(n+1/2) = V(t_e) + a (t_(n+1/2) - t_e),   a: of the free particle at t_n, V: of the drive,
    which is the reaction times the part of t_n - dt/2 .. t_n + dt/2 that it covers, to the second
-   order. Its particles are free from then on. */
+   order. Its particles are free from then on.
+
+   In space what holds or drives a component of a particle's rotation vector is a moment that does
+   no work where the component stays (rotation_vector.h): where the particle has turned, it has
+   parts about the other axes. Reactions are the parts about the axes of what is held. */
 #ifndef PERILAT_RUNTIME_LOAD_STEPS_H
 #define PERILAT_RUNTIME_LOAD_STEPS_H
 
@@ -49,6 +53,11 @@ void load_steps_apply(loads *l, body *w, int block, long step);
    stays as it is). */
 void load_steps_turn(const loads *l, body *w, long step);
 load_sums load_steps_total(const loads *l);
+
+/* In space, of constraint i, the first of a particle's rotations: the moments about all axes that
+   nothing holds of moment[3]. Returns how many constraints the particle's rotations have; 0: it is
+   none of them. */
+int load_steps_release(const loads *l, const body *w, long i, double moment[3]);
 
 /* When the state after `step` steps was observed: reactions in it. */
 load_look load_steps_observe(loads *l, const body *w, long step);

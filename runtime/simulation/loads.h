@@ -25,6 +25,8 @@ typedef struct constraint { /* one component of one particle that is held or dri
   double anchor;   /* m, rad: displacement less the motion prescribed */
   double held;     /* present prescribed displacement */
   double velocity; /* after the last step */
+  /* rad/s: in space, about all axes; kept by the first constraint of a particle's rotations */
+  double turning[3];
   /* m/s, rad/s: what the velocity changes by at once, as the motion begins in the coming step */
   double impulse;
   /* N, N m: in the state that the last step began with, or in the one observed since */

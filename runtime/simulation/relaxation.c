@@ -134,6 +134,24 @@ typedef struct squares { /* N^2 */
   double free, held, applied;
 } squares;
 
+/* In space, of the moment on a particle about axis d what nothing holds, from constraint i of its
+   rotations on; returns how many there are (load_steps_release). */
+static int free_moment(const run_body *of, long i, int d, double *left) {
+  const body *w = of->body;
+  const loads *l = of->loads;
+  const int64_t site = l->constraints[i].site;
+  double moment[3] = {0, 0, 0};
+  if (w->dof < 6 || l->constraints[i].component < w->dimensions) return 0;
+  for (int k = 0; k < 3; k++)
+    moment[k] = w->force[w->dimensions + k][site];
+  for (long n = 0; n < l->force_count; n++)
+    if (l->forces[n].site == site && l->forces[n].component >= w->dimensions)
+      moment[l->forces[n].component - w->dimensions] += l->forces[n].now;
+  const int count = load_steps_release(l, w, i, moment);
+  if (d >= w->dimensions) *left = moment[d - w->dimensions];
+  return count;
+}
+
 static void add_component(const relaxation *r, const run_body *of, int d, squares *sum) {
   const body *w = of->body;
   const loads *l = of->loads;
@@ -152,9 +170,12 @@ static void add_component(const relaxation *r, const run_body *of, int d, square
   }
   for (long i = 0; i < l->constraint_count; i++) {
     const constraint *c = &l->constraints[i];
-    if (c->component != d || !c->active) continue;
-    sum->held += square_of(r->total[c->site] / arm);
-    r->total[c->site] = 0;
+    double *here = &r->total[c->site], left = *here;
+    const int turning = free_moment(of, i, d, &left);
+    if (!turning && c->component == d && c->active) left = 0;
+    sum->held += square_of((*here - left) / arm);
+    *here = left;
+    i += turning ? turning - 1 : 0;
   }
   for (long p = 0; p < w->lattice->particle_count; p++)
     sum->free += square_of(r->total[w->lattice->particle_site[p]] / arm);

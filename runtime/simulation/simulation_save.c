@@ -137,6 +137,7 @@ static void put_places_back(loads *l, const own_places *own) {
     c->anchor = read.anchor;
     c->held = read.held;
     c->velocity = read.velocity;
+    memcpy(c->turning, read.turning, sizeof c->turning);
     c->impulse = read.impulse;
     c->reaction = read.reaction;
     c->sums = read.sums;

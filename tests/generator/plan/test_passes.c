@@ -469,7 +469,7 @@ static void the_dump_names_passes_and_hoisted_values(void **state) {
       "pass bounds\n",
       " EA\n",
       "writes       force x, force y, end moment i, end moment j, field omega",
-      "dissipated by rates",
+      "lost to rates",
       "stored energy",
       "lower bound of alpha3",
       "div %",

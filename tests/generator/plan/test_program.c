@@ -304,6 +304,35 @@ static void a_dear_value_toward_the_neighbour_is_kept(void **state) {
   close_law(t);
 }
 
+/* Particles leave what is dear and theirs alone to all their bonds; the other end does not compute
+   it again. */
+static void what_one_end_has_by_itself_is_left(void **state) {
+  (void)state;
+  static const struct {
+    const char *factor;
+    int links;
+  } cases[] = {{"(1 - old[j])", 0},
+               {"exp(old[j])", 0}, /* cheaper than a pass */
+               {"exp(old[j])*tanh(old[j] + 1)*sqrt(2 - old[j])", 1},
+               {"exp(old[j])*tanh(old[j] + 1)*sqrt(2 - stretch[j])", 0}, /* of the bond */
+               {"exp(nu)*tanh(nu + 1)*sqrt(nu)", 0}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    char text[1000];
+    snprintf(text, sizeof text,
+             "  state w on particle = 0\n  old = previous(w)\n"
+             "  force state F[j] = a*%s*stretch[j] along reference\n  w = norm(stretch)\n",
+             cases[k].factor);
+    tested_law *t = open_program("", text);
+    const program_pass *first = &t->plan->programs[PROGRAM_STEP].passes[0];
+    int links = 0;
+    for (int n = 0; n < first->segment_count; n++)
+      for (int r = 0; r < first->segments[n].root_count; r++)
+        links += first->segments[n].roots[r].target == TO_LINK;
+    if (links != cases[k].links) fail_msg("%d links of %s", links, cases[k].factor);
+    close_law(t);
+  }
+}
+
 static void neighbours_of_neighbours_need_a_pass_more(void **state) {
   (void)state;
   tested_law *t = open_program("", "  near = sum(stretch[j])\n  far = sum(near[j])\n"
@@ -398,6 +427,7 @@ int main(void) {
       cmocka_unit_test(ends_that_differ_are_no_pair),
       cmocka_unit_test(a_sum_that_the_neighbour_has_too_is_a_link_and_a_second_pass),
       cmocka_unit_test(a_dear_value_toward_the_neighbour_is_kept),
+      cmocka_unit_test(what_one_end_has_by_itself_is_left),
       cmocka_unit_test(neighbours_of_neighbours_need_a_pass_more),
       cmocka_unit_test(dear_values_are_kept_in_planes),
       cmocka_unit_test(planes_are_few),

@@ -83,6 +83,9 @@ static turning_body *open_body(const char *name, const char *kind, int shells, i
   assert_int_equal(b->law->kind, PL_STATE);
   assert_true(b->law->pairwise);
   assert_int_equal(b->law->dof, setting == SETTING_SPACE ? 6 : 3);
+  assert_int_equal(b->law->sum_count, b->law->dof); /* each end of a bond gets its own moment */
+  assert_int_equal(b->law->step.pass_count,
+                   setting == SETTING_SPACE ? 2 : 1); /* quaternions first */
   b->parameters = defaults(b->law);
   b->p = patch_new(b->law, b->parameters, b->lattice, period, 0, 0);
   return b;

@@ -10,6 +10,7 @@
 #include "runtime/base/lane_sum.h"
 #include "runtime/body/body.h"
 #include "runtime/body/motion.h"
+#include "runtime/body/rotation_vector.h"
 #include "tests/runtime/beam_law.h"
 #include "tests/runtime/small_run.h"
 
@@ -237,8 +238,71 @@ static void rotations_follow_each_other(void **state) {
   small_close(&r);
 }
 
-/* One axis at a time, as loads do. */
-static void a_shift_turns_about_its_axis(void **state) {
+/* Whatever has turned beside it, far or little, a particle turns with the same bits, in the last
+   place of a row, too. */
+static void a_turn_has_the_same_bits_in_any_company(void **state) {
+  (void)state;
+  enum { COUNT = 150 };
+  const double scales[] = {1e-170, 1e-9, 0.02, 0.13, 0.249, 0.251, 1.7, 9};
+  double turned[3][COUNT], rate[3][COUNT];
+  unsigned seed = 7;
+  for (long q = 0; q < COUNT; q++)
+    for (int k = 0; k < 3; k++) {
+      const double size = q < 70 ? scales[q % 4] : scales[q % 8]; /* the first 64 turn little */
+      turned[k][q] = size * ((double)(seed = seed * 1664525u + 1013904223u) / 4294967296.0 - 0.5);
+      rate[k][q] = scales[(q / 8) % 6] *
+                   ((double)(seed = seed * 1664525u + 1013904223u) / 4294967296.0 - 0.5) / step;
+    }
+  double alone[3][COUNT];
+  for (long q = 0; q < COUNT; q++) {
+    double r[3], a[3];
+    for (int k = 0; k < 3; k++)
+      r[k] = turned[k][q], a[k] = step * rate[k][q];
+    rotation_vector_turn(r, a);
+    for (int k = 0; k < 3; k++)
+      alone[k][q] = r[k];
+  }
+  const double *const rates[3] = {rate[0], rate[1], rate[2]};
+  double *const all[3] = {turned[0], turned[1], turned[2]};
+  rotation_vector_turn_all(COUNT, step, rates, all);
+  assert_memory_equal(turned, alone, sizeof alone);
+}
+
+/* Held components come to their targets; what holds them is a moment without work on all motions
+   that leave them where they are. */
+static void what_holds_a_component_does_no_work(void **state) {
+  (void)state;
+  static const double starts[][3] = {{0, 0, 0},    {1e-9, 2e-9, 0}, {0.3, -0.1, 0.2},
+                                     {0.5, 2, -1}, {3.1, 0.4, 0},   {0, 0, 9}};
+  const double w[3] = {30, -20, 50}, moment[3] = {2, 3, -1}, dt = 1e-4;
+  for (int n = 0; n < 6; n++)
+    for (int held = 1; held < 8; held++) {
+      const double *r = starts[n];
+      const double target[3] = {r[0] + 1e-3, r[1] - 2e-3, r[2] + 1e-3};
+      double pulled[3] = {w[0], w[1], w[2]}, idle[3] = {w[0], w[1], w[2]}, after[3], turn[3],
+             left[3] = {moment[0], moment[1], moment[2]}, again[3], work = 0;
+      rotation_vector_reach(r, dt, held, target, pulled);
+      rotation_vector_reach(r, 1e-9, held, r, idle); /* so short a step that it is straight */
+      rotation_vector_release(r, held, left);
+      memcpy(again, left, sizeof again);
+      rotation_vector_release(r, held, again);
+      for (int k = 0; k < 3; k++) {
+        after[k] = r[k];
+        turn[k] = dt * pulled[k];
+        work += (moment[k] - left[k]) * idle[k];
+        assert_true(fabs(again[k] - left[k]) < 1e-13);
+        if (held == 7) assert_true(fabs(left[k]) < 1e-13);
+      }
+      rotation_vector_turn(after, turn);
+      for (int k = 0; k < 3; k++)
+        if (held >> k & 1) assert_true(fabs(after[k] - target[k]) < 4e-15);
+      assert_true(fabs(work) < 1e-4);
+    }
+}
+
+/* A particle that turns out to be quicker turns as if it had been so from the beginning of the step,
+   not about one axis after the others. */
+static void a_change_of_velocity_takes_the_place_along(void **state) {
   (void)state;
   const pl_law law = beams_in(3, PL_ROWS);
   const double start[3] = {0.4, -1.1, 0.7};
@@ -247,16 +311,25 @@ static void a_shift_turns_about_its_axis(void **state) {
   body *w = body_new(simulation_rows(r.simulation, 0), 6, step, 1, BODY_SHARE_ROWS);
   const long q = body_start(w, 1) + 1;
   for (int axis = 0; axis < 3; axis++) {
-    const double turned[3] = {axis == 0 ? 0.2 : 0, axis == 1 ? 0.2 : 0, axis == 2 ? 0.2 : 0};
-    double now[3];
-    for (int k = 0; k < 3; k++)
-      w->displacement[3 + k][q] = start[k];
-    motion_shift(w, 3 + axis, q, 0.2);
-    for (int k = 0; k < 3; k++)
+    double turned[3] = {0.2, 0.1, -0.3}, now[3], before[3];
+    memcpy(now, start, sizeof now);
+    rotation_vector_turn(now, turned);
+    for (int k = 0; k < 3; k++) {
+      w->displacement[3 + k][q] = now[k];
+      w->velocity[3 + k][q] = turned[k] / step;
+    }
+    motion_change(w, 3 + axis, q, 0.4 / step);
+    turned[axis] += 0.4;
+    motion_turned_before(w, q, before);
+    for (int k = 0; k < 3; k++) {
       now[k] = w->displacement[3 + k][q];
+      assert_true(fabs(before[k] - start[k]) < 2e-15);
+      assert_true(fabs(w->velocity[3 + k][q] * step - turned[k]) < 1e-15);
+    }
     assert_true(apart(start, turned, now) < 2e-15);
-    motion_shift(w, axis, q, 0.25);
-    assert_true(w->displacement[axis][q] == 0.25 && w->displacement[3][q] == now[0]);
+    motion_change(w, axis, q, 0.25 / step);
+    assert_true(w->displacement[axis][q] == step * (0.25 / step));
+    assert_true(w->velocity[axis][q] == 0.25 / step && w->displacement[3][q] == now[0]);
   }
   body_free(w);
   small_close(&r);
@@ -269,6 +342,8 @@ int main(void) {
                                      cmocka_unit_test(a_row_tells_its_energies),
                                      cmocka_unit_test(sums_have_an_order_of_their_own),
                                      cmocka_unit_test(rotations_follow_each_other),
-                                     cmocka_unit_test(a_shift_turns_about_its_axis)};
+                                     cmocka_unit_test(a_turn_has_the_same_bits_in_any_company),
+                                     cmocka_unit_test(what_holds_a_component_does_no_work),
+                                     cmocka_unit_test(a_change_of_velocity_takes_the_place_along)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
