@@ -21,6 +21,9 @@ enum { BODY_TIMED_PASSES = 8 }; /* of those after it the last one has the time, 
    together */
 enum { BODY_APART = 128 };
 
+/* Which energies are kept: all but what laws of families lose, or these, too. */
+typedef enum body_ledger { BODY_NO_LEDGER, BODY_LEDGER, BODY_LOSSES } body_ledger;
+
 typedef struct body_block { /* what one thread works on */
   int first, last;          /* rows first .. last-1 */
   double *next;             /* [dof][pitch] velocities after the kick */

@@ -267,6 +267,7 @@ typedef struct deck_output {
   int field_count;
   const span *field_where; /* [field_count]; NULL when the key was not written */
   bool energy;             /* ledger on: default true */
+  bool losses;             /* and what laws of families lose: default false */
 } deck_output;
 
 typedef struct deck_checkpoint {

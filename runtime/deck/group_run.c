@@ -128,6 +128,12 @@ static const deck_key_info output_keys[] = {
      .fallback = ".true.",
      DECK_AT(output, energy),
      .doc = "keep the energy ledger"},
+    {.name = "losses",
+     .type = DECK_LOGICAL,
+     .fallback = ".false.",
+     DECK_AT(output, losses),
+     .doc = "and in it what laws of families lose to states, damage and rate terms: then their "
+            "imbalance is checked, too. Takes time, of some laws more than the steps themselves"},
 };
 
 /* Which fields a law has is known later only. */

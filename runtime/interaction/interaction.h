@@ -5,10 +5,10 @@
 
 #include "runtime/interaction/sweep.h"
 
-/* At rest, fields at their initial values. `ledger`: energies are kept, and so forces; `forces`:
+/* At rest, fields at their initial values. `ledger`: which energies are kept, and so forces; `forces`:
    somebody looks at the forces of every step. To be freed by sweep_free. */
 sweep *interaction_new(const rows *lattice, const pl_law *law, const double *parameters,
-                       double time_step, int threads, bool ledger, bool forces);
+                       double time_step, int threads, body_ledger ledger, bool forces);
 
 /* One of several laws at work on a lattice. */
 typedef struct interaction_law {
@@ -22,6 +22,6 @@ typedef struct interaction_law {
 /* Each law beside the others (joint.h); `parts` [count] become the sweeps of each, which belong to
    the one returned. */
 sweep *interaction_joint(const rows *lattice, const interaction_law *laws, int count,
-                         double time_step, int threads, bool ledger, sweep **parts);
+                         double time_step, int threads, body_ledger ledger, sweep **parts);
 
 #endif

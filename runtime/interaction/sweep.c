@@ -127,11 +127,11 @@ void sweep_add_losses(sweep *w, int row) {
   r->free += pending;
 }
 
-bool sweep_knows_losses(const pl_law *law) {
+bool sweep_knows_losses(const pl_law *law, bool kept) {
   if (law->kind != PL_STATE) return true;
   if (!law->stores) return false;
   const bool may_lose = law->field_count > 0 || law->reads_rates;
-  return !may_lose || (PL_HAS(law, ledger) && law->ledger.pass_count > 0);
+  return !may_lose || (kept && PL_HAS(law, ledger) && law->ledger.pass_count > 0);
 }
 
 void sweep_output(sweep *w, int output, double *values) {

@@ -89,9 +89,9 @@ double sweep_bond_value(const sweep *w, const double *values, const rows_bond *b
    observed, to what is known of it (body_row). */
 void sweep_new_losses(sweep *w);
 void sweep_add_losses(sweep *w, int row);
-/* Whether what the law loses can be known: of laws of bonds on strips it is what they say, of laws of
-   families, which then store energy, too, if they may lose any. */
-bool sweep_knows_losses(const pl_law *law);
+/* Whether what the law loses is known: of laws of bonds on strips always; of laws of families, which
+   then store energy, too, where it is `kept`, or where they cannot lose any. */
+bool sweep_knows_losses(const pl_law *law, bool kept);
 
 /* An output in the state observed last: values[sweep_planes * size], defined where bonds or
    particles are. */

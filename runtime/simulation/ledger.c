@@ -15,13 +15,16 @@ const char *const ledger_words[LEDGER_COUNT] = {
 #undef X
 };
 
-const char *ledger_unchecked(const pl_law *law) {
+const char *ledger_unchecked(const pl_law *law, bool kept) {
   if (!law->stores) return "the law has no stored energy";
-  return sweep_knows_losses(law) ? NULL : "the law does not say what it takes";
+  if (sweep_knows_losses(law, kept)) return NULL;
+  return sweep_knows_losses(law, true)
+             ? "what a law of families loses is kept with `losses = .true.` in &output alone"
+             : "the law does not say what it takes";
 }
 
-void ledger_add_law(ledger_laws *of, const pl_law *law) {
-  if (!of->unchecked) of->unchecked = ledger_unchecked(law);
+void ledger_add_law(ledger_laws *of, const pl_law *law, bool kept) {
+  if (!of->unchecked) of->unchecked = ledger_unchecked(law, kept);
   of->families = of->families || law->kind == PL_STATE;
   of->silent = of->silent || !law->stores;
   of->reads_rates = of->reads_rates || law->reads_rates;

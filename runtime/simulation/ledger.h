@@ -66,8 +66,8 @@ typedef struct ledger {
 } ledger;
 
 /* Why the imbalance of a run with this law says nothing, as the end of a sentence; NULL where it
-   does. */
-const char *ledger_unchecked(const pl_law *law);
+   does. `kept`: losses of laws of families are. */
+const char *ledger_unchecked(const pl_law *law, bool kept);
 
 /* What the laws at work on a body say of their energies. */
 typedef struct ledger_laws {
@@ -76,7 +76,7 @@ typedef struct ledger_laws {
   bool silent;           /* some say nothing of what they store */
   bool reads_rates;
 } ledger_laws;
-void ledger_add_law(ledger_laws *of, const pl_law *law);
+void ledger_add_law(ledger_laws *of, const pl_law *law, bool kept);
 
 /* Terms of the state observed last. False where the steps make energy. With the velocity v of the
    state and the forces f of bonds alone half m v- v+ = half m v^2 - (dt f)^2/(8 m), and bonds that

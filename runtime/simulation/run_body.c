@@ -201,7 +201,9 @@ static int choose_threads(const run_body *b, const deck *k) {
 /* One law moves the body by itself, several do it together. */
 static void open_state(run_body *b, const deck *k, double step) {
   run_law *l = &b->laws[0];
-  const bool energies = k->output.energy;
+  const body_ledger energies = !k->output.energy  ? BODY_NO_LEDGER
+                               : k->output.losses ? BODY_LOSSES
+                                                  : BODY_LEDGER;
   const int threads = choose_threads(b, k);
   if (b->law_count == 1) {
     b->state = l->state = interaction_new(b->lattice_rows, l->law, l->parameters, step, threads,
@@ -223,7 +225,7 @@ bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d) {
   b->limit.step = step;
   for (int n = 0; n < b->law_count; n++) {
     b->laws[n].bonds = rows_bonds(b->laws[n].rows);
-    ledger_add_law(&b->energies, b->laws[n].law);
+    ledger_add_law(&b->energies, b->laws[n].law, k->output.losses);
   }
   open_state(b, k, step);
   b->body = b->state->body;

@@ -212,7 +212,6 @@ static void unknown_parameters_are_told_at_their_line(void **state) {
   write_deck("rf_a.nml", BLOCK "&material lattice = 'c' model = 'mplm_bilinear' /\n"
                                "&field parameter = 'S_f' distribution = 'normal' cv = 0.1 /\n");
   must("check rf_a.nml", 1, "the law `mplm_bilinear` has no parameter `S_f`");
-  must("check rf_a.nml --set field.parameter=rho", 1, "`rho` cannot differ from bond to bond");
   must("check rf_a.nml --set field.parameter=alpha2 --set field.cv=3", 1,
        "mm is not in (1, inf), the range of the law `mplm_bilinear`");
   remove_all(names, 1);

@@ -182,7 +182,12 @@ static void what_is_not_checked_says_so(void **state) {
       {"run beam.nml --set simulation.end_time=1e-4", 0, "by damping 4.64e-08; imbalance "},
       {"info beam.h5", 0, "energy/imbalance           J      from"},
       {"run beam.nml --set simulation.end_time=1e-4 --set material.model=pmb", 0,
-       "by damping 0; imbalance "},
+       "imbalance not checked: what a law of families loses is kept with `losses = .true.` in "
+       "&output alone"},
+      {"info beam.h5", 0, "energy/imbalance           J      not checked: what a law of families"},
+      {"run beam.nml --set simulation.end_time=1e-4 --set material.model=pmb --set "
+       "output.losses=T",
+       0, "by damping 0; imbalance "},
       {"info beam.h5", 0, "energy/imbalance           J      from"},
       {"run beam.nml --set simulation.end_time=1e-4 --set material.model=splm_concrete", 0,
        "imbalance not checked: the law has no stored energy"},

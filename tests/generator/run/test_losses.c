@@ -61,7 +61,7 @@ static void open_run(deck_case *c, const lossy_run *r, double safety, int thread
   char text[4096], head[1024];
   snprintf(head, sizeof head,
            "&simulation end_time = '%d us' step_safety = %g threads = %d /\n"
-           "&output frames = 0 sample = '2 us' energy = %s /\n",
+           "&output frames = 0 sample = '2 us' losses = T energy = %s /\n",
            r->end, safety, threads, keeps_energy ? "T" : "F");
   snprintf(text + snprintf(text, sizeof text, "%s", head), sizeof text - strlen(head), r->text,
            r->velocity);
