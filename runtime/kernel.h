@@ -343,8 +343,8 @@ typedef struct pl_law {
   const void *context; /* the interpreter's; NULL in compiled kernels */
 
   /* Of laws of families that store energy and may lose some: in place of `step` the same forces and
-     fields, to the bit, and pl_family.lost. No passes: it has neither states nor rate terms, or what they
-     take is not known. A body is run with one of the two. */
+     fields, to the bit, and pl_family.lost. No passes: it has neither states nor rate terms, or
+     what they take is not known. A body is run with one of the two. */
   pl_program ledger;
 } pl_law;
 

@@ -24,12 +24,12 @@ C_LINKAGE_BEGIN
 #define LAW_IRREGULAR "irregular"
 
 typedef enum expr_kind {
-  EXPR_NUMBER,   /* 30 [GPa] */
-  EXPR_NAME,     /* x, x[j], x'[j], x' */
-  EXPR_UNARY,    /* -a, not a */
-  EXPR_BINARY,   /* a + b, a <= b, a and b, a : b */
-  EXPR_CALL,     /* f(a, b, weight = c) */
-  EXPR_CASES     /* | value when guard  ... | value otherwise */
+  EXPR_NUMBER, /* 30 [GPa] */
+  EXPR_NAME,   /* x, x[j], x'[j], x' */
+  EXPR_UNARY,  /* -a, not a */
+  EXPR_BINARY, /* a + b, a <= b, a and b, a : b */
+  EXPR_CALL,   /* f(a, b, weight = c) */
+  EXPR_CASES   /* | value when guard  ... | value otherwise */
 } expr_kind;
 
 /* How an operator is computed by an operation of the same or another name: a > b is b < a. */
@@ -56,7 +56,7 @@ typedef enum binary_op {
 #define X(code, text, operation, reading) OP_##code,
   TREE_BINARY_OPERATORS(X)
 #undef X
-  OP_BINARY_COUNT
+      OP_BINARY_COUNT
 } binary_op;
 
 typedef enum unary_op { OP_NEG, OP_PLUS, OP_NOT } unary_op;
@@ -100,8 +100,8 @@ struct expr {
 
   const char *name; /* NAME, CALL */
   span name_where;
-  bool indexed;     /* NAME: [j] follows */
-  bool primed;      /* NAME: ' follows the name (the neighbour's value toward me) */
+  bool indexed; /* NAME: [j] follows */
+  bool primed;  /* NAME: ' follows the name (the neighbour's value toward me) */
 
   unary_op unary;
   binary_op binary;
@@ -113,9 +113,9 @@ struct expr {
   int case_count;
 
   /* checker */
-  struct symbol *symbol;  /* NAME: what it refers to; CALL: a user's function */
-  int builtin;            /* CALL: enum builtin_function of builtins.h, or -1 */
-  bool reads_old;         /* NAME of a state or damage: value of the last step */
+  struct symbol *symbol; /* NAME: what it refers to; CALL: a user's function */
+  int builtin;           /* CALL: enum builtin_function of builtins.h, or -1 */
+  bool reads_old;        /* NAME of a state or damage: value of the last step */
   dimension dim;
   enum shape shape;
   placement place;
@@ -123,15 +123,16 @@ struct expr {
 
 typedef enum stmt_kind {
 #define TREE_STATEMENTS(X)                                                                         \
-  X(PARAMETER, "parameter") X(CONSTANT, "constant") X(OPTION, "option") X(DEFINITION, "definition")\
-  X(STATE, "state") X(DAMAGE, "damage") X(FUNCTION, "function") X(FORCE, "force")                  \
-  X(FORCE_STATE, "force state") X(MOMENT, "moment") X(ENERGY, "energy") X(STRESS, "stress")        \
-  X(STRAIN, "strain") X(YIELD, "yield") X(FLOW, "flow") X(OUTPUT, "output")                        \
-  X(NONCONSERVATIVE, "nonconservative") X(INCLUDE, "include")
+  X(PARAMETER, "parameter")                                                                        \
+  X(CONSTANT, "constant") X(OPTION, "option") X(DEFINITION, "definition") X(STATE, "state")        \
+      X(DAMAGE, "damage") X(FUNCTION, "function") X(FORCE, "force") X(FORCE_STATE, "force state")  \
+          X(MOMENT, "moment") X(ENERGY, "energy") X(STRESS, "stress") X(STRAIN, "strain")          \
+              X(YIELD, "yield") X(FLOW, "flow") X(OUTPUT, "output")                                \
+                  X(NONCONSERVATIVE, "nonconservative") X(INCLUDE, "include")
 #define X(code, text) STMT_##code,
   TREE_STATEMENTS(X)
 #undef X
-  STMT_COUNT
+      STMT_COUNT
 } stmt_kind;
 
 typedef struct bounds {
@@ -146,26 +147,26 @@ struct stmt {
   span where;
   const char *name; /* NULL for nonconservative and include */
   span name_where;
-  bool indexed;     /* name[j] */
-  expr *value;      /* rule, default or initial value; NULL when absent */
-  placement place;  /* STATE, DAMAGE: as written, ON_NOTHING when not written */
-  span place_where; /* of the word after `on` */
-  const char *unit_text;  /* PARAMETER without default: its unit, NULL for a pure number */
+  bool indexed;          /* name[j] */
+  expr *value;           /* rule, default or initial value; NULL when absent */
+  placement place;       /* STATE, DAMAGE: as written, ON_NOTHING when not written */
+  span place_where;      /* of the word after `on` */
+  const char *unit_text; /* PARAMETER without default: its unit, NULL for a pure number */
   span unit_where;
-  bool along_reference;   /* FORCE_STATE: acts along the reference bond, not the current one */
-  bounds in;        /* PARAMETER */
-  const char **words;     /* OPTION: choices; FUNCTION: arguments */
+  bool along_reference; /* FORCE_STATE: acts along the reference bond, not the current one */
+  bounds in;            /* PARAMETER */
+  const char **words;   /* OPTION: choices; FUNCTION: arguments */
   span *word_where;
   int word_count;
-  expr *when;             /* FLOW: guard */
-  bool returned;          /* FLOW along ... returned */
-  const char *text;       /* quoted text: description, reason, or included file */
+  expr *when;       /* FLOW: guard */
+  bool returned;    /* FLOW along ... returned */
+  const char *text; /* quoted text: description, reason, or included file */
   span text_where;
-  const char *doc;        /* lines of !> before it, joined by newline; NULL without */
+  const char *doc; /* lines of !> before it, joined by newline; NULL without */
   stmt *next;
 
   /* checker */
-  struct symbol *symbol;  /* what the statement declares or defines */
+  struct symbol *symbol; /* what the statement declares or defines */
 };
 
 typedef enum law_kind { LAW_CENTRAL_BOND, LAW_MICROPOLAR_BOND, LAW_STATE } law_kind;
@@ -179,7 +180,7 @@ typedef struct tree {
   const char **settings; /* for plane_stress, space */
   span *setting_where;
   int setting_count;
-  stmt *first;           /* in the order written, included statements in place */
+  stmt *first; /* in the order written, included statements in place */
 } tree;
 
 const char *stmt_kind_name(stmt_kind kind);

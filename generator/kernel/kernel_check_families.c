@@ -130,10 +130,10 @@ static void body_free(body *b) {
   free(b->incoming);
   free(b->held);
   free(b->unusual);
+  planes_free(b->particle, 2);
   if (!is_list(b)) return;
   free(b->neighbour);
   planes_free(b->chord, b->law->dimensions + 1);
-  planes_free(b->particle, 2);
 }
 
 /* --- a random body ---------------------------------------------------------------------------- */

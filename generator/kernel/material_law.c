@@ -280,8 +280,8 @@ static bool reads_masses(const law *l) {
          law_reads(l, QUANTITY_M_END_J);
 }
 
-/* Laws of bonds run as strips on the hexagon of nearest neighbours; as laws of families on all other
-   lattices, beside other laws, and where they read masses that differ. */
+/* Laws of bonds run as strips on the hexagon of nearest neighbours; as laws of families on all
+   other lattices, beside other laws, and where they read masses that differ. */
 static bool needs_families(const deck_material *m, const deck_lattice *l, const law *of,
                            const law_variation *v) {
   if (of->tree->law == LAW_STATE) return false;

@@ -15,7 +15,7 @@
   X(PROGRAM_OBSERVE, rows_observe)
 
 typedef enum program_task {
-  PROGRAM_STEP,    /* forces and new fields */
+  PROGRAM_STEP, /* forces and new fields */
   /* The same, and the energies that are lost; of families the latter: passes that follow those of a
      step. */
   PROGRAM_LEDGER,

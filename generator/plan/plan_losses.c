@@ -95,7 +95,7 @@ static factors factors_of(ir *g, ir_node n) {
   return f;
 }
 
-/* Over the family. The particle's factors stand outside, so that both ends of a bond add the same. */
+/* Over the family. The particle's factors stand outside: both ends of a bond add the same. */
 static ir_node family_sum(ir *g, ir_node n) {
   const factors f = factors_of(g, n);
   const ir_node inside = f.bond == IR_NONE ? ir_constant(g, 1) : f.bond;

@@ -23,8 +23,8 @@ typedef struct law_energy {
    False: the power of a bond's rate terms is not known.
 
    States: what is stored with the old fields less what is with the new ones. Both are those of the
-   places of this step; but its forces work over half of the way that led here and half of the one to
-   come, and with the other fields they would have been others. That difference, over half of the
+   places of this step; but its forces work over half of the way that led here and half of the one
+   to come, and with the other fields they would have been others. That difference, over half of the
    step's way, is what places halfway would give instead, and makes the balance one of second order
    (ledger.h); of bending in space it is left out.
    Rates: the power of what vanishes at zero rate, over the step. */

@@ -3,7 +3,7 @@
    not for each of its bonds.
 
        quaternion of a rotation vector      of both ends of all bonds: links
-       u_j - u_i, exp(-w[j]) of few bonds   stays: of both ends; cheaper than what is left and read */
+       u_j - u_i, exp(-w[j]) of few bonds   stays: of both ends; cheap */
 #ifndef PERILAT_GENERATOR_PROGRAM_ENDS_H
 #define PERILAT_GENERATOR_PROGRAM_ENDS_H
 

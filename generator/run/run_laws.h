@@ -4,8 +4,8 @@
 
 #include "generator/run/run_state.h"
 
-/* Opens and compiles the law of an interaction and reads its parameters; what is wrong with them leaves
-   them NULL. 0, or an exit status. What a law's own file has to answer for stays in
+/* Opens and compiles the law of an interaction and reads its parameters; what is wrong with them
+   leaves them NULL. 0, or an exit status. What a law's own file has to answer for stays in
    models[].said. */
 int load_law(run *r, int interaction);
 /* Of the simulation_law that it filled in. */

@@ -198,7 +198,7 @@
   /* loops over particles and neighbours */                                                        \
   X(OVER_PARTICLES, "    { /* particle by particle */\n")                                          \
   X(SOME_UNEXPECTED, "    uint64_t unusual = 0;\n")                                                \
-  X(IF_SOME_UNEXPECTED, "    if (unusual != 0) {\n")                                                \
+  X(IF_SOME_UNEXPECTED, "    if (unusual != 0) {\n")                                               \
   X(OVER_LANES, "$1PL_INDEPENDENT\n$1for (long q = 0; q < lanes; q++) {\n")                        \
   X(OVER_NEIGHBOURS, "    for (long k = 0; k < family->neighbours; k++) { "                        \
     "/* neighbour by neighbour */\n"                                                               \
@@ -332,7 +332,7 @@
     "  }\n"                                                                                        \
     "}\n\n")                                                                                       \
   /* losses: nothing is lost where no field has changed */                                         \
-  X(CHANGED_PLANE, "static uint64_t changed_plane(const double *old, const double *now, "           \
+  X(CHANGED_PLANE, "static uint64_t changed_plane(const double *old, const double *now, "          \
     "long lanes) {\n"                                                                              \
     "  uint64_t bits = 0;\n"                                                                       \
     "  for (long q = 0; q < lanes; q++)\n"                                                         \

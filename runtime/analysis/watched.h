@@ -22,8 +22,8 @@ typedef struct watch_instant { /* the state looked at, which was observed */
 
 /* Whether the bonds' forces are asked for. */
 bool watched_needs_forces(const deck_monitor *m);
-/* Sites of the region, or of all particles; `laws`: all at work on these. NULL with a diagnostic where nothing is there to watch,
-   and for what monitors watch by themselves. */
+/* Sites of the region, or of all particles; `laws`: all at work on these. NULL with a diagnostic
+   where nothing is there to watch, and for what monitors watch by themselves. */
 watched_part *watched_new(const deck_monitor *m, const int32_t *sites, long count, sweep *state,
                           const damage_law *laws, int law_count, diagnostics *d);
 void watched_free(watched_part *w);

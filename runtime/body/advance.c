@@ -4,8 +4,8 @@
 #include "runtime/base/lane_sum.h"
 #include "runtime/body/motion.h"
 
-/* All components in one loop, with a literal number of them and what is the same for most bodies left
-   out:
+/* All components in one loop, with a literal number of them and what is the same for most bodies
+   left out:
 
      next = decay v + part dt/m f (motion.h)
 

@@ -59,6 +59,7 @@ typedef void deck_group_check(struct deck_reader *r, const namelist_group *from,
 typedef struct deck_group_info {
   const char *name;
   const char *identity; /* key that tells groups of this name apart in overrides, or NULL */
+  const char *parts[2]; /* keys that do so in its place where a group has them */
   bool single;          /* at most one in a deck */
   bool open;            /* other keys are assignments */
   const deck_key_info *keys;

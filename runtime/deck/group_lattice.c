@@ -381,10 +381,12 @@ static void check_material(deck_reader *r, const namelist_group *from, void *int
   diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "lattice"),
               "the lattice `%s` has a material already", deck_shown(r->memory, item->lattice));
   diag_note(r->d, r->k->materials[first].item.where, "it is given here");
+  diag_hint(r->d, "one for a part of the lattice has `region` or `between`");
 }
 
 DECK_LIST(
-    material, .identity = "lattice", .open = true, .check = check_material,
+    material, .identity = "lattice", .parts = {"region", "between"}, .open = true,
+    .check = check_material,
     .doc =
         "The law of a lattice's bonds, or its parameters in a region. Every other key sets a "
         "parameter or an option of the law, e.g. `E = '30 GPa'`, or by place `E = '30 [GPa]*(1 + "

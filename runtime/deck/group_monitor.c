@@ -320,8 +320,8 @@ static bool take_tensor(deck_reader *r, const namelist_key *key, deck_monitor *i
   return true;
 }
 
-/* The axis of a moment or an angular momentum; in the plane there is one, in space a section has its
-   normal. */
+/* The axis of a moment or an angular momentum; in the plane there is one, in space a section has
+   its normal. */
 static bool take_axis(deck_reader *r, const namelist_group *from, const namelist_key *key,
                       deck_monitor *item, int dimensions) {
   if (key &&

@@ -5,8 +5,8 @@
 
 #include "runtime/interaction/sweep.h"
 
-/* At rest, fields at their initial values. `ledger`: which energies are kept, and so forces; `forces`:
-   somebody looks at the forces of every step. To be freed by sweep_free. */
+/* At rest, fields at their initial values. `ledger`: which energies are kept, and so forces;
+   `forces`: somebody looks at the forces of every step. To be freed by sweep_free. */
 sweep *interaction_new(const rows *lattice, const pl_law *law, const double *parameters,
                        double time_step, int threads, body_ledger ledger, bool forces);
 

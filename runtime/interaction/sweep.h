@@ -47,8 +47,9 @@ struct sweep {
      owned */
   double *const *parameter;
   const double *share; /* [size] of laws that read it (pl_family); NULL: 1 everywhere; not owned */
-  /* [size] J at the site that owns the bond, of laws of families at each particle half of its bonds':
-     of all steps, and of what the law takes in the state observed; NULL where they are not kept. */
+  /* [size] J at the site that owns the bond, of laws of families at each particle half of its
+     bonds': of all steps, and of what the law takes in the state observed; NULL where they are not
+     kept. */
   double *dissipated_state, *dissipated_rate, *lost_state, *lost_rate;
   sweep_engine engine;
 };
@@ -89,8 +90,8 @@ double sweep_bond_value(const sweep *w, const double *values, const rows_bond *b
    observed, to what is known of it (body_row). */
 void sweep_new_losses(sweep *w);
 void sweep_add_losses(sweep *w, int row);
-/* Whether what the law loses is known: of laws of bonds on strips always; of laws of families, which
-   then store energy, too, where it is `kept`, or where they cannot lose any. */
+/* Whether what the law loses is known: of laws of bonds on strips always; of laws of families,
+   which then store energy, too, where it is `kept`, or where they cannot lose any. */
 bool sweep_knows_losses(const pl_law *law, bool kept);
 
 /* An output in the state observed last: values[sweep_planes * size], defined where bonds or

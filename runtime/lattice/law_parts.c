@@ -10,7 +10,8 @@ typedef struct law_owners {
   const deck_interaction *laws; /* [count] the first is that of the whole lattice */
   int count;
   const rows *rows;
-  int *of_site;              /* [size] law of the particle there */
+  const deck_material **material; /* [size] of the region of the particle there; NULL: of none */
+  int *of_site;                   /* [size] law of the particle there */
   unsigned char **inside[2]; /* [count] of laws between regions: [size] 1 in its first, second */
   diagnostics *said;
 } law_owners;
@@ -31,16 +32,15 @@ static bool report_two(const law_owners *o, const deck_material *first, const de
 }
 
 /* Particles of a region of another law, or of one with the law of the lattice. */
-static bool take_region(law_owners *o, const deck_material *m, int law,
-                        const deck_material **of_site) {
+static bool take_region(law_owners *o, const deck_material *m, int law) {
   int32_t *particles;
   const int region = deck_find_region(o->deck, m->region);
   const long count = rows_select(o->rows, &o->deck->regions[region].shape, &particles);
   bool good = true;
   for (long n = 0; n < count && good; n++) {
     const int32_t site = o->rows->particle_site[particles[n]];
-    if (of_site[site]) good = report_two(o, of_site[site], m, site);
-    of_site[site] = m;
+    if (o->material[site]) good = report_two(o, o->material[site], m, site);
+    o->material[site] = m;
     o->of_site[site] = law;
   }
   free(particles);
@@ -49,15 +49,13 @@ static bool take_region(law_owners *o, const deck_material *m, int law,
 
 static bool find_owners(law_owners *o) {
   const deck_material *whole = o->laws[0].material;
-  const deck_material **of_site = must_calloc((size_t)o->rows->size, sizeof(const deck_material *));
   bool good = true;
   o->of_site = must_calloc((size_t)o->rows->size, sizeof *o->of_site);
+  o->material = must_calloc((size_t)o->rows->size, sizeof(const deck_material *));
   for (int n = 0; n < whole->regional_count; n++)
-    good = take_region(o, whole->regional[n], 0, of_site) && good;
+    good = take_region(o, whole->regional[n], 0) && good;
   for (int law = 1; law < o->count; law++)
-    if (o->laws[law].material->region)
-      good = take_region(o, o->laws[law].material, law, of_site) && good;
-  free(of_site);
+    if (o->laws[law].material->region) good = take_region(o, o->laws[law].material, law) && good;
   return good;
 }
 
@@ -74,18 +72,45 @@ static unsigned char *inside_of(const law_owners *o, const char *name) {
   return inside;
 }
 
-static void find_insides(law_owners *o) {
+/* A bond between two regions leads from one into the other. */
+static bool are_apart(const law_owners *o, int law) {
+  const deck_material *m = o->laws[law].material;
+  for (long p = 0; p < o->rows->particle_count; p++) {
+    const long site = o->rows->particle_site[p];
+    double at[3];
+    char text[ROWS_PLACE_TEXT];
+    if (!o->inside[0][law][site] || !o->inside[1][law][site]) continue;
+    rows_place(o->rows, site, at);
+    diag_report(o->said, DIAG_CONFLICT, deck_where(&m->item, "between"),
+                "the particle at %s is in both regions, `%s` and `%s`",
+                rows_place_text(o->rows->dimensions, at, text), m->between[0], m->between[1]);
+    diag_hint(o->said, "give the regions shapes that have no particle in common");
+    return false;
+  }
+  return true;
+}
+
+static bool find_insides(law_owners *o) {
+  bool good = true;
   for (int end = 0; end < 2; end++) {
     o->inside[end] = must_calloc((size_t)o->count, sizeof *o->inside[end]);
     for (int law = 1; law < o->count; law++)
       if (o->laws[law].material->between[0])
         o->inside[end][law] = inside_of(o, o->laws[law].material->between[end]);
   }
+  for (int law = 1; law < o->count; law++)
+    good = (!o->inside[0][law] || are_apart(o, law)) && good;
+  return good;
+}
+
+/* Both ends stand in one region that has a material. */
+static bool is_inside(const law_owners *o, long i, long j) {
+  return o->material[i] && o->material[i] == o->material[j];
 }
 
 static bool joins(const law_owners *o, int law, long i, long j) {
   const unsigned char *a = o->inside[0][law], *b = o->inside[1][law];
-  return a && ((a[i] && b[j]) || (a[j] && b[i]));
+  return a && !is_inside(o, i, j) && ((a[i] && b[j]) || (a[j] && b[i]));
 }
 
 /* The second law between regions that claims the bond, or 0. */
@@ -192,6 +217,7 @@ static void owners_free(law_owners *o) {
       free(o->inside[end][law]);
     free(o->inside[end]);
   }
+  free(o->material);
   free(o->of_site);
 }
 
@@ -200,8 +226,7 @@ law_part *law_parts_new(const deck *k, int first, int count, const rows *w, bool
   law_owners o = {.deck = k, .laws = k->interactions + first, .count = count, .rows = w, .said = d};
   law_part *parts = must_calloc((size_t)count, sizeof *parts);
   bool good = (!families || suits_families(&o)) && find_owners(&o);
-  if (good) find_insides(&o);
-  good = good && bonds_have_one(&o);
+  good = good && find_insides(&o) && bonds_have_one(&o);
   for (int law = 0; law < count && good; law++) {
     parts[law].bonds = rows_part(w, bonds_of(&o, families, law));
     parts[law].own = own_of(&o, law);

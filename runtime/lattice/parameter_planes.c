@@ -19,8 +19,9 @@
 typedef struct value_places {
   const rows *rows;
   const pl_law *law;
-  rows_bond *bonds; /* NULL: on particles */
-  long count;       /* particles or bonds */
+  const unsigned char *own; /* [size] 1 at the particles that are the law's; NULL: all */
+  rows_bond *bonds;         /* NULL: on particles */
+  long count;               /* particles or bonds */
 } value_places;
 
 /* A particle (partner < 0), or a bond from its owner to the partner, whose value stands at the
@@ -34,17 +35,19 @@ static bool on_particles(const value_places *p) {
   return p->bonds == NULL;
 }
 
-static value_places places_new(const rows *w, const pl_law *law) {
+static value_places places_new(const rows *w, const unsigned char *own, const pl_law *law) {
   const bool particles = law->varying_place == PL_ON_PARTICLE;
   return (value_places){.rows = w,
                         .law = law,
+                        .own = own,
                         .bonds = particles ? NULL : rows_bonds(w),
                         .count = particles ? w->particle_count : w->bond_count};
 }
 
 /* Whatever the law reads. */
 static value_places places_of_particles(const value_places *p) {
-  return (value_places){.rows = p->rows, .law = p->law, .count = p->rows->particle_count};
+  return (value_places){
+      .rows = p->rows, .law = p->law, .own = p->own, .count = p->rows->particle_count};
 }
 
 static value_place place_of(const value_places *p, long m) {
@@ -62,6 +65,11 @@ static value_place place_of(const value_places *p, long m) {
                        .at = b->slot,
                        .back = both ? (direction + w->directions) * w->size + partner : -1,
                        .direction = direction};
+}
+
+/* The law reads the value there: of a bond that is one of its own, of a particle where it is. */
+static bool is_read(const value_places *p, const value_place *at) {
+  return at->partner >= 0 || !p->own || p->own[at->site];
 }
 
 /* Site arrays of a plane. */
@@ -347,7 +355,7 @@ static long particles_in(const value_sources *s, int region, int32_t *particles)
   for (long p = 0; p < w->particle_count; p++) {
     const long site = w->particle_site[p];
     if ((s->region_of ? s->region_of[site] : -1) == region &&
-        (!s->own || s->own[site] || rows_degree(w, site) > 0))
+        (!s->own || s->own[site] || (!on_particles(s->places) && rows_degree(w, site) > 0)))
       particles[count++] = (int32_t)p;
   }
   return count;
@@ -413,7 +421,7 @@ static void fill_plane(const value_sources *s, int plane, double *values) {
 #pragma omp parallel for schedule(static)
   for (long m = 0; m < p->count; m++) {
     const value_place at = place_of(p, m);
-    put(values, &at, value_of(s, plane, &at));
+    if (is_read(p, &at)) put(values, &at, value_of(s, plane, &at));
   }
 }
 
@@ -547,6 +555,7 @@ static bool check_values(parameter_planes *r, const value_sources *s, diagnostic
   int first_parameter = -1;
   for (long m = 0; m < s->places->count; m++) {
     const value_place at = place_of(s->places, m);
+    if (!is_read(s->places, &at)) continue;
     for (int k = 0; k < r->count; k++)
       if (r->value[k]) b.values[law->varying[k]] = r->value[k][at.at];
     const int fault = fault_left(r, s, &at, &b);
@@ -575,7 +584,9 @@ static void find_extremes(parameter_planes *r, const value_sources *s) {
     const double *values = density ? r->density : r->value[k];
     double low = INFINITY, high = -INFINITY;
     for (long m = 0; m < p->count; m++) {
-      const double value = values[place_of(p, m).at];
+      const value_place at = place_of(p, m);
+      const double value = values[at.at];
+      if (!is_read(p, &at)) continue;
       low = pl_fmin(low, value);
       high = pl_fmax(high, value);
     }
@@ -641,7 +652,7 @@ parameter_planes *parameter_planes_new(const deck *k, int lattice, const deck_ma
                                        const rows *w, const unsigned char *own, const pl_law *law,
                                        double *parameters, const regional_values *regional,
                                        int regional_count, diagnostics *d) {
-  value_places places = places_new(w, law);
+  value_places places = places_new(w, own, law);
   value_sources s = {.places = &places,
                      .whole = whole,
                      .own = own,

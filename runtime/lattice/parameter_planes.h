@@ -1,7 +1,8 @@
 /* Parameters of a law that differ in space: planes of their values, on bonds for laws of bonds, on
    particles for laws of families. They come from random fields (random_field.h), and from
-   materials, by formulas of the place, by files of places and by regions: a particle has the value at its place, of its
-   region, a bond the mean of its ends'. The density stands on particles, whatever else does. */
+   materials, by formulas of the place, by files of places and by regions: a particle has the value
+   at its place, of its region, a bond the mean of its ends'. The density stands on particles,
+   whatever else does. */
 #ifndef PERILAT_RUNTIME_PARAMETER_PLANES_H
 #define PERILAT_RUNTIME_PARAMETER_PLANES_H
 

@@ -197,7 +197,7 @@ double *result_read_damage(result_file *f, long frame, long *bonds, char *error,
   return most;
 }
 
-/* --- bonds ------------------------------------------------------------------------------------- */
+/* --- bonds ------------------------------------------------------------------------------------ */
 
 static bool name_particles(const int32_t *pairs, long bonds, long particles) {
   for (long k = 0; k < 2 * bonds; k++)

@@ -1,5 +1,5 @@
-/* Data sets of a result that is read, whatever they mean. Files may be damaged or made up: nothing is
-   believed that a file says of its sizes. */
+/* Data sets of a result that is read, whatever they mean. Files may be damaged or made up: nothing
+   is believed that a file says of its sizes. */
 #ifndef PERILAT_RUNTIME_RESULT_SETS_H
 #define PERILAT_RUNTIME_RESULT_SETS_H
 
@@ -22,8 +22,8 @@ struct result_file {
 
 /* Negative where there is none. Closed by H5Dclose. */
 hid_t result_set_open(const result_file *f, const char *name);
-/* A history ("/history") or a field ("/frames"), by its full name or a part that says which. Negative
-   after a sentence. */
+/* A history ("/history") or a field ("/frames"), by its full name or a part that says which.
+   Negative after a sentence. */
 hid_t result_set_named(result_file *f, const char *group, const char *given, char *error,
                        size_t size);
 /* Rank and shape of a data set; false when it is not of rank 1 to 3, or too large to be read from

@@ -137,8 +137,8 @@ static void look_at_family(bad_search *s, long site) {
   s->found.family = s->family;
   s->found.own_fields = s->fields;
   fields_at(s, site, site, 0, s->fields);
-  for (int k = 0; k < 2 * s->of->lattice_rows->directions; k++)
-    if (rows_has_neighbour(s->of->lattice_rows, site, k)) look_at_neighbour(s, site, k);
+  for (int k = 0; k < 2 * s->state->lattice->directions; k++)
+    if (rows_has_neighbour(s->state->lattice, site, k)) look_at_neighbour(s, site, k);
 }
 
 /* Of the bonds of the particle the one that pulls most, and what its law read. */
@@ -168,13 +168,20 @@ static int first_bad(const bad_search *s) {
   return b;
 }
 
-/* Of several laws the first that the particle is of, or has bonds of. */
+/* The size of what a law's bonds exert on a particle; NaN is that of no number. */
+static double force_at(const run_law *l, long site) {
+  double sum = 0;
+  for (int d = 0; d < l->law->dof; d++)
+    sum += fabs(l->state->force[d][site]);
+  return sum;
+}
+
+/* Of several laws with a part in the particle's bonds the one that pulls most. */
 static const run_law *law_at(const run_body *of, long site) {
-  for (int n = 0; n < of->law_count; n++) {
-    const run_law *l = &of->laws[n];
-    if (l->share ? l->share[site] > 0 : rows_degree(l->rows, site) > 0) return l;
-  }
-  return of->laws;
+  const run_law *worst = of->laws;
+  for (int n = 1; n < of->law_count; n++)
+    if (is_worse(force_at(&of->laws[n], site), force_at(worst, site))) worst = &of->laws[n];
+  return worst;
 }
 
 void bad_search_velocity(bad_search *s) {

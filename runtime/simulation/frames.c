@@ -21,12 +21,12 @@ typedef struct frames_of { /* where values come from */
 } frames_of;
 typedef void values_of(const frames_of *of, const frame_source *from, double *values);
 
-struct
-    frame_source { /* where a law's values of a frame field come from, or a body's: at its first law */
-  values_of *values; /* NULL: there is no such field */
+struct frame_source { /* where values of a law come from; of a body: at its first law */
+  values_of *values;  /* NULL: there is no such field */
   int components;
-  /* of the law's fields, outputs, or parameters that differ from bond to bond; of a tensor's
-     components */
+  bool on_bonds;
+  /* of the law's fields, outputs, parameters that differ from bond to bond, or parameters; of a
+     tensor's components */
   int index;
   struct frame_tensor *tensor;
 };
@@ -123,6 +123,17 @@ static void values_of_parameter(const frames_of *of, const frame_source *from, d
     bond_values(of, array, values);
 }
 
+/* One that is the same everywhere: where the law is at work. */
+static void values_of_constant(const frames_of *of, const frame_source *from, double *values) {
+  const rows *g = of->body->lattice_rows;
+  const double value = of->law->parameters[from->index];
+  const unsigned char *own = of->law->own;
+  for (long b = 0; from->on_bonds && b < of->law->rows->bond_count; b++)
+    values[b] = value;
+  for (long p = 0; !from->on_bonds && p < g->particle_count; p++)
+    if (!own || own[g->particle_site[p]]) values[p] = value;
+}
+
 /* --- fields of any law ------------------------------------------------------------------------ */
 
 static void values_of_displacement(const frames_of *of, const frame_source *from, double *values) {
@@ -155,12 +166,16 @@ static void values_of_damage(const frames_of *of, const frame_source *from, doub
 
 /* Energy lost in the bonds that a particle owns (those to the right and above). */
 static void values_of_dissipated(const frames_of *of, const frame_source *from, double *values) {
-  const sweep *w = of->body->state;
+  const rows *g = of->body->lattice_rows;
   (void)from;
-  for (long p = 0; p < w->body->lattice->particle_count; p++) {
-    const int32_t site = w->body->lattice->particle_site[p];
-    values[p] = w->dissipated_state[site] + w->lost_state[site] + w->dissipated_rate[site] +
-                0.5 * w->lost_rate[site];
+  memset(values, 0, (size_t)g->particle_count * sizeof *values);
+  for (int n = 0; n < of->body->law_count; n++) {
+    const sweep *w = of->body->laws[n].state;
+    for (long p = 0; p < g->particle_count && w->lost_state; p++) {
+      const int32_t site = g->particle_site[p];
+      values[p] += w->dissipated_state[site] + w->lost_state[site] + w->dissipated_rate[site] +
+                   0.5 * w->lost_rate[site];
+    }
   }
 }
 
@@ -223,9 +238,11 @@ static bool with_damage(const deck_output *asked, const pl_law *law) {
   return damage_on_bonds(law) || damage_on_particles(law);
 }
 
-/* Laws of bonds count what each bond has lost. */
+/* Laws of bonds on strips count what each bond has lost, those of families where it is asked. */
 static bool with_losses(const deck_output *asked, const pl_law *law) {
-  return asked->energy && law->kind != PL_STATE;
+  const bool may_lose = law->field_count > 0 || law->reads_rates;
+  return asked->energy &&
+         (law->kind != PL_STATE || (asked->losses && may_lose && sweep_knows_losses(law, true)));
 }
 
 /* as many as there are directions of space, or axes to turn about */
@@ -276,7 +293,7 @@ static size_t most_fields(const run_body *bodies, int count) {
   size_t most = OWN_FIELDS + TENSORS * (1 + TENSOR_MOST);
   for (int n = 0; n < count_laws(bodies, count); n++) {
     const pl_law *law = bodies[0].laws[n].law;
-    most += (size_t)(law->field_count + law->output_count + law->varying_count);
+    most += (size_t)(law->field_count + law->output_count + law->parameter_count);
   }
   return most;
 }
@@ -316,7 +333,8 @@ static frame_source *add(frame_set *f, frame_field field, values_of *values, int
     f->fields[at] = field;
   }
   frame_source *from = &f->sources[at * f->law_count + field.interaction];
-  *from = (frame_source){.values = values, .components = field.components, .index = index};
+  *from = (frame_source){
+      .values = values, .components = field.components, .on_bonds = field.on_bonds, .index = index};
   return from;
 }
 
@@ -396,6 +414,34 @@ static void add_tensor(frame_set *f, int k, int b) {
   }
 }
 
+static bool varies(const pl_law *law, int parameter) {
+  for (int k = 0; k < law->varying_count; k++)
+    if (law->varying[k] == parameter) return true;
+  return false;
+}
+
+/* Beside other laws one that is the same everywhere is worth a field. */
+static bool is_field(const run_law *of, int parameter) {
+  return of->own || varies(of->law, parameter);
+}
+
+static void add_parameter(frame_set *f, int n, int parameter, values_of *values, int index) {
+  const pl_law *law = f->laws[n].law;
+  const pl_parameter *p = &law->parameters[parameter];
+  const bool pairs = law->kind != PL_STATE || law->pairwise;
+  if (!is_asked(f->asked, p->name)) return;
+  add(f,
+      (frame_field){.name = p->name,
+                    .unit = p->unit,
+                    .on_bonds = pairs && parameter != law->density,
+                    .components = 1,
+                    .interaction = n,
+                    .of_law = true,
+                    .kind = "other",
+                    .long_name = words_of(p->doc, "parameter of the law")},
+      values, index);
+}
+
 static void add_of_law(frame_set *f, int n) {
   const pl_law *law = f->laws[n].law;
   const deck_output *asked = f->asked;
@@ -429,20 +475,10 @@ static void add_of_law(frame_set *f, int n) {
                       .long_name = words_of(o->doc, "output of the law")},
         values_of_output, k);
   }
-  for (int k = 0; k < law->varying_count; k++) {
-    const pl_parameter *p = &law->parameters[law->varying[k]];
-    if (!is_asked(asked, p->name)) continue;
-    add(f,
-        (frame_field){.name = p->name,
-                      .unit = p->unit,
-                      .on_bonds = law->varying_place != PL_ON_PARTICLE && !is_density(law, k),
-                      .components = 1,
-                      .interaction = n,
-                      .of_law = true,
-                      .kind = "other",
-                      .long_name = words_of(p->doc, "parameter of the law")},
-        values_of_parameter, k);
-  }
+  for (int k = 0; k < law->varying_count; k++)
+    add_parameter(f, n, law->varying[k], values_of_parameter, k);
+  for (int p = 0; p < law->parameter_count; p++)
+    if (is_field(&f->laws[n], p) && !varies(law, p)) add_parameter(f, n, p, values_of_constant, p);
 }
 
 frame_set *frames_new(const deck_output *asked, const run_body *bodies, int count,
@@ -529,13 +565,22 @@ static bool exists_in_run(const own_field *own, const deck_output *o, const run_
   return false;
 }
 
-static int add_law_names(const pl_law *law, const char **names, int count) {
+/* Once. */
+static int add_name(const char *name, const char **names, int count) {
+  for (int n = 0; n < count; n++)
+    if (strcmp(names[n], name) == 0) return count;
+  names[count] = name;
+  return count + 1;
+}
+
+static int add_law_names(const run_law *of, const char **names, int count) {
+  const pl_law *law = of->law;
   for (int f = 0; f < law->field_count; f++)
-    names[count++] = law->fields[f].name;
+    count = add_name(law->fields[f].name, names, count);
   for (int f = 0; f < law->output_count; f++)
-    names[count++] = law->outputs[f].name;
-  for (int k = 0; k < law->varying_count; k++)
-    names[count++] = law->parameters[law->varying[k]].name;
+    count = add_name(law->outputs[f].name, names, count);
+  for (int p = 0; p < law->parameter_count; p++)
+    if (is_field(of, p)) count = add_name(law->parameters[p].name, names, count);
   return count;
 }
 
@@ -550,7 +595,7 @@ static const char **field_names(const deck_output *o, const run_body *bodies, in
   for (int k = 0; k < TENSORS; k++)
     names[(*count)++] = tensor_fields[k].name;
   for (int n = 0; n < count_laws(bodies, bodies_count); n++)
-    *count = add_law_names(bodies[0].laws[n].law, names, *count);
+    *count = add_law_names(&bodies[0].laws[n], names, *count);
   return names;
 }
 

@@ -132,18 +132,26 @@ static bool has_own_name(const deck *k, int lattice, diagnostics *d) {
   return false;
 }
 
+static bool name_is_new(const deck *k, int interaction) {
+  const char *name = k->interactions[interaction].name;
+  for (int n = 0; n < interaction; n++)
+    if (strcmp(k->interactions[n].name, name) == 0) return false;
+  return deck_find_lattice(k, name) < 0;
+}
+
 /* Laws beside others have folders of their own among the fields. */
 static bool laws_have_names(const deck *k, diagnostics *d) {
   for (int n = 0; n < k->interaction_count; n++) {
     const deck_interaction *of = &k->interactions[n];
     const bool first = of->material == deck_material_of(k, of->lattice);
-    if (first || (!strchr(of->name, '/') && deck_find_lattice(k, of->name) < 0)) continue;
+    if (first || (!strchr(of->name, '/') && name_is_new(k, n))) continue;
     diag_report(d, DIAG_RESERVED_NAME, of->material->item.where,
                 strchr(of->name, '/')
                     ? "the result names the bonds of this law `%s`: no name of a region that has "
                       "a law of its own may hold `/`"
-                    : "the result names the bonds of this law `%s`, as a lattice is named already",
+                    : "the result names the bonds of this law `%s`, as others are named already",
                 of->name);
+    diag_hint(d, "give the region another name");
     return false;
   }
   return true;

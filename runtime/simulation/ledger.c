@@ -16,7 +16,7 @@ const char *const ledger_words[LEDGER_COUNT] = {
 };
 
 const char *ledger_unchecked(const pl_law *law, bool kept) {
-  if (!law->stores) return "the law has no stored energy";
+  if (!law->stores) return "the law does not say all that its bonds store";
   if (sweep_knows_losses(law, kept)) return NULL;
   return sweep_knows_losses(law, true)
              ? "what a law of families loses is kept with `losses = .true.` in &output alone"
@@ -51,7 +51,10 @@ bool ledger_sample(ledger *g, const ledger_laws *of, const body *state, const lo
   const double damping = t.dissipated_rate + t.dissipated + s.dissipated + look->dissipated;
   const double kinetic = t.kinetic + look->kinetic, held = kinetic + t.stored;
   const double lost = t.internal + s.internal - t.stored;
-  if (!g->begun) *g = (ledger){.begun = 1, .initial = held, .lost = lost, .pending = damping};
+  if (!g->begun) {
+    *g = (ledger){.begun = 1, .lost = lost, .pending = damping};
+    g->initial = held + taken(g, of, &t, lost); /* what breaks in the first state was held before */
+  }
   terms[LEDGER_KINETIC] = kinetic;
   terms[LEDGER_STORED] = t.stored;
   terms[LEDGER_EXTERNAL] = s.work + look->work + t.gravity;

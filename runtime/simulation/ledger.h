@@ -11,24 +11,24 @@
 
    What damage and states take in a step is what is stored with the old fields less what is with the
    new ones. Where is a matter of order. With W(u, d) stored, forces F = dW/du, and the way du of a
-   step the work of the mean force of both ends is W(u + du, d) - W(u, d) up to du^3 for fields d that
-   stay. Forces of step n are F(u_n, d_n): they work over half of the way that led there, where the
-   fields were still d_(n-1). So the balance wants
+   step the work of the mean force of both ends is W(u + du, d) - W(u, d) up to du^3 for fields d
+   that stay. Forces of step n are F(u_n, d_n): they work over half of the way that led there, where
+   the fields were still d_(n-1). So the balance wants
 
      lost_n = W(u_n, d_(n-1)) - W(u_n, d_n) - (F(u_n, d_(n-1)) - F(u_n, d_n)) du/2
 
    which is the difference of the two energies at places halfway, up to du^2. With it the imbalance
-   falls with the square of the step, also where damage jumps. Laws of families book so (pl_law.ledger;
-   those whose forces are of the old fields with the other sign), laws of bonds on strips without the
-   last term: there the imbalance falls with the step. So it does where rate terms take energy: they
-   know the velocity v- and are booked with it, while they work over the mean of v- and v+; what is
-   missed is about c v^2 dt/4, v being how fast a damper c now moves.
+   falls with the square of the step, also where damage jumps. Laws of families book so
+   (pl_law.ledger; those whose forces are of the old fields with the other sign), laws of bonds on
+   strips without the last term: there the imbalance falls with the step. So it does where rate
+   terms take energy: they know the velocity v- and are booked with it, while they work over the
+   mean of v- and v+; what is missed is about c v^2 dt/4, v being how fast a damper c now moves.
 
    Of a law that does not say what it stores, or of families what it takes, nothing can be balanced:
-   dissipated_damage is then the work done against the forces of the bonds, -f (v- + v+)/2 dt for each
-   step and half of it for step n, less the change of the stored energy. It holds all that the law
-   takes, its dampers too, and the error of the steps; the imbalance would be 0 by definition, and is
-   NaN. */
+   dissipated_damage is then the work done against the forces of the bonds, -f (v- + v+)/2 dt for
+   each step and half of it for step n, less the change of the stored energy. It holds all that the
+   law takes, its dampers too, and the error of the steps; the imbalance would be 0 by definition,
+   and is NaN. */
 #ifndef PERILAT_RUNTIME_LEDGER_H
 #define PERILAT_RUNTIME_LEDGER_H
 

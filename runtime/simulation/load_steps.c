@@ -313,6 +313,10 @@ static long first_at(const void *items, long count, size_t size, int64_t site) {
   return low;
 }
 
+long load_steps_first_force(const loads *l, int64_t site) {
+  return first_at(l->forces, l->force_count, sizeof *l->forces, site);
+}
+
 /* The loads on the rows of a block in a step. */
 typedef struct load_run {
   loads *l;

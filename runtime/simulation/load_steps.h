@@ -68,4 +68,7 @@ double load_steps_velocity(const loads *l, const body *w, int component, int64_t
 velocity_instant load_steps_velocities(const loads *l, const body *w, int component, int64_t site,
                                        long step);
 
+/* The first force on that site or behind it; they stand in the order of their sites. */
+long load_steps_first_force(const loads *l, int64_t site);
+
 #endif

@@ -132,8 +132,8 @@ static const deck_placed *placed_of(const deck_material *m, const pl_parameter *
   return NULL;
 }
 
-/* What differs is judged at the particles (parameter_planes.h): where the law forbids the value of a
-   formula in the middle, or the mean of a file, the default answers until they are known. */
+/* What differs is judged at the particles (parameter_planes.h): where the law forbids the value of
+   a formula in the middle, or the mean of a file, the default answers until they are known. */
 static void replace_placed(const deck_material *m, const pl_law *law, double *values) {
   const size_t n = (size_t)law->parameter_count + 1;
   double *bounds = must_calloc(2 * n, sizeof *bounds);

@@ -203,6 +203,16 @@ static void check_speed(const monitor *m, const monitors *all, diagnostics *d) {
               "a speed is taken over two states at least: %.6g s and more", 2 * all->interval);
 }
 
+/* That of the region's first particle, where it has the field. */
+static const run_law *law_watched(const monitor *m) {
+  const run_body *of = m->of[0];
+  for (int n = 0; n < of->law_count && m->index_count[0] > 0; n++)
+    if (of->laws[n].own && of->laws[n].own[m->indices[0][0]] &&
+        find_field(m->deck, of->laws[n].law) >= 0)
+      return &of->laws[n];
+  return law_with_field(m->deck, of);
+}
+
 /* Other laws have no such field on their particles. */
 static void check_share(const monitor *m, diagnostics *d) {
   for (long p = 0; m->law->share && p < m->index_count[0]; p++) {
@@ -242,10 +252,10 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
     take_sites(m, 0, all, m->deck->region);
     break;
   case MONITOR_FIELD:
-    m->law = law_with_field(m->deck, m->of[0]);
+    take_sites(m, 0, all, m->deck->region);
+    m->law = law_watched(m);
     m->field = find_field(m->deck, m->law->law);
     m->unit = law_field(m->law->law, m->field)->unit;
-    take_sites(m, 0, all, m->deck->region);
     check_share(m, d);
     break;
   case MONITOR_DAMAGED:
@@ -421,16 +431,30 @@ static long count_in_places(const rows *g, const monitor *m, const double *damag
   return count;
 }
 
+/* Of a bond that two laws of families bear the mean of what they say; it counts for that of its
+   first end, and for the other not at all (-1). */
+static double damage_once(const run_body *on, const run_law *of, const rows_bond *bond) {
+  const int32_t *site = of->rows->particle_site;
+  const double here = damage_of_bond(of->state, bond);
+  if (!of->share || (of->share[site[bond->i]] > 0 && of->share[site[bond->j]] > 0)) return here;
+  if (!(of->share[site[bond->i]] > 0)) return -1;
+  double sum = here;
+  for (int n = 0; n < on->law_count; n++)
+    if (on->laws[n].share[site[bond->j]] > 0) sum += damage_of_bond(on->laws[n].state, bond);
+  return 0.5 * sum;
+}
+
 /* Bonds, or particles where the law's damage is on particles alone. */
-static long count_damaged(const run_law *of, const monitor *m) {
+static long count_damaged(const run_body *on, const run_law *of, const monitor *m) {
   const rows *g = of->rows;
   const bool bonds = damage_on_bonds(of->law);
   const double *in_places = damage_of_all_bonds(of->state);
   long count = 0;
-  if (!law_can_be_damaged(of->law)) return 0;
   if (in_places) return count_in_places(g, m, in_places);
-  for (long b = 0; bonds && b < g->bond_count; b++)
-    count += is_counted(m, damage_of_bond(of->state, &of->bonds[b]));
+  for (long b = 0; bonds && b < g->bond_count; b++) {
+    const double damage = damage_once(on, of, &of->bonds[b]);
+    count += damage >= 0 && is_counted(m, damage);
+  }
   for (long p = 0; !bonds && p < g->particle_count; p++)
     if (!of->share || of->share[g->particle_site[p]] > 0)
       count += is_counted(m, damage_of_site(of->state, g->particle_site[p]));
@@ -441,7 +465,8 @@ static double count_all_damaged(const monitors *all, const monitor *m) {
   long count = 0;
   for (int b = 0; b < all->body_count; b++)
     for (int n = 0; n < all->bodies[b].law_count && watches(all, m, b); n++)
-      count += count_damaged(&all->bodies[b].laws[n], m);
+      if (law_can_be_damaged(all->bodies[b].laws[n].law))
+        count += count_damaged(&all->bodies[b], &all->bodies[b].laws[n], m);
   return (double)count;
 }
 

@@ -144,8 +144,9 @@ static int free_moment(const run_body *of, long i, int d, double *left) {
   if (w->dof < 6 || l->constraints[i].component < w->dimensions) return 0;
   for (int k = 0; k < 3; k++)
     moment[k] = w->force[w->dimensions + k][site];
-  for (long n = 0; n < l->force_count; n++)
-    if (l->forces[n].site == site && l->forces[n].component >= w->dimensions)
+  for (long n = load_steps_first_force(l, site); n < l->force_count && l->forces[n].site == site;
+       n++)
+    if (l->forces[n].component >= w->dimensions)
       moment[l->forces[n].component - w->dimensions] += l->forces[n].now;
   const int count = load_steps_release(l, w, i, moment);
   if (d >= w->dimensions) *left = moment[d - w->dimensions];

@@ -3,6 +3,7 @@
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "dsl/base/arena.h"
 #include "runtime/analysis/stability.h"
@@ -113,6 +114,18 @@ static interaction_law *laws_beside(const run_body *b) {
   return laws;
 }
 
+/* Of several laws whose body flies apart, or has no stiffness, the first that does so alone. */
+static const run_law *law_at_fault(const run_body *b) {
+  if (b->limit.least >= STABILITY_LEAST && b->limit.limit > 0) return b->laws;
+  for (int n = 0; n < b->law_count; n++) {
+    const run_law *l = &b->laws[n];
+    step_limit alone = {0};
+    stability_limit(l->law, l->parameters, l->planes, b->lattice_rows, &alone);
+    if (alone.least < STABILITY_LEAST || !(alone.limit > 0)) return l;
+  }
+  return b->laws;
+}
+
 static bool find_limit(run_body *b, const deck *k, diagnostics *d) {
   const run_law *l = &b->laws[0];
   if (b->law_count == 1)
@@ -121,7 +134,8 @@ static bool find_limit(run_body *b, const deck *k, diagnostics *d) {
   interaction_law *laws = laws_beside(b);
   stability_limit_joint(laws, b->law_count, b->lattice_rows, &b->limit);
   free(laws);
-  return step_limit_check(k, b->lattice, b->law, &b->limit, d);
+  l = law_at_fault(b);
+  return step_limit_check(k, deck_where(&l->from->material->item, "model"), l->law, &b->limit, d);
 }
 
 /* Of the particles that a law owns; those between regions own none. */
@@ -158,12 +172,23 @@ static void set_masses(run_body *b) {
   free(rho);
 }
 
+/* Bonds between regions have no mass. */
+static void warn_of_mass(const run_law *l, diagnostics *d) {
+  const deck_material *m = l->from->material;
+  for (int n = 0; n < m->assignment_count && m->between[0]; n++)
+    if (strcasecmp(m->assignments[n].name, "rho") == 0)
+      diag_report(d, DIAG_DECK_WARNING, m->assignments[n].name_where,
+                  "the bonds between `%s` and `%s` have no mass: this `rho` is that of no particle",
+                  m->between[0], m->between[1]);
+}
+
 /* What asks for the values of parameters. */
 static bool open_materials(run_body *b, const deck *k, diagnostics *d) {
   bool planes = true, mass = true;
   for (int n = 0; n < b->law_count; n++) {
     planes = open_planes(b, &b->laws[n], k, d) && planes;
     mass = law_fits_motion(b->laws[n].law, k, b->lattice, d) && mass;
+    warn_of_mass(&b->laws[n], d);
   }
   if (mass) set_masses(b);
   if (mass) law_parts_take_masses(b->parts, b->law_count, b->lattice_rows);

@@ -29,9 +29,9 @@ static bool ends_after_a_step(const step_limit *limit, const deck *k, diagnostic
   return false;
 }
 
-bool step_limit_check(const deck *k, int lattice, const pl_law *law, const step_limit *limit,
+bool step_limit_check(const deck *k, span where, const pl_law *law, const step_limit *limit,
                       diagnostics *d) {
-  if (!is_stable_at_rest(limit, law, law_fits_where(k, lattice), d)) return false;
+  if (!is_stable_at_rest(limit, law, where, d)) return false;
   if (limit->limit > 0) return true;
   diag_report(d, DIAG_UNSTABLE_STEP, k->simulation.item.where,
               "the law `%s` has no finite stiffness at rest, so that no step is stable", law->name);
@@ -44,7 +44,7 @@ bool step_limit_of(const deck *k, int lattice, const pl_law *law, const double *
                    const parameter_planes *fields, const rows *w, step_limit *limit,
                    diagnostics *d) {
   stability_limit(law, parameters, fields, w, limit);
-  return step_limit_check(k, lattice, law, limit, d);
+  return step_limit_check(k, law_fits_where(k, lattice), law, limit, d);
 }
 
 bool step_choose(const deck *of, const pl_law *law, const char *lattice, step_limit *limit,

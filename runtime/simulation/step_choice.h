@@ -19,8 +19,8 @@ typedef struct step_plan {
 bool step_limit_of(const deck *k, int lattice, const pl_law *law, const double *parameters,
                    const parameter_planes *fields, const rows *w, step_limit *limit,
                    diagnostics *d);
-/* The same of a limit that is known. */
-bool step_limit_check(const deck *k, int lattice, const pl_law *law, const step_limit *limit,
+/* The same of a limit that is known, and a law that stands at that place of the deck. */
+bool step_limit_check(const deck *k, span where, const pl_law *law, const step_limit *limit,
                       diagnostics *d);
 /* limit->step, the deck's part of the shortest of these limits. It is that of `law`, and of
    `lattice` where there are others, too (else NULL). */

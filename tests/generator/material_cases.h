@@ -1,5 +1,5 @@
-/* For tests: runs of one lattice whose parameters differ in space, without files in between. Include
-   after cmocka.h. */
+/* For tests: runs of one lattice whose parameters differ in space, without files in between.
+   Include after cmocka.h. */
 #ifndef PERILAT_TESTS_MATERIAL_CASES_H
 #define PERILAT_TESTS_MATERIAL_CASES_H
 

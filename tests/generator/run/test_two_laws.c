@@ -400,10 +400,14 @@ static void slips_are_told_at_their_line(void **state) {
                                 "'elastic_central' /\n",
        "no bond joins `a` with `c`", "between = 'a', 'c'"},
       {WHOLE("elastic_central") ACROSS("elastic_central") "&region name = 'c' shape = 'rectangle' "
-                                                          "corner = -1, -1 size = 1, 1 /\n"
+                                                          "corner = -1, -1 size = 0.999, 1 /\n"
                                                           "&material lattice = 'l' between = 'a', "
                                                           "'c' model = 'elastic_central' /\n",
        "has two materials: it joins other regions, too", "between = 'a', 'c'"},
+      {WHOLE("elastic_central") "&region name = 'c' shape = 'disc' centre = 0, 0 radius = 1 /\n"
+                                "&material lattice = 'l' between = 'a', 'c' model = "
+                                "'elastic_central' /\n",
+       "is in both regions, `a` and `c`", "between = 'a', 'c'"},
       {WHOLE("elastic_micropolar") "&region name = 'c' shape = 'point' at = 0, 0 /\n"
                                    "&material lattice = 'l' region = 'c' model = 'mplm_linear' /\n",
        "no bond has both ends in the region `c`", "region = 'c'"},
@@ -415,7 +419,7 @@ static void slips_are_told_at_their_line(void **state) {
                               "1 /\n&body lattice = 'l.a-b' shape = 'rectangle' corner = 9, 9 "
                               "size = 9, 9 /\n&material lattice = 'l.a-b' model = "
                               "'elastic_central' /\n" ACROSS("elastic_central"),
-       "as a lattice is named already", "between = 'a', 'b'"}};
+       "as others are named already", "between = 'a', 'b'"}};
   for (size_t k = 0; k < sizeof slips / sizeof *slips; k++) {
     char text[4096];
     snprintf(text, sizeof text, "%s%s", DISC("hexagonal", ""), slips[k].groups);

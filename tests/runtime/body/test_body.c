@@ -300,8 +300,8 @@ static void what_holds_a_component_does_no_work(void **state) {
     }
 }
 
-/* A particle that turns out to be quicker turns as if it had been so from the beginning of the step,
-   not about one axis after the others. */
+/* A particle that turns out to be quicker turns as if it had been so from the beginning of the
+   step, not about one axis after the others. */
 static void a_change_of_velocity_takes_the_place_along(void **state) {
   (void)state;
   const pl_law law = beams_in(3, PL_ROWS);

@@ -160,7 +160,7 @@ static void some_laws_are_not_judged(void **state) {
   pl_law law = elastic_bar;
   assert_null(ledger_unchecked(&law, true));
   law.stores = 0;
-  assert_non_null(strstr(ledger_unchecked(&law, true), "no stored energy"));
+  assert_non_null(strstr(ledger_unchecked(&law, true), "does not say all that its bonds store"));
   law = elastic_bar;
   law.kind = PL_STATE;
   law.reads_rates = 0;
