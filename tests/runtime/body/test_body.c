@@ -223,8 +223,8 @@ static void rotations_follow_each_other(void **state) {
         sum[k] = starts[n][k] + turns[m][k];
         size = fmax(size, fabs(sum[k]));
       }
-      const row_part whole = whole_row(w, ROW);
-      motion_drift(w, &w->blocks[0], &whole);
+      const row_part row = whole_row(w, ROW);
+      motion_drift(w, &w->blocks[0], &row);
       for (int k = 0; k < 3; k++) {
         assert_true(w->velocity[3 + k][q] == turns[m][k] / step);
         now[k] = w->displacement[3 + k][q];
