@@ -125,7 +125,7 @@ static int load_laws(run *r) {
 static void build_lattices(run *r) {
   const deck *k = r->deck;
   for (int n = 0; n < k->lattice_count && !deck_lacks(k, "body") && !deck_lacks(k, "notch"); n++)
-    if (!deck_misses_body(k, n)) r->lattices[n] = lattice_build(k, n, &r->said);
+    if (!deck_misses_body(k, n)) r->lattices[n] = lattice_build_next(k, n, r->lattices, &r->said);
 }
 
 /* All of them are known; else what there is goes. */

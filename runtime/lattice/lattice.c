@@ -1,9 +1,15 @@
 #include "runtime/lattice/lattice.h"
 
+#include "runtime/lattice/linked.h"
 #include "runtime/lattice/rows_build.h"
 #include "runtime/lattice/scattered.h"
 
 rows *lattice_build(const deck *k, int lattice, diagnostics *d) {
   const bool irregular = deck_lattice_is_irregular(&k->lattices[lattice]);
   return (irregular ? scattered_build : rows_build)(k, lattice, d);
+}
+
+rows *lattice_build_next(const deck *k, int lattice, rows *const *built, diagnostics *d) {
+  return deck_lattice_is_link(&k->lattices[lattice]) ? linked_build(k, lattice, built, d)
+                                   : lattice_build(k, lattice, d);
 }

@@ -10,5 +10,8 @@
 
 /* NULL after messages at the deck's line. To be freed by rows_free. */
 rows *lattice_build(const deck *k, int lattice, diagnostics *d);
+/* The same of one after the other: `built` [lattice_count] has those that came before it, which a
+   link joins. */
+rows *lattice_build_next(const deck *k, int lattice, rows *const *built, diagnostics *d);
 
 #endif

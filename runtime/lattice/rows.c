@@ -100,6 +100,7 @@ void rows_free(rows *w) {
   free(w->z);
   free(w->particle_site);
   free(w->site_particle);
+  free(w->copies);
   free(w);
 }
 

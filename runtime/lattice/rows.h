@@ -53,6 +53,11 @@ typedef struct neighbour_list {
 
 enum { ROWS_CLASSES = 2, ROWS_MAX_NEIGHBOURS = 2 * PL_MAX_DIRECTIONS };
 
+/* Of a link: whose particle stands there, too. */
+typedef struct rows_copy {
+  int32_t lattice, particle;
+} rows_copy;
+
 typedef struct rows {
   bravais infinite; /* the lattice without ends */
   int dimensions;   /* 2 or 3 */
@@ -84,6 +89,7 @@ typedef struct rows {
   unsigned char *present;          /* [size] the site exists */
   double *x, *y, *z; /* [size] reference position, m (absent sites too); z is NULL in the plane */
   long particle_count, bond_count;
+  rows_copy *copies;           /* [particle_count] of a link (linked.h); else NULL */
   int32_t *particle_site;      /* [particle_count] site of each particle, in the order of results */
   int32_t *site_particle;      /* [size] particle of each site, or -1 */
   double width, height, depth; /* extent of the present sites along x, y and z, m */

@@ -44,6 +44,29 @@ static bool is_sound(const ledger *g, const ledger_laws *of, double step, const 
            -1e-6 * g->largest); /* numbers that are none are found by the next step */
 }
 
+static double imbalance(const ledger *g, const ledger_laws *of, const double *terms) {
+  const double held = terms[LEDGER_KINETIC] + terms[LEDGER_STORED];
+  if (of->unchecked) return NAN;
+  return terms[LEDGER_EXTERNAL] - (held - g->initial) - terms[LEDGER_DISSIPATED_DAMAGE] -
+         terms[LEDGER_DISSIPATED_DAMPING];
+}
+
+void ledger_sample_link(ledger *g, const ledger_laws *of, const body *state, double work,
+                        double terms[LEDGER_COUNT]) {
+  const body_totals t = body_sum(state);
+  const double lost = work - t.stored;
+  if (!g->begun) {
+    *g = (ledger){.begun = 1, .lost = lost, .pending = t.dissipated_rate};
+    g->initial = t.stored + taken(g, of, &t, lost);
+  }
+  terms[LEDGER_KINETIC] = 0;
+  terms[LEDGER_STORED] = t.stored;
+  terms[LEDGER_EXTERNAL] = work;
+  terms[LEDGER_DISSIPATED_DAMPING] = t.dissipated_rate - g->pending;
+  terms[LEDGER_DISSIPATED_DAMAGE] = taken(g, of, &t, lost);
+  terms[LEDGER_IMBALANCE] = imbalance(g, of, terms);
+}
+
 bool ledger_sample(ledger *g, const ledger_laws *of, const body *state, const loads *l,
                    const load_look *look, double omega, double terms[LEDGER_COUNT]) {
   const body_totals t = body_sum(state);
@@ -60,10 +83,7 @@ bool ledger_sample(ledger *g, const ledger_laws *of, const body *state, const lo
   terms[LEDGER_EXTERNAL] = s.work + look->work + t.gravity;
   terms[LEDGER_DISSIPATED_DAMPING] = damping - g->pending;
   terms[LEDGER_DISSIPATED_DAMAGE] = taken(g, of, &t, lost);
-  terms[LEDGER_IMBALANCE] = of->unchecked ? NAN
-                                          : terms[LEDGER_EXTERNAL] - (held - g->initial) -
-                                                terms[LEDGER_DISSIPATED_DAMAGE] -
-                                                terms[LEDGER_DISSIPATED_DAMPING];
+  terms[LEDGER_IMBALANCE] = imbalance(g, of, terms);
   g->largest = pl_fmax(pl_fmax(g->largest, fabs(kinetic)),
                        pl_fmax(fabs(t.stored), fabs(terms[LEDGER_EXTERNAL])));
   return is_sound(g, of, state->time_step, &t, omega);

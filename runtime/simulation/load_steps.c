@@ -22,6 +22,7 @@ static time_function function_at(const loads *l, const time_function *f, int64_t
 }
 
 static double factor_at(const loads *l, const body *w, const applied *f, long step) {
+  if (f->link) return *f->link;
   const time_function here = function_at(l, cause_of(l, f->cause), f->site);
   return load_clock_acting(&l->clock, w, &here, step);
 }
@@ -269,6 +270,12 @@ static double damping_at_once(const loads *l) {
   return rate;
 }
 
+static double force_at_once(const loads *l, const applied *f) {
+  if (f->link) return *f->link;
+  const time_function here = function_at(l, cause_of(l, f->cause), f->site);
+  return f->share * time_function_at(&here, 0);
+}
+
 /* With v- = 2/(1 + decay) v - dt/2 a the step (motion.h) goes to v+ with (v- + v+)/2 = v. */
 void load_steps_set_back(loads *l, body *w) {
   const double half = 0.5 * w->time_step, back = 2 / (1 + decay_with(w, damping_at_once(l)));
@@ -282,9 +289,8 @@ void load_steps_set_back(loads *l, body *w) {
   }
   for (long i = 0; i < l->force_count; i++) {
     applied *f = &l->forces[i];
-    const time_function here = function_at(l, cause_of(l, f->cause), f->site);
-    const double force = f->share * time_function_at(&here, 0);
-    w->velocity[f->component][f->site] -= half * force / body_mass(w, f->component, f->site);
+    w->velocity[f->component][f->site] -=
+        half * force_at_once(l, f) / body_mass(w, f->component, f->site);
   }
   for (long i = 0; i < l->constraint_count; i++) {
     constraint *c = &l->constraints[i];
@@ -555,15 +561,23 @@ static void apply_motions(const load_run *r) {
 }
 
 /* A force works with the mean of its values at both ends of the way. */
+static void take_next(const body *w, applied *f, double next) {
+  f->velocity = w->velocity[f->component][f->site];
+  f->sums.work += 0.5 * w->time_step * (f->now + next) * f->velocity;
+  f->now = next;
+}
+
+/* Those of links come when all bodies have moved. */
 static void next_forces(const load_run *r) {
   cause_step known[REMEMBERED] = {{0}};
-  for (long i = r->first_force; i < r->last_force; i++) {
-    applied *f = &r->l->forces[i];
-    const double next = force_after(r, f, known);
-    f->velocity = r->w->velocity[f->component][f->site];
-    f->sums.work += 0.5 * r->w->time_step * (f->now + next) * f->velocity;
-    f->now = next;
-  }
+  for (long i = r->first_force; i < r->last_force; i++)
+    if (!r->l->forces[i].link)
+      take_next(r->w, &r->l->forces[i], force_after(r, &r->l->forces[i], known));
+}
+
+void load_steps_take_links(loads *l, const body *w) {
+  for (long i = 0; i < l->force_count; i++)
+    if (l->forces[i].link) take_next(w, &l->forces[i], *l->forces[i].link);
 }
 
 void load_steps_apply(loads *l, body *w, int block, long step) {

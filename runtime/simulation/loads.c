@@ -221,6 +221,32 @@ static void find_holders(loads *l, const motions *m) {
   }
 }
 
+/* --- links ------------------------------------------------------------------------------------ */
+
+void loads_add_link(loads *l, int64_t site, int component, int link, const double *force) {
+  l->forces = must_realloc(l->forces, ((size_t)l->force_count + 1) * sizeof *l->forces);
+  l->forces[l->force_count++] =
+      (applied){.site = site,
+                .component = component,
+                .cause = l->deck->force_count + l->deck->end_moment_count + link,
+                .link = force,
+                .share = 1};
+}
+
+static int64_t holder_of(const loads *l, const applied *f) {
+  const constraint key = {.site = f->site, .component = f->component}, *found = NULL;
+  if (l->constraint_count > 0)
+    found = bsearch(&key, l->constraints, (size_t)l->constraint_count, sizeof key, by_site);
+  return found ? found - l->constraints : -1;
+}
+
+void loads_links_added(loads *l) {
+  if (l->force_count > 0)
+    qsort(l->forces, (size_t)l->force_count, sizeof *l->forces, by_site_and_cause);
+  for (long i = 0; i < l->force_count; i++)
+    l->forces[i].holder = holder_of(l, &l->forces[i]);
+}
+
 /* --- motion at the start ---------------------------------------------------------------------- */
 
 typedef struct initial_list { /* of one kind */

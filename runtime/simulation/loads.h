@@ -37,7 +37,8 @@ typedef struct constraint { /* one component of one particle that is held or dri
 typedef struct applied { /* part of a force that acts on one component of one particle */
   int64_t site;
   int32_t component;
-  int32_t cause;   /* index into the deck's forces, then end moments */
+  int32_t cause;   /* index into the deck's forces, then end moments, then the run's links */
+  const double *link; /* N, N m: of a link, what it exerts in the present state; else NULL */
   int64_t holder;  /* index of the constraint on the same component, or -1 */
   double share;    /* force = share * time function */
   double now;      /* N: force of the coming step */
@@ -62,6 +63,11 @@ typedef struct loads {
    with diagnostics where two motions or velocities at the start are one too many. */
 loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, diagnostics *d);
 void loads_free(loads *l);
+
+/* A force of the run's link of that number, which stands at `force` (N, N m) when it is known; the
+   last one is to be followed by loads_links_added. */
+void loads_add_link(loads *l, int64_t site, int component, int link, const double *force);
+void loads_links_added(loads *l);
 
 /* Displacements and velocities that regions begin with. False with diagnostics where a velocity is
    too large for a step. */

@@ -9,6 +9,7 @@
 #include "runtime/analysis/stability.h"
 #include "runtime/interaction/interaction.h"
 #include "runtime/lattice/lattice.h"
+#include "runtime/lattice/linked.h"
 #include "runtime/simulation/law_fits.h"
 #include "runtime/simulation/material.h"
 #include "runtime/simulation/step_choice.h"
@@ -160,7 +161,11 @@ static bool density_is_one(const run_body *b) {
   return same;
 }
 
-static void set_masses(run_body *b) {
+static void set_masses(run_body *b, rows *const *built) {
+  if (run_body_is_link(b)) {
+    linked_take_masses(b->lattice_rows, built);
+    return;
+  }
   if (density_is_one(b)) {
     rows_set_density(b->lattice_rows, material_density(b->law, b->laws[0].parameters));
     return;
@@ -183,24 +188,25 @@ static void warn_of_mass(const run_law *l, diagnostics *d) {
 }
 
 /* What asks for the values of parameters. */
-static bool open_materials(run_body *b, const deck *k, diagnostics *d) {
+static bool open_materials(run_body *b, const deck *k, rows *const *built, diagnostics *d) {
   bool planes = true, mass = true;
   for (int n = 0; n < b->law_count; n++) {
     planes = open_planes(b, &b->laws[n], k, d) && planes;
-    mass = law_fits_motion(b->laws[n].law, k, b->lattice, d) && mass;
+    mass = (run_body_is_link(b) || law_fits_motion(b->laws[n].law, k, b->lattice, d)) && mass;
     warn_of_mass(&b->laws[n], d);
   }
-  if (mass) set_masses(b);
+  if (mass) set_masses(b, built);
   if (mass) law_parts_take_masses(b->parts, b->law_count, b->lattice_rows);
   if (deck_lacks(k, "simulation") || deck_lacks(k, "relaxation")) return false;
   return planes && mass && find_limit(b, k, d);
 }
 
-bool run_body_open(run_body *b, const deck *k, rows *lattice, diagnostics *d) {
+bool run_body_open(run_body *b, const deck *k, rows **built, diagnostics *d) {
   enum { ANY_DOF = PL_MAX_DOF };
   b->name = k->lattices[b->lattice].name;
   b->law = b->laws[0].law;
-  b->lattice_rows = lattice ? lattice : lattice_build(k, b->lattice, d);
+  if (!built[b->lattice]) built[b->lattice] = lattice_build_next(k, b->lattice, built, d);
+  b->lattice_rows = built[b->lattice];
   if (!b->lattice_rows) return false;
   b->fits = laws_fit(b, k, d);
   b->loads = loads_new(k, b->lattice, b->lattice_rows, b->fits ? b->law->name : "",
@@ -208,7 +214,8 @@ bool run_body_open(run_body *b, const deck *k, rows *lattice, diagnostics *d) {
   if (!b->fits) return false;
   for (int n = 0; n < b->law_count; n++)
     law_fits_protection(b->laws[n].law, k, b->lattice, d);
-  return open_parts(b, k, d) && all_have_parameters(b) && open_materials(b, k, d) && b->loads;
+  return open_parts(b, k, d) && all_have_parameters(b) && open_materials(b, k, built, d) &&
+         b->loads;
 }
 
 /* --- the state -------------------------------------------------------------------------------- */
@@ -217,20 +224,21 @@ bool run_body_open(run_body *b, const deck *k, rows *lattice, diagnostics *d) {
    the deck insists. */
 static int choose_threads(const run_body *b, const deck *k) {
   const int asked = k->simulation.threads;
+  if (run_body_is_link(b)) return 1;
   if (asked > 0) return asked;
   const int least = b->lattice_rows->list ? 2 : 8;
   const int offered = omp_get_max_threads(), sensible = b->lattice_rows->row_count / least;
   return sensible < 1 ? 1 : offered < sensible ? offered : sensible;
 }
 
-/* One law moves the body by itself, several do it together. */
+/* One law moves the body by itself, several do it together; that of a link moves nothing. */
 static void open_state(run_body *b, const deck *k, double step) {
   run_law *l = &b->laws[0];
   const body_ledger energies = !k->output.energy  ? BODY_NO_LEDGER
                                : k->output.losses ? BODY_LOSSES
                                                   : BODY_LEDGER;
   const int threads = choose_threads(b, k);
-  if (b->law_count == 1) {
+  if (b->law_count == 1 && !run_body_is_link(b)) {
     b->state = l->state = interaction_new(b->lattice_rows, l->law, l->parameters, step, threads,
                                           energies, k->relaxation.increments > 0);
     if (l->planes) l->state->parameter = l->planes->value;

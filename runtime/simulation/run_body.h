@@ -49,11 +49,17 @@ typedef struct run_body {
   int first_block;        /* of the team: the block that its first one belongs to */
 } run_body;
 
-/* On `lattice`, which is built when NULL; `lattice`, `laws` and what the caller has of these are
-   set. What of the deck does not fit this lattice and these laws is reported; false after errors.
+/* Its particles are copies of those of others, which a link joins (run_link.h): nothing moves
+   them by itself. */
+static inline bool run_body_is_link(const run_body *b) {
+  return b->lattice_rows->copies != NULL;
+}
+
+/* `built` [lattice_count] has the deck's lattices so far; the body's own is built where it is NULL,
+   and its own from then on. `lattice`, `laws` and what the caller has of these are set. What of the deck does not fit this lattice and these laws is reported; false after errors.
    Laws and parameters may be missing where they are wrong themselves: then the deck is checked as
    far as it does not depend on them. */
-bool run_body_open(run_body *b, const deck *k, rows *lattice, diagnostics *d);
+bool run_body_open(run_body *b, const deck *k, rows **built, diagnostics *d);
 /* The state at rest, with the step that the run takes. False with a diagnostic where it cannot
    begin so. */
 bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d);

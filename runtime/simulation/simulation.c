@@ -1,10 +1,12 @@
 #include "runtime/simulation/simulation.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "dsl/base/arena.h"
 #include "runtime/base/subnormals.h"
 #include "runtime/simulation/law_fits.h"
+#include "runtime/simulation/link_limit.h"
 #include "runtime/simulation/simulation_state.h"
 #include "runtime/simulation/time_loop.h"
 
@@ -14,9 +16,12 @@
    parameters may be missing, when they are wrong themselves. */
 static bool is_sound(simulation *s, rows *const *lattices, diagnostics *d) {
   const deck *k = s->deck;
+  rows **built = must_calloc((size_t)s->body_count + 1, sizeof *built);
   bool good = true;
+  if (lattices) memcpy(built, lattices, (size_t)s->body_count * sizeof *built);
   for (int b = 0; b < s->body_count; b++)
-    good = run_body_open(&s->bodies[b], k, lattices ? lattices[b] : NULL, d) && good;
+    good = run_body_open(&s->bodies[b], k, built, d) && good;
+  free(built);
   for (int b = 0; b < s->body_count; b++)
     if (!s->bodies[b].fits) return false;
   if (!bodies_fit(k, s->bodies, s->body_count, d)) return false;
@@ -30,8 +35,9 @@ static bool is_sound(simulation *s, rows *const *lattices, diagnostics *d) {
 static bool choose_step(simulation *s, diagnostics *d) {
   for (int b = 1; b < s->body_count; b++)
     if (s->bodies[b].limit.limit < s->bodies[s->ruling].limit.limit) s->ruling = b;
+  s->limit = s->bodies[s->ruling].limit;
+  link_limit(s->bodies, s->body_count, &s->limit, &s->ruling);
   const run_body *rules = &s->bodies[s->ruling];
-  s->limit = rules->limit;
   return step_choose(s->deck, rules->law, s->body_count > 1 ? rules->name : NULL, &s->limit, d) &&
          step_plan_make(s->deck, &s->limit, &s->plan, d);
 }
@@ -59,6 +65,7 @@ static bool open_bodies(simulation *s, diagnostics *d) {
   for (int b = 0; b < s->body_count; b++)
     s->bodies[b].first_block %= s->blocks;
   s->team = team_new(s->blocks);
+  s->links = run_links_new(s->bodies, s->body_count, &s->link_count);
   return good;
 }
 
@@ -135,6 +142,7 @@ void simulation_free(simulation *s) {
   relaxation_free(s->relaxation);
   history_free(&s->history);
   bad_search_free(s->bad);
+  run_links_free(s->links, s->link_count);
   for (int b = 0; b < s->body_count; b++)
     run_body_free(&s->bodies[b]);
   team_free(s->team);

@@ -76,6 +76,10 @@ static part_list parts_of(const simulation *s, run_progress *head) {
     add_loads(&l, s->bodies[b].loads);
     add_part(&l, "ledger", &s->bodies[b].ledger, sizeof s->bodies[b].ledger);
   }
+  for (int k = 0; k < s->link_count; k++) {
+    add_part(&l, "work of a link", &s->links[k].work, sizeof s->links[k].work);
+    add_part(&l, "link found", &s->links[k].found, sizeof s->links[k].found);
+  }
   if (s->relaxation) add_relaxation(&l, s->relaxation);
   for (int m = 0; m < s->monitors->count; m++)
     add_part(&l, s->deck->monitors[m].name, &s->monitors->items[m].state, sizeof(monitor_state));

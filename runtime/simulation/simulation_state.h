@@ -10,6 +10,7 @@
 #include "runtime/simulation/relaxation.h"
 #include "runtime/simulation/run_body.h"
 #include "runtime/simulation/run_clock.h"
+#include "runtime/simulation/run_link.h"
 #include "runtime/simulation/simulation.h"
 #include "runtime/simulation/step_choice.h"
 
@@ -17,6 +18,8 @@ struct simulation {
   const deck *deck;
   run_body *bodies; /* [body_count] in the order of the deck's lattices */
   int body_count;
+  run_link *links; /* [link_count] between bodies */
+  int link_count;
   run_law *laws; /* [law_count] the deck's interactions, those of one body after the other */
   int law_count;
   team *team; /* of the threads */

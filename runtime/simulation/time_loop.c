@@ -44,9 +44,15 @@ static void add_up(const simulation *s) {
 /* Energies of the state observed; they tell of a run that has gone wrong. */
 static void sample_energies(simulation *s) {
   const bool last = run_clock_position(&s->clock) == run_clock_end(&s->clock);
+  for (int k = 0; k < s->link_count; k++) {
+    run_body *of = s->links[k].own;
+    ledger_sample_link(&of->ledger, &of->energies, of->body, s->links[k].work,
+                       history_energies_of(&s->history, (int)(of - s->bodies)));
+  }
   for (int b = 0; b < s->body_count; b++) {
     run_body *of = &s->bodies[b];
-    if (!ledger_sample(&of->ledger, &of->energies, of->body, of->loads, &of->look,
+    if (!run_body_is_link(of) &&
+        !ledger_sample(&of->ledger, &of->energies, of->body, of->loads, &of->look,
                        of->limit.omega_max, history_energies_of(&s->history, b)))
       end_badly(s, "energy from nothing");
   }
@@ -84,6 +90,12 @@ static bool some_body_is_bad(const simulation *s) {
   return false;
 }
 
+/* At the present places. */
+static void find_links(simulation *s) {
+  for (int k = 0; k < s->link_count; k++)
+    run_link_find(&s->links[k], s->clock.at.step);
+}
+
 /* What one thread does after all have moved their rows and what is loaded in them. */
 static void after_step(simulation *s) {
   if (some_body_is_bad(s)) {
@@ -97,6 +109,9 @@ static void after_step(simulation *s) {
     load_steps_turn(s->bodies[b].loads, s->bodies[b].body, (long)s->clock.at.step);
   }
   s->clock.at.step++;
+  find_links(s);
+  for (int b = 0; b < s->body_count && s->link_count > 0; b++)
+    load_steps_take_links(s->bodies[b].loads, s->bodies[b].body);
   s->go_on = s->clock.at.step < s->until && !(s->interrupted && *s->interrupted);
   if (s->relaxation) {
     s->observe = relaxation_due(s->relaxation, s->clock.at.step);
@@ -155,7 +170,7 @@ static void do_block(simulation *s, run_body *of, int task, int block) {
     add_time(s, now, &b->observing);
     return;
   }
-  if (task >= engine->step_stages) return;
+  if (task >= engine->step_stages || run_body_is_link(of)) return;
   engine->step(of->state, task, block);
   now = add_time(s, now, &b->stepping);
   if (task < engine->step_stages - 1) return;
@@ -219,6 +234,7 @@ static void observe_all(simulation *s) {
 }
 
 static void begin(simulation *s) {
+  find_links(s);
   if (s->clock.at.begun) return;
   s->clock.at.begun = 1;
   if (s->relaxation) relaxation_begin(s->relaxation);

@@ -1,0 +1,237 @@
+#include "runtime/lattice/linked.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
+#include "runtime/lattice/scattered.h"
+
+/* A place is reached that is further by so much: rounding. */
+#define REACH_TOLERANCE 1e-6
+/* Links that are shorter than that part of a spacing are stiff. */
+#define SHORT_LINK 0.1
+
+typedef struct linker {
+  const deck_lattice *link;
+  const rows *bar, *body;
+  double reach; /* m */
+  int32_t *chosen; /* [chosen_count] particles of the bar */
+  long chosen_count;
+  unsigned char *near; /* [chosen_count + particles of the body] in reach of a chosen one */
+  int32_t *copied;     /* [particles of the body] number among the copies, or -1 */
+  rows_copy *copies;   /* [count] of the bar first */
+  long count;
+  point_pair *pairs; /* [pair_count] of copies */
+  long pair_count;
+  double shortest, longest; /* m */
+} linker;
+
+static double distance(const linker *l, int32_t of_bar, int32_t of_body) {
+  double from[3], to[3], square = 0;
+  rows_place(l->bar, l->bar->particle_site[of_bar], from);
+  rows_place(l->body, l->body->particle_site[of_body], to);
+  for (int a = 0; a < l->body->dimensions; a++)
+    square += (to[a] - from[a]) * (to[a] - from[a]);
+  return sqrt(square);
+}
+
+static void choose(linker *l) {
+  l->chosen = must_calloc((size_t)l->bar->particle_count + 1, sizeof *l->chosen);
+  for (long p = l->link->first; p < l->bar->particle_count; p += l->link->every)
+    l->chosen[l->chosen_count++] = (int32_t)p;
+}
+
+/* Of all particles of the body few are near a bar. */
+static void find_near(linker *l) {
+  const long body = l->body->particle_count, count = l->chosen_count + body;
+  const int dimensions = l->body->dimensions;
+  double *at[3] = {NULL, NULL, NULL};
+  int32_t *numbers = must_calloc((size_t)l->chosen_count + 1, sizeof *numbers);
+  for (int a = 0; a < dimensions; a++)
+    at[a] = must_calloc((size_t)count + 1, sizeof **at);
+  for (long n = 0; n < count; n++) {
+    const bool of_bar = n < l->chosen_count;
+    const rows *g = of_bar ? l->bar : l->body;
+    double place_of[3];
+    rows_place(g, g->particle_site[of_bar ? l->chosen[n] : n - l->chosen_count], place_of);
+    for (int a = 0; a < dimensions; a++)
+      at[a][n] = place_of[a];
+    if (of_bar) numbers[n] = (int32_t)n;
+  }
+  const point_cloud cloud = {dimensions, count, {at[0], at[1], at[2]}};
+  l->near = must_calloc((size_t)count + 1, 1);
+  points_near(&cloud, numbers, l->chosen_count, l->reach * 1.001, l->near);
+  for (int a = 0; a < dimensions; a++)
+    free(at[a]);
+  free(numbers);
+}
+
+static int32_t copy_of_body(linker *l, int32_t particle) {
+  if (l->copied[particle] < 0) {
+    l->copied[particle] = (int32_t)l->count;
+    l->copies[l->count++] = (rows_copy){l->link->of, particle};
+  }
+  return l->copied[particle];
+}
+
+static void add_pair(linker *l, int32_t i, int32_t j, double length) {
+  l->pairs = must_realloc(l->pairs, ((size_t)l->pair_count + 1) * sizeof *l->pairs);
+  l->pairs[l->pair_count++] = (point_pair){i, j};
+  l->shortest = pl_fmin(l->shortest, length);
+  l->longest = pl_fmax(l->longest, length);
+}
+
+/* What stands on one place is not joined (Gerstle et al. 2013, section 4). */
+static void join(linker *l) {
+  const long body = l->body->particle_count;
+  long near_count = 0;
+  int32_t *near = must_calloc((size_t)body + 1, sizeof *near);
+  for (long p = 0; p < body; p++) {
+    l->copied[p] = -1;
+    if (l->near[l->chosen_count + p]) near[near_count++] = (int32_t)p;
+  }
+  for (long n = 0; n < l->chosen_count; n++) {
+    const int32_t here = (int32_t)l->count;
+    bool joined = false;
+    for (long m = 0; m < near_count; m++) {
+      const double length = distance(l, l->chosen[n], near[m]);
+      if (length > l->reach || length <= REACH_TOLERANCE * l->body->spacing) continue;
+      if (!joined) l->copies[l->count++] = (rows_copy){l->link->bar_of, l->chosen[n]};
+      joined = true;
+      add_pair(l, here, copy_of_body(l, near[m]), length);
+    }
+  }
+  free(near);
+}
+
+static void linker_free(linker *l) {
+  free(l->chosen);
+  free(l->near);
+  free(l->copied);
+  free(l->copies);
+  free(l->pairs);
+}
+
+static void find(linker *l) {
+  const size_t most = (size_t)l->bar->particle_count + (size_t)l->body->particle_count;
+  l->copied = must_calloc(most, sizeof *l->copied);
+  l->copies = must_calloc(most, sizeof *l->copies);
+  l->shortest = INFINITY;
+  choose(l);
+  find_near(l);
+  join(l);
+}
+
+/* Those of the bar and of the body take turns in `copies`; lists do not mind. */
+static rows *rows_of(const linker *l, long *crowded) {
+  const rows *g = l->body;
+  double *at[3] = {NULL, NULL, NULL},
+         *measure = must_calloc((size_t)l->count + 1, sizeof *measure);
+  for (int a = 0; a < g->dimensions; a++)
+    at[a] = must_calloc((size_t)l->count + 1, sizeof **at);
+  for (long n = 0; n < l->count; n++) {
+    const rows *of = l->copies[n].lattice == l->link->of ? l->body : l->bar;
+    double place_of[3];
+    rows_place(of, of->particle_site[l->copies[n].particle], place_of);
+    for (int a = 0; a < g->dimensions; a++)
+      at[a][n] = place_of[a];
+    measure[n] = g->site_area > 0 ? g->site_area : g->volume;
+  }
+  const scattered from = {
+      .points = {g->dimensions, l->count, {at[0], at[1], at[2]}},
+      .measure = measure,
+      .spacing = g->spacing,
+      .bonds = l->pairs,
+      .bond_count = l->pair_count,
+      .stiffness_thickness = g->stiffness_thickness,
+      .mass_thickness = g->site_area > 0 ? g->volume / g->site_area : 0};
+  rows *w = scattered_rows(&from, crowded);
+  for (int a = 0; a < g->dimensions; a++)
+    free(at[a]);
+  free(measure);
+  return w;
+}
+
+static bool has_pairs(const linker *l, diagnostics *d) {
+  const deck_lattice *k = l->link;
+  if (l->chosen_count == 0) {
+    diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&k->item, "first"),
+                "the bar `%s` has %ld particles: there is none with the number %d", k->bar,
+                l->bar->particle_count, k->first);
+    diag_hint(d, "they are counted from 0");
+    return false;
+  }
+  if (l->pair_count > 0) return true;
+  diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&k->item, "within"),
+              "the link `%s` joins nothing: no particle of `%s` is within %.4g mm of one of the "
+              "bar `%s`",
+              k->name, k->around, 1e3 * l->reach, k->bar);
+  diag_hint(d, "does the bar lie in the body? `within` counts spacings of the lattice");
+  return false;
+}
+
+static void warn_of_short(const linker *l, diagnostics *d) {
+  if (l->shortest >= SHORT_LINK * l->body->spacing) return;
+  diag_report(d, DIAG_DECK_WARNING, l->link->item.where,
+              "the shortest bond of the link `%s` is %.3g mm, %.2g of a spacing: it is stiff, and "
+              "may shorten the step",
+              l->link->name, 1e3 * l->shortest, l->shortest / l->body->spacing);
+  diag_hint(d, "move the bar a little, or link other particles of it (`first`)");
+}
+
+static bool is_crowded(const linker *l, diagnostics *d) {
+  int32_t *bonds = must_calloc((size_t)l->count + 1, sizeof *bonds), most = 0;
+  for (long n = 0; n < l->pair_count; n++) {
+    bonds[l->pairs[n].i]++;
+    bonds[l->pairs[n].j]++;
+  }
+  for (long n = 0; n < l->count; n++)
+    most = bonds[n] > most ? bonds[n] : most;
+  free(bonds);
+  if (most <= ROWS_MAX_NEIGHBOURS) return false;
+  diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&l->link->item, "within"),
+              "with this `within` a particle has %d bonds of the link `%s`, more than the %d there "
+              "can be",
+              most, l->link->name, ROWS_MAX_NEIGHBOURS);
+  diag_hint(d, "a smaller `within` takes fewer");
+  return true;
+}
+
+rows *linked_build(const deck *k, int lattice, rows *const *built, diagnostics *d) {
+  const deck_lattice *link = &k->lattices[lattice];
+  linker l = {.link = link, .bar = built[link->bar_of], .body = built[link->of]};
+  if (!l.bar || !l.body) return NULL; /* what is wrong with these has been said */
+  l.reach = link->within * l.body->spacing * (1 + REACH_TOLERANCE);
+  find(&l);
+  long crowded;
+  rows *w = has_pairs(&l, d) && !is_crowded(&l, d) ? rows_of(&l, &crowded) : NULL;
+  if (w) {
+    warn_of_short(&l, d);
+    w->copies = l.copies;
+    l.copies = NULL;
+  }
+  linker_free(&l);
+  return w;
+}
+
+/* Rotations: a particle of a list turns as rows_radius_square says. */
+void linked_take_masses(rows *link, rows *const *built) {
+  const double half = link->spacing / 2;
+  double sum = 0;
+  for (long p = 0; p < link->particle_count; p++) {
+    const rows_copy *c = &link->copies[p];
+    const rows *g = built[c->lattice];
+    const long site = g->particle_site[c->particle], here = link->particle_site[p];
+    const double mass = g->site_mass ? g->site_mass[site] : g->mass,
+                 inertia = mass * (g->inertia / g->mass) * rows_radius_square(g, site);
+    link->site_mass[here] = mass;
+    link->site_volume[here] =
+        link->volume * pl_pow(inertia / (0.4 * mass * half * half), 0.5 * link->dimensions);
+    sum += mass;
+  }
+  link->mass = sum / (double)link->particle_count;
+  link->inertia = 0.4 * link->mass * half * half;
+  for (long q = 0; q < link->size; q++)
+    if (!link->present[q]) link->site_mass[q] = link->mass;
+}

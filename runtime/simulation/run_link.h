@@ -1,0 +1,35 @@
+/* A link of a run at work: it finds the forces of its bonds on copies of the particles that it
+   joins (linked.h), which then are forces on these like applied ones (loads.h).
+
+   When a step has taken all bodies to t_(n+1), the copies are put where their particles are, and
+   the link's law gives the forces of that instant. They act in the coming step, and are part of
+   what is observed. What a link takes from the bodies, or gives them, is the work of its forces on
+   them: the ledger of the link has it as external work with the opposite sign, so that in sum it
+   goes out. */
+#ifndef PERILAT_RUNTIME_RUN_LINK_H
+#define PERILAT_RUNTIME_RUN_LINK_H
+
+#include "runtime/simulation/run_body.h"
+
+typedef struct link_copy {
+  const body *of;
+  int64_t site; /* of the particle */
+} link_copy;
+
+typedef struct run_link {
+  run_body *own;     /* the body of copies, and what the law knows of the bonds */
+  link_copy *copies; /* [particles of own] */
+  double work;       /* J: done on the link, by the ways that its particles have gone */
+  int64_t found;     /* step of the state whose forces are known, or were when a run was saved */
+  bool known;        /* they are */
+} run_link;
+
+/* The links among bodies that have begun; *count of them. Their forces become loads of the bodies
+   that they join. */
+run_link *run_links_new(run_body *bodies, int body_count, int *count);
+void run_links_free(run_link *links, int count);
+
+/* Forces at the present places, after `step` steps. */
+void run_link_find(run_link *link, int64_t step);
+
+#endif
