@@ -156,7 +156,8 @@ static bool take_setting(const deck_material *m, const deck_lattice *l, model *o
   const bool irregular = deck_lattice_is_irregular(l);
   out->law = law_on_lattice(out->law, setting_of(l), irregular, neighbours_of(l));
   const char *name = law_setting_name(out->law->setting);
-  if (out->law->irregular && !model_suits_irregular(out)) {
+  if (out->law->irregular && !deck_lattice_is_bar(l) && !deck_lattice_is_link(l) &&
+      !model_suits_irregular(out)) {
     diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),
                 "the law `%s` is meant for lattices, but these particles are irregular",
                 out->law->tree->name);
@@ -181,12 +182,16 @@ static bool take_setting(const deck_material *m, const deck_lattice *l, model *o
 
 /* A chain has the cross-section of a bar in place of a thickness, and families on one line resolve
    no strain but that along it. */
-static bool suits_chain(const deck_material *m, const law *of, diagnostics *said) {
+static bool suits_chain(const deck_material *m, const deck_lattice *l, const law *of,
+                        diagnostics *said) {
+  const char *word = deck_lattice_is_bar(l) ? "bar" : "chain";
   const bool families = of->tree->law == LAW_STATE;
   if (!families && !law_reads(of, QUANTITY_T)) return true;
-  diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"), "the law `%s` %s", of->tree->name,
-              families ? "reads whole families, but a chain has bonds along one line alone"
-                       : "reads the thickness `t`, which a chain does not have");
+  diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),
+              families
+                  ? "the law `%s` reads whole families, but a %s has bonds along one line alone"
+                  : "the law `%s` reads the thickness `t`, which a %s does not have",
+              of->tree->name, word);
   diag_hint(said, "take a law of bonds that reads `area`, such as `bar` or `beam`");
   return false;
 }
@@ -194,11 +199,12 @@ static bool suits_chain(const deck_material *m, const law *of, diagnostics *said
 static bool suits_section(const deck_material *m, const deck_lattice *l, const law *of,
                           diagnostics *said) {
   if (!l) return true;
-  if (deck_lattice_is_chain(l)) return suits_chain(m, of, said);
+  if (deck_lattice_is_chain(l)) return suits_chain(m, l, of, said);
   if (!law_reads(of, QUANTITY_AREA)) return true;
-  diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),
-              "the law `%s` reads `area`, the cross-section of a bar, which chains alone have",
-              of->tree->name);
+  diag_report(
+      said, DIAG_CONFLICT, deck_where(&m->item, "model"),
+      "the law `%s` reads `area`, the cross-section of a bar, which chains and bars alone have",
+      of->tree->name);
   diag_hint(said, "give the lattice `kind = 'chain'` and an `area`, or take another law");
   return false;
 }

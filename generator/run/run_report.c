@@ -10,6 +10,8 @@
 #include "generator/run/bad_bond.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/uniform_strain.h"
+#include "runtime/deck/lattice_kind.h"
+#include "runtime/geometry/polyline.h"
 #include "runtime/lattice/notch_depth.h"
 #include "runtime/lattice/parameter_planes.h"
 #include "runtime/result/checkpoint.h"
@@ -72,6 +74,16 @@ static void announce_part(long bonds, const char *name) {
   printf(" of %ld bond%s as `%s`", bonds, bonds == 1 ? "" : "s", name);
 }
 
+/* Also the force of a unit strain. */
+static void announce_bar_modulus(const run *r, int interaction) {
+  const rows *w = simulation_rows(r->simulation, r->deck->interactions[interaction].lattice);
+  const simulation_law *l = &r->laws[interaction];
+  const double E = uniform_strain_of_bar(l->law, l->parameters, w);
+  print_quantity(": along this bar E = ", E, "Pa");
+  print_quantity(", E A = ", E * w->area, "N");
+  putchar('\n');
+}
+
 static void announce_law(const run *r, int interaction) {
   const deck_interaction *of = &r->deck->interactions[interaction];
   const rows *w = simulation_rows(r->simulation, of->lattice);
@@ -84,6 +96,14 @@ static void announce_law(const run *r, int interaction) {
   }
   if (of->material->beside)
     announce_part(simulation_law_rows(r->simulation, interaction)->bond_count, of->name);
+  if (deck_lattice_is_bar(&r->deck->lattices[of->lattice])) {
+    announce_bar_modulus(r, interaction);
+    return;
+  }
+  if (w->copies) {
+    putchar('\n');
+    return;
+  }
   if (w->list) {
     announce_uniform_strain(r, interaction);
     return;
@@ -207,6 +227,49 @@ static void announce_particles(const run *r, int lattice) {
          2 * (double)w->bond_count / (double)w->particle_count, w->bond_count);
 }
 
+/* "bar        bottom: 58 particles, 57 bonds, 1.14 m long, spacing 20 mm, area 126.68 mm^2" */
+static void announce_bar(const run *r, int lattice) {
+  const rows *w = simulation_rows(r->simulation, lattice);
+  const deck_bar *k = &r->deck->lattices[lattice];
+  const polyline p = {w->dimensions, k->value_count / w->dimensions, k->points, k->closed};
+  double shortest = INFINITY, longest = 0;
+  for (int leg = 0; leg < polyline_legs(&p); leg++) {
+    const double *from, *to;
+    const double part =
+        polyline_leg(&p, leg, &from, &to) / (double)polyline_parts(&p, leg, k->spacing);
+    shortest = pl_fmin(shortest, part);
+    longest = pl_fmax(longest, part);
+  }
+  printf("  bar        %s: %s%ld particles, %ld bonds, %.6g mm long, area %.6g mm^2, spacing %.6g",
+         k->name, k->closed ? "closed, " : "", w->particle_count, w->bond_count,
+         1e3 * polyline_length(&p), 1e6 * k->area, 1e3 * shortest);
+  if (longest > shortest * (1 + POLYLINE_ROUNDING)) printf(" to %.6g", 1e3 * longest);
+  fputs(" mm", stdout);
+  if (pl_fmax(longest - k->spacing, k->spacing - shortest) > POLYLINE_ROUNDING * k->spacing)
+    printf(": legs are no multiples of %.6g mm", 1e3 * k->spacing);
+  putchar('\n');
+}
+
+/* "link       bond: 116 bonds of 2.5 to 20 mm join 29 particles of bottom to 60 of concrete" */
+static void announce_link(const run *r, int lattice) {
+  const rows *w = simulation_rows(r->simulation, lattice);
+  const deck_link *k = &r->deck->lattices[lattice];
+  double shortest = INFINITY, longest = 0, chord[3];
+  long of_bar = 0;
+  for (long p = 0; p < w->particle_count; p++) {
+    of_bar += w->copies[p].lattice == k->of_bar;
+    for (int n = 0; n < 2 * w->directions; n++) {
+      if (!rows_has_neighbour(w, w->particle_site[p], n)) continue;
+      const double length = rows_chord(w, w->particle_site[p], n, chord);
+      shortest = pl_fmin(shortest, length);
+      longest = pl_fmax(longest, length);
+    }
+  }
+  printf("  link       %s: %ld bonds of %.4g to %.4g mm join %ld particles of %s to %ld of %s\n",
+         k->name, w->bond_count, 1e3 * shortest, 1e3 * longest, of_bar, k->bar,
+         w->particle_count - of_bar, k->around);
+}
+
 static void announce_lattice(const run *r, int lattice) {
   const rows *w = simulation_rows(r->simulation, lattice);
   const deck_lattice *k = &r->deck->lattices[lattice];
@@ -247,7 +310,11 @@ void announce(const run *r) {
   const step_limit *limit = simulation_step_limit(r->simulation);
   printf("%s\n", s->title ? s->title : r->options->deck_path);
   for (int k = 0; k < r->deck->lattice_count; k++) {
-    if (simulation_rows(r->simulation, k)->list)
+    if (deck_lattice_is_bar(&r->deck->lattices[k]))
+      announce_bar(r, k);
+    else if (deck_lattice_is_link(&r->deck->lattices[k]))
+      announce_link(r, k);
+    else if (simulation_rows(r->simulation, k)->list)
       announce_particles(r, k);
     else
       announce_lattice(r, k);

@@ -8,6 +8,7 @@
 #include "dsl/base/elementary.h"
 #include "runtime/base/lane_sum.h"
 #include "runtime/interaction/interaction.h"
+#include "runtime/lattice/bar_rows.h"
 #include "runtime/lattice/shape_matrix.h"
 
 /* LAPACK: solves a system of linear equations. */
@@ -341,6 +342,37 @@ bool uniform_strain_moduli(const pl_law *law, const double *parameters, double *
   }
   probe_free(&p);
   return finite;
+}
+
+/* Parameters that differ from place to place, as if they did not. */
+static double **same_everywhere(const pl_law *law, const double *parameters, const rows *w) {
+  double **planes = must_calloc((size_t)law->varying_count + 1, sizeof *planes);
+  const long size = 2 * w->directions * w->size;
+  for (int k = 0; k < law->varying_count; k++) {
+    planes[k] = must_alloc((size_t)size * sizeof *planes[k]);
+    for (long q = 0; q < size; q++)
+      planes[k][q] = parameters[law->varying[k]];
+  }
+  return planes;
+}
+
+double uniform_strain_of_bar(const pl_law *law, const double *parameters, const rows *bar) {
+  enum { PARTICLES = 9 };
+  rows *w = bar_rows_straight(bar, PARTICLES);
+  window v;
+  if (!w) return NAN;
+  rows_set_density(w, 1);
+  double **planes = same_everywhere(law, parameters, w);
+  probe p = probe_new(law, parameters, w);
+  p.sweep->parameter = planes;
+  find_slopes(&p, 0);
+  const double E = window_of(law, w, 0, &v) ? section_stress(&p, &v, 0) : NAN;
+  probe_free(&p);
+  for (int k = 0; k < law->varying_count; k++)
+    free(planes[k]);
+  free(planes);
+  rows_free(w);
+  return E;
 }
 
 bool uniform_strain_response(const pl_law *law, const double *parameters, double *const *varying,

@@ -34,4 +34,9 @@ bool uniform_strain_response(const pl_law *law, const double *parameters, double
 bool uniform_strain_moduli(const pl_law *law, const double *parameters, double *const *varying,
                            const rows *w, double E[3]);
 
+/* Young's modulus (Pa) along a bar (bar_rows.h) of a law of bonds in the form of families: of a
+   straight one with the same spacing and area. Parameters that differ from place to place count
+   with their value in `parameters`. NaN without memory. */
+double uniform_strain_of_bar(const pl_law *law, const double *parameters, const rows *bar);
+
 #endif

@@ -32,6 +32,8 @@ span deck_where(const deck_item *item, const char *key);
 
 typedef enum volume_correction { VOLUME_WHOLE, VOLUME_LINEAR } volume_correction;
 
+/* Of a &lattice, or of a &bar or a &link, which are of the kinds `bar` and `link`: they stand behind
+   them, in this order. */
 typedef struct deck_lattice {
   deck_item item;
   const char *name;
@@ -48,9 +50,20 @@ typedef struct deck_lattice {
   double origin[3];                           /* m: a point that is a lattice site; default 0, 0 */
   double thickness;                           /* m; these three are 0 in space and of chains */
   double stiffness_thickness, mass_thickness; /* m; default: thickness */
-  double area;                                /* m^2, of a chain; else 0 */
+  double area;                                /* m^2, of chains and bars; else 0 */
   const char *setting; /* "plane_stress" (default) or "plane_strain"; "space" */
+  /* of a bar: its corners, coordinate by coordinate, m */
+  const double *points;
+  int value_count; /* of all coordinates */
+  bool closed;     /* the last corner is joined to the first */
+  double diameter; /* m; 0: the area is given */
+  /* of a link: names and numbers of the bar and of the lattice around it */
+  const char *bar, *around;
+  int of_bar, of_around;
+  int every, first; /* particles of the bar that are joined: first, first + every, ... */
+  double within;    /* spacings */
 } deck_lattice;
+typedef deck_lattice deck_bar, deck_link;
 
 typedef struct deck_placed {     /* a value that may differ from place to place */
   double value;                  /* SI */
@@ -74,7 +87,8 @@ typedef struct deck_assignment { /* parameter = value in a &material */
 
 typedef struct deck_material {
   deck_item item;
-  const char *lattice;    /* name */
+  const char *lattice;    /* name; of a bar's the bar, of a link's the link */
+  const char *bar, *link; /* the same where the deck says that it is one; else NULL */
   const char *region;     /* name; NULL: of the whole lattice, but for what others say */
   const char *between[2]; /* names of regions; NULL: not of the bonds between two */
   const char *model;      /* name in models/ or a path ending in .plm */
@@ -297,12 +311,14 @@ typedef struct deck_file { /* a table that a load was read from */
 } deck_file;
 
 /* The groups of a deck, in the order in which they are read, so that names are known before they
-   are used: ONE is there once at most, LIST any number of times. Each has its structure above, its
-   keys and its check in a group_*.c. */
-#define DECK_GROUPS(ONE, LIST)                                                                     \
+   are used: ONE is there once at most, LIST any number of times, MORE too, as more items of another
+   list. Each has its structure above, its keys and its check in a group_*.c. */
+#define DECK_GROUPS(ONE, LIST, MORE)                                                               \
   ONE(simulation)                                                                                  \
   ONE(relaxation)                                                                                  \
   LIST(lattice)                                                                                    \
+  MORE(bar)                                                                                        \
+  MORE(link)                                                                                       \
   LIST(material)                                                                                   \
   LIST(field)                                                                                      \
   LIST(body)                                                                                       \
@@ -324,7 +340,7 @@ typedef struct deck_file { /* a table that a load was read from */
 
 typedef enum deck_group {
 #define X(group) DECK_GROUP_##group,
-  DECK_GROUPS(X, X)
+  DECK_GROUPS(X, X, X)
 #undef X
       DECK_GROUP_COUNT
 } deck_group;
@@ -345,9 +361,11 @@ typedef struct deck {
 #define LIST(group)                                                                                \
   const deck_##group *group##s;                                                                    \
   int group##_count;
-  DECK_GROUPS(ONE, LIST)
+#define MORE(group)
+  DECK_GROUPS(ONE, LIST, MORE)
 #undef ONE
 #undef LIST
+#undef MORE
 } deck;
 
 /* "group.key=value" as given by --set; a group that occurs several times is named group[k] (from 1)
@@ -372,7 +390,7 @@ int deck_find_monitor(const deck *k, const char *name);
 int deck_find_material(const deck *k, const char *lattice);
 /* That of lattice number `lattice`; NULL without one. */
 const deck_material *deck_material_of(const deck *k, int lattice);
-/* None of its `&body` was written; particles of a file need none. */
+/* None of its `&body` was written; bars, links and particles of a file need none. */
 bool deck_misses_body(const deck *k, int lattice);
 /* For many searches: none of the names is known yet, they are taken up as the lists grow. */
 deck_names *deck_names_new(arena *a);

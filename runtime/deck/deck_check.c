@@ -20,24 +20,35 @@ static void report_unknown(deck_reader *r, span where, const char *kind, const c
 }
 
 /* A name must be that of a group of this kind; else the kind's names are shown. */
-#define KNOWN(group)                                                                               \
-  static bool group##_is_known(deck_reader *r, span where, const char *name) {                     \
+#define KNOWN(word, group, counts)                                                                 \
+  static bool word##_is_known(deck_reader *r, span where, const char *name) {                      \
     const deck *k = r->k;                                                                          \
-    const bool found = deck_find_##group(k, name) >= 0;                                            \
-    if (found || !r->names_known) return found;                                                    \
+    int found = deck_find_##group(k, name), count = 0;                                             \
+    if (found >= 0 && !(counts)) found = -1;                                                       \
+    if (found >= 0 || !r->names_known) return found >= 0;                                          \
     const char **names = must_calloc((size_t)k->group##_count + 1, sizeof *names);                 \
-    for (int i = 0; i < k->group##_count; i++)                                                     \
-      names[i] = k->group##s[i].name;                                                              \
-    report_unknown(r, where, #group, name, names, k->group##_count);                               \
+    for (found = 0; found < k->group##_count; found++)                                             \
+      if (counts) names[count++] = k->group##s[found].name;                                        \
+    report_unknown(r, where, #word, name, names, count);                                           \
     free(names);                                                                                   \
     return false;                                                                                  \
   }
-KNOWN(lattice)
-KNOWN(region)
-KNOWN(monitor)
+KNOWN(lattice, lattice, true)
+KNOWN(bar, lattice, deck_lattice_is_bar(&k->lattices[found]))
+KNOWN(link, lattice, deck_lattice_is_link(&k->lattices[found]))
+KNOWN(region, region, true)
+KNOWN(monitor, monitor, true)
 
 bool deck_lattice_known(deck_reader *r, const deck_item *item, const char *name) {
   return lattice_is_known(r, deck_where(item, "lattice"), name);
+}
+
+bool deck_bar_known(deck_reader *r, const deck_item *item, const char *name) {
+  return bar_is_known(r, deck_where(item, "bar"), name);
+}
+
+bool deck_link_known(deck_reader *r, const deck_item *item, const char *name) {
+  return link_is_known(r, deck_where(item, "link"), name);
 }
 
 bool deck_region_known(deck_reader *r, span where, const char *name) {

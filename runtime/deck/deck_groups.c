@@ -10,7 +10,7 @@
 
 const deck_group_info *const deck_groups[DECK_GROUP_COUNT] = {
 #define X(group) &deck_group_##group,
-    DECK_GROUPS(X, X)
+    DECK_GROUPS(X, X, X)
 #undef X
 };
 

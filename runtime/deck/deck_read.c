@@ -13,6 +13,7 @@
 #include "runtime/deck/deck_set.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/group_lattice.h"
+#include "runtime/deck/lattice_kind.h"
 #include "runtime/deck/text_table.h"
 
 enum { MOST_ERRORS = 100 };
@@ -103,6 +104,7 @@ static void read_item(deck_reader *r, const namelist_group *from, int kind, void
   const int errors = r->d->errors;
   deck_item *item = of;
   copy_places(r->memory, from, item);
+  if (info->begin) info->begin(item);
   deck_defaults(r->memory, info, item);
   read_keys(r, from, info, item);
   item->faulty = from->broken || r->d->errors > errors;
@@ -135,12 +137,14 @@ static char *items_of(deck *k, const deck_group_info *info, int **count) {
   return items;
 }
 
+/* Behind what the list holds already. */
 static void read_list(deck_reader *r, const namelist *n, int kind) {
   const deck_group_info *info = deck_groups[kind];
-  void *room = arena_alloc(r->memory, count_of(n, kind) * info->size);
   int *count, i = 0;
-  memcpy((char *)r->k + info->place, &room, sizeof room);
-  char *items = items_of(r->k, info, &count);
+  const char *before = items_of(r->k, info, &count);
+  char *items = arena_alloc(r->memory, ((size_t)*count + count_of(n, kind)) * info->size);
+  if (*count > 0) memcpy(items, before, (size_t)*count * info->size);
+  memcpy((char *)r->k + info->place, &items, sizeof items);
   for (const namelist_group *g; !too_many_errors(r) && (g = next_of(n, kind, &i)); ++*count)
     read_item(r, g, kind, items + (size_t)*count * info->size);
 }
@@ -462,7 +466,7 @@ static void check_whole(deck_reader *r) {
   const deck_item *simulation = &k->simulation.item;
   if (simulation->where.end == 0 && !deck_lacks(k, "simulation")) /* never read */
     diag_report(r->d, DIAG_MISSING_KEY, simulation->where, "the deck has no `&simulation`");
-  if (k->lattice_count == 0 && !deck_lacks(k, "lattice"))
+  if (k->lattice_count == 0 && !deck_lacks(k, "lattice") && !deck_lacks(k, "bar"))
     diag_report(r->d, DIAG_MISSING_KEY, simulation->where, "the deck has no `&lattice`");
   check_quasi_static(r);
   check_regional_materials(r);
@@ -472,8 +476,8 @@ static void check_whole(deck_reader *r) {
     if (!lattice->name) continue;
     const char *name = deck_shown(r->memory, lattice->name);
     if (!has_material(k, lattice->name))
-      diag_report(r->d, DIAG_MISSING_KEY, lattice->item.where,
-                  "the lattice `%s` has no `&material`%s", name,
+      diag_report(r->d, DIAG_MISSING_KEY, lattice->item.where, "the %s `%s` has no `&material`%s",
+                  deck_lattice_word(lattice), name,
                   has_regional(k, lattice->name) ? " without `region`" : "");
     if (deck_misses_body(k, i))
       diag_report(r->d, DIAG_MISSING_KEY, lattice->item.where, "the lattice `%s` has no `&body`",

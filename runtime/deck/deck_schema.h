@@ -59,15 +59,16 @@ typedef void deck_group_check(struct deck_reader *r, const namelist_group *from,
 typedef struct deck_group_info {
   const char *name;
   const char *identity; /* key that tells groups of this name apart in overrides, or NULL */
-  const char *parts[2]; /* keys that do so in its place where a group has them */
+  const char *parts[4]; /* keys that do so in its place where a group has them, the last of them */
   bool single;          /* at most one in a deck */
   bool open;            /* other keys are assignments */
   const deck_key_info *keys;
   int key_count;
-  size_t size;             /* of its structure, which begins with a deck_item */
-  size_t place;            /* in the deck: of the structure, or of the list of them */
-  size_t count_place;      /* in the deck: of the list's count */
-  deck_group_check *check; /* what its keys mean together; NULL: each is right by itself */
+  size_t size;               /* of its structure, which begins with a deck_item */
+  size_t place;              /* in the deck: of the structure, or of the list of them */
+  size_t count_place;        /* in the deck: of the list's count */
+  void (*begin)(void *item); /* what an item is before its keys are read; NULL: all 0 */
+  deck_group_check *check;   /* what its keys mean together; NULL: each is right by itself */
   const char *doc;
 } deck_group_info;
 
@@ -76,13 +77,16 @@ typedef struct deck_group_info {
 #define DECK_COUNT_AT(group, field) .count_offset = (long)offsetof(deck_##group, field)
 #define DECK_NOT_KEPT               .offset = DECK_NO_FIELD
 
-/* The row of a group whose keys are GROUP_keys, as DECK_GROUPS says that there is one or a list of
-   them:
+/* The row of a group whose keys are GROUP_keys, as DECK_GROUPS says that there is one, a list of
+   them, or more in the list of another group:
      DECK_LIST(body, .identity = "lattice", .check = check_body, .doc = "Adds a shape."); */
 #define DECK_ONE(group, ...)                                                                       \
   DECK_ROW(group, .single = true, .place = offsetof(deck, group), __VA_ARGS__)
 #define DECK_LIST(group, ...)                                                                      \
   DECK_ROW(group, .place = offsetof(deck, group##s), .count_place = offsetof(deck, group##_count), \
+           __VA_ARGS__)
+#define DECK_MORE(group, other, ...)                                                               \
+  DECK_ROW(group, .place = offsetof(deck, other##s), .count_place = offsetof(deck, other##_count), \
            __VA_ARGS__)
 #define DECK_ROW(group, ...)                                                                       \
   _Static_assert(sizeof group##_keys / sizeof *group##_keys <= DECK_MOST_KEYS, "too many keys");   \

@@ -125,7 +125,7 @@ static bool is_meant(const setter *s, const namelist_group *g, int occurrence) {
   if (strspn(s->which, "0123456789") == strlen(s->which))
     return strtol(s->which, NULL, 10) == occurrence;
   const namelist_key *key = s->group->identity ? namelist_find(g, s->group->identity) : NULL;
-  for (int k = 0; k < 2 && s->group->parts[k]; k++)
+  for (int k = 0; k < 4 && s->group->parts[k]; k++)
     if (namelist_find(g, s->group->parts[k])) key = namelist_find(g, s->group->parts[k]);
   return key && key->value_count == 1 && key->values[0].kind == NAMELIST_TEXT &&
          strcmp(key->values[0].text, s->which) == 0;

@@ -279,9 +279,22 @@ static void check_can_be_filled(deck_reader *r, const deck_item *item, const dec
                                 const char *lattice, bool is_body) {
   const int l = deck_find_lattice(r->k, lattice);
   const bool suits = is_body ? shape_has_size(shape) : shape->kind != SHAPE_POINT;
-  if (suits || l < 0 || r->k->lattices[l].item.faulty ||
-      !deck_lattice_is_irregular(&r->k->lattices[l]))
+  if (l < 0 || r->k->lattices[l].item.faulty) return;
+  if (deck_lattice_is_link(&r->k->lattices[l])) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(item, "lattice"),
+                "`%s` is a link, whose particles are those that it joins",
+                deck_shown(r->memory, lattice));
+    diag_hint(r->d, "name the bar, or the lattice around it");
     return;
+  }
+  if (deck_lattice_is_bar(&r->k->lattices[l])) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(item, "lattice"),
+                is_body ? "`%s` is a bar: its `points` say where it is"
+                        : "`%s` is a bar, which has no notches",
+                deck_shown(r->memory, lattice));
+    return;
+  }
+  if (suits || !deck_lattice_is_irregular(&r->k->lattices[l])) return;
   diag_report(r->d, DIAG_CONFLICT, deck_where(item, "shape"),
               shape->kind == SHAPE_POINT ? "%s means a site of a lattice, but here are none"
                                          : "%s cannot be filled with particles",

@@ -11,6 +11,7 @@
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/deck/output_fields.h"
+#include "runtime/geometry/polyline.h"
 
 /* --- lattices --------------------------------------------------------------------------------- */
 
@@ -213,14 +214,19 @@ static void check_neighbours(deck_reader *r, const namelist_group *from, deck_la
     item->neighbours = dimensions == 2 ? 12 : 18;
 }
 
+/* A &lattice of that kind may be. */
+static bool is_in_space(int kind) {
+  return lattice_kinds[kind].dimensions != 2 && kind != LATTICE_KIND_bar;
+}
+
 /* "lattices in space are 'cubic', 'fcc' and 'particles'" */
 static void hint_kinds_in_space(deck_reader *r) {
   const char *list = "";
   int left = 0;
   for (int k = 0; k < LATTICE_KIND_COUNT; k++)
-    left += lattice_kinds[k].dimensions != 2;
+    left += is_in_space(k);
   for (int k = 0; k < LATTICE_KIND_COUNT; k++)
-    if (lattice_kinds[k].dimensions != 2)
+    if (is_in_space(k))
       list = arena_printf(r->memory, "%s'%s'%s", list, lattice_kinds[k].name,
                           --left > 1 ? ", "
                           : left     ? " and "
@@ -253,11 +259,28 @@ static void check_kind(deck_reader *r, const namelist_group *from, deck_lattice 
   if (arrangement != REGULAR) check_neighbours(r, from, item, dimensions);
 }
 
-static void check_lattice(deck_reader *r, const namelist_group *from, void *into) {
-  deck_lattice *item = into;
+/* Lattices and bars stand side by side in results. */
+static void check_lattice_name(deck_reader *r, const deck_lattice *item) {
 #define X(name, unit, components, exists, kind, words) #name,
   static const char *const taken[] = {"time", ".", OUTPUT_FIELDS(X)};
 #undef X
+  const char *word = deck_lattice_word(item);
+  const span where = deck_where(&item->item, "name");
+  if (deck_is_one_of(item->name, taken, (int)(sizeof taken / sizeof *taken)) ||
+      output_is_component(item->name, 3))
+    diag_report(r->d, DIAG_RESERVED_NAME, where,
+                "a %s cannot be called `%s`: the result has a field of that name", word,
+                item->name);
+  else if (strchr(item->name, '/'))
+    diag_report(r->d, DIAG_BAD_VALUE, where, "a %s's name must not hold `/`", word);
+  const int first = deck_find_lattice(r->k, item->name);
+  const deck_lattice *other = first < 0 ? NULL : &r->k->lattices[first];
+  deck_check_name(r, other ? deck_lattice_word(other) : word, item->name, &item->item,
+                  other ? &other->item : NULL);
+}
+
+static void check_lattice(deck_reader *r, const namelist_group *from, void *into) {
+  deck_lattice *item = into;
   check_kind(r, from, item);
   deck_refuse_both(r, from, "horizon", "shells");
   if (namelist_find(from, "shells") && item->shells == 0)
@@ -265,29 +288,215 @@ static void check_lattice(deck_reader *r, const namelist_group *from, void *into
                 "a particle has at least one shell of neighbours");
   if (item->stiffness_thickness == 0) item->stiffness_thickness = item->thickness;
   if (item->mass_thickness == 0) item->mass_thickness = item->thickness;
-  span where = deck_where(&item->item, "name");
-  if (deck_is_one_of(item->name, taken, (int)(sizeof taken / sizeof *taken)) ||
-      output_is_component(item->name, 3))
-    diag_report(r->d, DIAG_RESERVED_NAME, where,
-                "a lattice cannot be called `%s`: the result has a field of that name", item->name);
-  else if (strchr(item->name, '/'))
-    diag_report(r->d, DIAG_BAD_VALUE, where, "a lattice's name must not hold `/`");
-  int first = deck_find_lattice(r->k, item->name);
-  deck_check_name(r, "lattice", item->name, &item->item,
-                  first < 0 ? NULL : &r->k->lattices[first].item);
+  check_lattice_name(r, item);
 }
 
 DECK_LIST(lattice, .identity = "name", .check = check_lattice,
           .doc = "A lattice of particles that bodies are cut from. At least one.");
+
+/* --- bars ------------------------------------------------------------------------------------- */
+
+static const deck_key_info bar_keys[] = {
+    {.name = "name", .type = DECK_NAME, .required = true, DECK_AT(bar, name), .doc = "its name"},
+    {.name = "points",
+     .type = DECK_REALS,
+     .unit = "m",
+     .required = true,
+     DECK_AT(bar, points),
+     DECK_COUNT_AT(bar, value_count),
+     .doc = "its corners from end to end: x1, y1, x2, y2, ..., in space x1, y1, z1, ..."},
+    {.name = "closed",
+     .type = DECK_LOGICAL,
+     .fallback = ".false.",
+     DECK_AT(bar, closed),
+     .doc = "the last corner is joined to the first, as of a stirrup"},
+    {.name = "spacing",
+     .type = DECK_REAL,
+     .unit = "m",
+     .bound = BOUND_POSITIVE,
+     .required = true,
+     DECK_AT(bar, spacing),
+     .doc = "distance of its particles; each straight leg is divided into equal parts as near to "
+            "it as can be"},
+    {.name = "diameter",
+     .type = DECK_REAL,
+     .unit = "m",
+     .bound = BOUND_POSITIVE,
+     DECK_AT(bar, diameter),
+     .doc = "of its round cross-section; or give the `area`"},
+    {.name = "area",
+     .type = DECK_REAL,
+     .unit = "m^2",
+     .bound = BOUND_POSITIVE,
+     DECK_AT(bar, area),
+     .doc = "of its cross-section, `area` of the law; or give the `diameter`"},
+    {.name = "setting",
+     .type = DECK_WORD,
+     .choices = "plane|space",
+     .fallback = "= that of the deck's lattices, without one `'plane'`",
+     DECK_AT(bar, setting),
+     .doc = "whether its corners have two coordinates or three"},
+};
+
+/* Bars move where the deck's lattices do. 0: nobody knows. */
+static int bar_dimensions(const deck_reader *r, const deck_bar *item) {
+  if (item->setting) return strcmp(item->setting, "space") == 0 ? 3 : 2;
+  if (r->k->lattice_count > 0)
+    return r->k->lattices[0].kind ? deck_lattice_dimensions(&r->k->lattices[0]) : 0;
+  return deck_lacks(r->k, "lattice") ? 0 : 2;
+}
+
+/* Whole corners, as many as a line needs. */
+static bool has_corners(deck_reader *r, const deck_bar *item, int dimensions) {
+  const span where = deck_where(&item->item, "points");
+  const int corners = item->value_count / dimensions, least = item->closed ? 3 : 2;
+  if (item->value_count % dimensions) {
+    diag_report(r->d, DIAG_BAD_VALUE, where,
+                "a point has %d coordinates in %s, but `points` has %d "
+                "values",
+                dimensions, dimensions == 2 ? "the plane" : "space", item->value_count);
+    diag_hint(r->d, "a bar in space, in a deck without a lattice, says so: `setting = 'space'`");
+  } else if (corners < least)
+    diag_report(r->d, DIAG_BAD_VALUE, where, "a %sbar has at least %d points, but here %s %d",
+                item->closed ? "closed " : "", least, corners == 1 ? "is" : "are", corners);
+  return item->value_count % dimensions == 0 && corners >= least;
+}
+
+static void check_legs(deck_reader *r, const deck_bar *item, int dimensions) {
+  const polyline p = {dimensions, item->value_count / dimensions, item->points, item->closed};
+  for (int k = 0; k < polyline_legs(&p); k++) {
+    const double *from, *to, length = polyline_leg(&p, k, &from, &to);
+    const int end = (k + 1) % p.corners + 1;
+    if (length == 0) {
+      diag_report(r->d, DIAG_BAD_VALUE, deck_where(&item->item, "points"),
+                  "points %d and %d are the same", k + 1, end);
+      if (end == 1) diag_hint(r->d, "`closed` joins the last point to the first by itself");
+    } else if (length < item->spacing * (1 - POLYLINE_ROUNDING)) {
+      diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "spacing"),
+                  "the leg from point %d to point %d is %.6g mm long, shorter than the `spacing`",
+                  k + 1, end, 1e3 * length);
+    } else
+      continue;
+    return;
+  }
+}
+
+static void check_section(deck_reader *r, const namelist_group *from, deck_bar *item) {
+  deck_refuse_both(r, from, "diameter", "area");
+  if (item->diameter == 0 && item->area == 0)
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&bar` needs a `diameter` or an `area`");
+  if (item->area == 0) item->area = M_PI / 4 * item->diameter * item->diameter;
+}
+
+static void begin_bar(void *item) {
+  ((deck_bar *)item)->kind = lattice_kinds[LATTICE_KIND_bar].name;
+}
+
+static void check_bar(deck_reader *r, const namelist_group *from, void *into) {
+  deck_bar *item = into;
+  const int dimensions = bar_dimensions(r, item);
+  item->setting = dimensions == 3 ? "space" : "plane_stress";
+  check_section(r, from, item);
+  check_lattice_name(r, item);
+  if (dimensions && has_corners(r, item, dimensions)) check_legs(r, item, dimensions);
+}
+
+DECK_MORE(bar, lattice, .identity = "name", .begin = begin_bar, .check = check_bar,
+          .doc = "A bar: particles along a line of straight legs, each joined to the next. It "
+                 "needs no `&body`; everywhere else it is named as a lattice is.");
+
+/* --- links ------------------------------------------------------------------------------------ */
+
+static const deck_key_info link_keys[] = {
+    {.name = "name", .type = DECK_NAME, .required = true, DECK_AT(link, name), .doc = "its name"},
+    {.name = "bar",
+     .type = DECK_NAME,
+     .required = true,
+     DECK_AT(link, bar),
+     .doc = "name of the bar that it joins"},
+    {.name = "lattice",
+     .type = DECK_NAME,
+     .required = true,
+     DECK_AT(link, around),
+     .doc = "name of the lattice around the bar"},
+    {.name = "every",
+     .type = DECK_COUNT,
+     .fallback = "1",
+     .most = 1000000,
+     DECK_AT(link, every),
+     .doc = "of the bar's particles, counted from 0 along it, every one, every second, ... is "
+            "joined"},
+    {.name = "first",
+     .type = DECK_COUNT,
+     .fallback = "0",
+     .most = 1000000000,
+     DECK_AT(link, first),
+     .doc = "the first of these"},
+    {.name = "within",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_POSITIVE,
+     .fallback = "1",
+     DECK_AT(link, within),
+     .doc = "in spacings of the lattice: a bond to each of its particles that is at most so far "
+            "away, and not at the same place"},
+};
+
+static void begin_link(void *item) {
+  ((deck_link *)item)->kind = lattice_kinds[LATTICE_KIND_link].name;
+}
+
+/* What laws are told of a lattice is that of the one around the bar. */
+static void take_around(deck_reader *r, deck_link *item) {
+  const deck_lattice *around = &r->k->lattices[item->of_around];
+  item->setting = around->setting;
+  item->spacing = around->spacing;
+  item->thickness = around->thickness;
+  item->stiffness_thickness = around->stiffness_thickness;
+  item->mass_thickness = around->mass_thickness;
+  if (deck_lattice_is_bar(around) || deck_lattice_is_link(around))
+    diag_report(r->d, DIAG_BAD_VALUE, deck_where(&item->item, "lattice"),
+                "`%s` is a %s: a link joins a bar to the lattice around it",
+                deck_shown(r->memory, item->around), deck_lattice_word(around));
+  else if (around->kind && deck_lattice_dimensions(around) !=
+                               deck_lattice_dimensions(&r->k->lattices[item->of_bar]))
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "lattice"),
+                "the bar `%s` and the lattice `%s` are not both in the plane, or in space",
+                deck_shown(r->memory, item->bar), deck_shown(r->memory, item->around));
+}
+
+static void check_link(deck_reader *r, const namelist_group *from, void *into) {
+  deck_link *item = into;
+  (void)from;
+  check_lattice_name(r, item);
+  if (item->every < 1)
+    diag_report(r->d, DIAG_BAD_VALUE, deck_where(&item->item, "every"),
+                "`every` counts from 1, which is each particle");
+  if (!deck_bar_known(r, &item->item, item->bar) ||
+      !deck_lattice_known(r, &item->item, item->around))
+    return;
+  item->of_bar = deck_find_lattice(r->k, item->bar);
+  item->of_around = deck_find_lattice(r->k, item->around);
+  if (item->of_bar >= 0 && item->of_around >= 0) take_around(r, item);
+}
+
+DECK_MORE(link, lattice, .identity = "name", .begin = begin_link, .check = check_link,
+          .doc = "Bonds between a bar and the lattice around it; their law is that of a "
+                 "`&material link =`. Everywhere else it is named as a lattice is.");
 
 /* --- materials -------------------------------------------------------------------------------- */
 
 static const deck_key_info material_keys[] = {
     {.name = "lattice",
      .type = DECK_NAME,
-     .required = true,
      DECK_AT(material, lattice),
+     .fallback = "= required, but for a bar or a link",
      .doc = "name of the lattice"},
+    {.name = "bar", .type = DECK_NAME, DECK_AT(material, bar), .doc = "instead: name of the bar"},
+    {.name = "link",
+     .type = DECK_NAME,
+     DECK_AT(material, link),
+     .doc = "instead: name of the link"},
     {.name = "model",
      .type = DECK_NAME,
      .required = true,
@@ -371,24 +580,45 @@ bool deck_assignments_read(arena *memory, const namelist_group *g, deck_material
   return d->errors == errors;
 }
 
+/* The name of what the material is for. */
+static bool take_lattice(deck_reader *r, const namelist_group *from, deck_material *item) {
+  const char *of = item->bar ? item->bar : item->link;
+  const bool both = (item->lattice && of) || (item->bar && item->link);
+  deck_refuse_both(r, from, "lattice", "bar");
+  deck_refuse_both(r, from, "lattice", "link");
+  deck_refuse_both(r, from, "bar", "link");
+  if (both) return false;
+  if (item->lattice) return deck_lattice_known(r, &item->item, item->lattice);
+  if (!of) {
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&material` has no `lattice`");
+    diag_hint(r->d, "lattice: name of the lattice; of a bar's material `bar`, of a link's `link`");
+    return false;
+  }
+  item->lattice = of;
+  return (item->bar ? deck_bar_known : deck_link_known)(r, &item->item, of);
+}
+
 static void check_material(deck_reader *r, const namelist_group *from, void *into) {
   deck_material *item = into;
+  const bool known = take_lattice(r, from, item);
   deck_assignments_read(r->memory, from, item, r->d);
-  if (!deck_lattice_known(r, &item->item, item->lattice)) return;
+  if (!known) return;
   const int first = deck_find_material(r->k, item->lattice);
   deck_refuse_both(r, from, "region", "between");
   if (first < 0 || item->region || item->between[0]) return;
-  diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "lattice"),
-              "the lattice `%s` has a material already", deck_shown(r->memory, item->lattice));
+  const char *word = item->bar ? "bar" : "lattice";
+  diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, word),
+              "the %s `%s` has a material already", word, deck_shown(r->memory, item->lattice));
   diag_note(r->d, r->k->materials[first].item.where, "it is given here");
-  diag_hint(r->d, "one for a part of the lattice has `region` or `between`");
+  diag_hint(r->d, "one for a part of the %s has `region` or `between`", word);
 }
 
 DECK_LIST(
-    material, .identity = "lattice", .parts = {"region", "between"}, .open = true,
+    material, .identity = "lattice", .parts = {"bar", "link", "region", "between"}, .open = true,
     .check = check_material,
     .doc =
-        "The law of a lattice's bonds, or its parameters in a region. Every other key sets a "
+        "The law of a lattice's or bar's bonds, or its parameters in a region. Every other key "
+        "sets a "
         "parameter or an option of the law, e.g. `E = '30 GPa'`, or by place `E = '30 [GPa]*(1 + "
         "x/2 [m])'` or `E = 'field.csv:E'`.");
 

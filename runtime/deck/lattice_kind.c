@@ -22,7 +22,19 @@ int lattice_kind_axes(const lattice_kind *kind) {
 
 bool deck_lattice_is_chain(const deck_lattice *l) {
   const lattice_kind *kind = lattice_kind_find(l->kind);
-  return kind && lattice_kind_axes(kind) == 1;
+  return kind && (lattice_kind_axes(kind) == 1 || deck_lattice_is_bar(l));
+}
+
+bool deck_lattice_is_bar(const deck_lattice *l) {
+  return l->kind && strcmp(l->kind, lattice_kinds[LATTICE_KIND_bar].name) == 0;
+}
+
+bool deck_lattice_is_link(const deck_lattice *l) {
+  return l->kind && strcmp(l->kind, lattice_kinds[LATTICE_KIND_link].name) == 0;
+}
+
+const char *deck_lattice_word(const deck_lattice *l) {
+  return deck_lattice_is_bar(l) ? "bar" : deck_lattice_is_link(l) ? "link" : "lattice";
 }
 
 bool deck_lattice_is_irregular(const deck_lattice *l) {

@@ -19,7 +19,11 @@ C_LINKAGE_BEGIN
          o   o   o   o       each shifted by one half step
        o   o   o   o
  */
-#define LATTICE_KINDS(X) KINDS_OF_SITES(X) KINDS_WITHOUT_SITES(X)
+#define LATTICE_KINDS(X)  KINDS_OF_DECKS(X) KINDS_OF_GROUPS(X)
+#define KINDS_OF_GROUPS(X)                                                                         \
+  X(bar, 0, (0, 0, 0), (0, 0))  /* of a &bar */                                                    \
+  X(link, 0, (0, 0, 0), (0, 0)) /* of a &link */
+#define KINDS_OF_DECKS(X) KINDS_OF_SITES(X) KINDS_WITHOUT_SITES(X)
 #define KINDS_OF_SITES(X)                                                                          \
   KINDS_OF_FAMILIES(X)                                                                             \
   X(chain, 2, (1, 0, 0), (0, 0)) /* the axis of a bar or a beam */
@@ -42,7 +46,7 @@ typedef struct lattice_kind {
 /* "hexagonal|square|..." */
 /* clang-format off */
 #define LATTICE_KIND_CHOICE(name, dimensions, square, shift_by) "|" #name
-#define LATTICE_KIND_CHOICES (&(LATTICE_KINDS(LATTICE_KIND_CHOICE))[1])
+#define LATTICE_KIND_CHOICES (&(KINDS_OF_DECKS(LATTICE_KIND_CHOICE))[1])
 #define LATTICE_KIND_QUOTED(name, dimensions, square, shift_by) ", `'" #name "'`"
 /* Those that have sites, and so in sentences: "`'hexagonal'`, `'square'`, ..." */
 #define LATTICE_KINDS_OF_SITES        (&(KINDS_OF_SITES(LATTICE_KIND_CHOICE))[1])
@@ -63,10 +67,16 @@ const lattice_kind *lattice_kind_find(const char *name);
 /* Directions in which sites follow each other: 1, a chain, to 3; 0 for particles on no lattice. */
 int lattice_kind_axes(const lattice_kind *kind);
 
-/* True for one row of particles, which has an area in place of a thickness. */
+/* True for one row of particles, a chain or a bar, which has an area in place of a thickness. */
 bool deck_lattice_is_chain(const deck_lattice *l);
-/* True for particles that stand on no lattice. */
+/* True for particles that stand on no lattice, those of bars and links, too. */
 bool deck_lattice_is_irregular(const deck_lattice *l);
+/* True for the particles of a &bar. */
+bool deck_lattice_is_bar(const deck_lattice *l);
+/* True for the copies of particles that a &link joins. */
+bool deck_lattice_is_link(const deck_lattice *l);
+/* What messages call it: "bar", "link", or "lattice". */
+const char *deck_lattice_word(const deck_lattice *l);
 /* 2 or 3: by the kind, where particles stand on no lattice by the setting; 0 for an unknown
    kind. */
 int deck_lattice_dimensions(const deck_lattice *l);

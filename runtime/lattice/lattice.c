@@ -1,11 +1,14 @@
 #include "runtime/lattice/lattice.h"
 
+#include "runtime/lattice/bar_rows.h"
 #include "runtime/lattice/linked.h"
 #include "runtime/lattice/rows_build.h"
 #include "runtime/lattice/scattered.h"
 
 rows *lattice_build(const deck *k, int lattice, diagnostics *d) {
-  const bool irregular = deck_lattice_is_irregular(&k->lattices[lattice]);
+  const deck_lattice *l = &k->lattices[lattice];
+  if (deck_lattice_is_bar(l)) return bar_rows(l, d);
+  const bool irregular = deck_lattice_is_irregular(l);
   return (irregular ? scattered_build : rows_build)(k, lattice, d);
 }
 

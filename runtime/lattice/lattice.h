@@ -1,6 +1,6 @@
 /* This room: particles, their bonds, and what differs from bond to bond. Here the particles of a
    deck's lattice and the bonds between them, whether they stand on sites that repeat themselves
-   (rows.h) or nowhere in particular (scattered.h). */
+   (rows.h), nowhere in particular (scattered.h) or along a bar (bar_rows.h). */
 #ifndef PERILAT_RUNTIME_LATTICE_H
 #define PERILAT_RUNTIME_LATTICE_H
 

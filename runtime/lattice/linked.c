@@ -70,7 +70,7 @@ static void find_near(linker *l) {
 static int32_t copy_of_body(linker *l, int32_t particle) {
   if (l->copied[particle] < 0) {
     l->copied[particle] = (int32_t)l->count;
-    l->copies[l->count++] = (rows_copy){l->link->of, particle};
+    l->copies[l->count++] = (rows_copy){l->link->of_around, particle};
   }
   return l->copied[particle];
 }
@@ -97,7 +97,7 @@ static void join(linker *l) {
     for (long m = 0; m < near_count; m++) {
       const double length = distance(l, l->chosen[n], near[m]);
       if (length > l->reach || length <= REACH_TOLERANCE * l->body->spacing) continue;
-      if (!joined) l->copies[l->count++] = (rows_copy){l->link->bar_of, l->chosen[n]};
+      if (!joined) l->copies[l->count++] = (rows_copy){l->link->of_bar, l->chosen[n]};
       joined = true;
       add_pair(l, here, copy_of_body(l, near[m]), length);
     }
@@ -131,7 +131,7 @@ static rows *rows_of(const linker *l, long *crowded) {
   for (int a = 0; a < g->dimensions; a++)
     at[a] = must_calloc((size_t)l->count + 1, sizeof **at);
   for (long n = 0; n < l->count; n++) {
-    const rows *of = l->copies[n].lattice == l->link->of ? l->body : l->bar;
+    const rows *of = l->copies[n].lattice == l->link->of_around ? l->body : l->bar;
     double place_of[3];
     rows_place(of, of->particle_site[l->copies[n].particle], place_of);
     for (int a = 0; a < g->dimensions; a++)
@@ -200,7 +200,7 @@ static bool is_crowded(const linker *l, diagnostics *d) {
 
 rows *linked_build(const deck *k, int lattice, rows *const *built, diagnostics *d) {
   const deck_lattice *link = &k->lattices[lattice];
-  linker l = {.link = link, .bar = built[link->bar_of], .body = built[link->of]};
+  linker l = {.link = link, .bar = built[link->of_bar], .body = built[link->of_around]};
   if (!l.bar || !l.body) return NULL; /* what is wrong with these has been said */
   l.reach = link->within * l.body->spacing * (1 + REACH_TOLERANCE);
   find(&l);

@@ -86,8 +86,8 @@ void link_limit(const run_body *bodies, int count, step_limit *limit, int *rulin
       fastest = b;
   free(joined);
   if (fastest < 0) return;
-  const rates body = rates_of(&bodies[fastest].limit), links = sum_of_links(bodies, count);
-  const rates all = {body.square + links.square, body.damping + links.damping};
+  const rates alone = rates_of(&bodies[fastest].limit), links = sum_of_links(bodies, count);
+  const rates all = {alone.square + links.square, alone.damping + links.damping};
   const double together = stability_rounded(2 / fastest_of(all));
   if (!(together < limit->limit)) return;
   *ruling = fastest;

@@ -294,7 +294,7 @@ static void laws_have_the_section_that_they_read(void **state) {
   expect(w, "check chain.nml --set material.model=lps", 1,
          "reads whole families, but a chain has bonds along one line alone");
   expect(w, "check beam.nml --set material.model=bar", 1,
-         "reads `area`, the cross-section of a bar, which chains alone have");
+         "reads `area`, the cross-section of a bar, which chains and bars alone have");
   expect(w, "info bar", 0, "On a chain of 2 neighbours, s = 10 mm, A = 100 mm^2:");
   expect(w, "info bar --area '2 cm^2'", 0, "E = 200 GPa along it, EA = 40 MN");
   expect(w, "info bar --lattice square", 1, "which chains alone have");
