@@ -19,7 +19,7 @@ C_LINKAGE_BEGIN
          o   o   o   o       each shifted by one half step
        o   o   o   o
  */
-#define LATTICE_KINDS(X)  KINDS_OF_DECKS(X) KINDS_OF_GROUPS(X)
+#define LATTICE_KINDS(X) KINDS_OF_DECKS(X) KINDS_OF_GROUPS(X)
 #define KINDS_OF_GROUPS(X)                                                                         \
   X(bar, 0, (0, 0, 0), (0, 0))  /* of a &bar */                                                    \
   X(link, 0, (0, 0, 0), (0, 0)) /* of a &link */

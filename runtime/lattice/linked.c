@@ -15,7 +15,7 @@
 typedef struct linker {
   const deck_lattice *link;
   const rows *bar, *body;
-  double reach; /* m */
+  double reach;    /* m */
   int32_t *chosen; /* [chosen_count] particles of the bar */
   long chosen_count;
   unsigned char *near; /* [chosen_count + particles of the body] in reach of a chosen one */
@@ -126,8 +126,7 @@ static void find(linker *l) {
 /* Those of the bar and of the body take turns in `copies`; lists do not mind. */
 static rows *rows_of(const linker *l, long *crowded) {
   const rows *g = l->body;
-  double *at[3] = {NULL, NULL, NULL},
-         *measure = must_calloc((size_t)l->count + 1, sizeof *measure);
+  double *at[3] = {NULL, NULL, NULL}, *measure = must_calloc((size_t)l->count + 1, sizeof *measure);
   for (int a = 0; a < g->dimensions; a++)
     at[a] = must_calloc((size_t)l->count + 1, sizeof **at);
   for (long n = 0; n < l->count; n++) {
@@ -138,14 +137,13 @@ static rows *rows_of(const linker *l, long *crowded) {
       at[a][n] = place_of[a];
     measure[n] = g->site_area > 0 ? g->site_area : g->volume;
   }
-  const scattered from = {
-      .points = {g->dimensions, l->count, {at[0], at[1], at[2]}},
-      .measure = measure,
-      .spacing = g->spacing,
-      .bonds = l->pairs,
-      .bond_count = l->pair_count,
-      .stiffness_thickness = g->stiffness_thickness,
-      .mass_thickness = g->site_area > 0 ? g->volume / g->site_area : 0};
+  const scattered from = {.points = {g->dimensions, l->count, {at[0], at[1], at[2]}},
+                          .measure = measure,
+                          .spacing = g->spacing,
+                          .bonds = l->pairs,
+                          .bond_count = l->pair_count,
+                          .stiffness_thickness = g->stiffness_thickness,
+                          .mass_thickness = g->site_area > 0 ? g->volume / g->site_area : 0};
   rows *w = scattered_rows(&from, crowded);
   for (int a = 0; a < g->dimensions; a++)
     free(at[a]);

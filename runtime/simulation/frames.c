@@ -11,7 +11,7 @@
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/output_fields.h"
 #include "runtime/interaction/damage.h"
-#include "runtime/simulation/load_steps.h"
+#include "runtime/loads/load_steps.h"
 
 typedef struct frame_source frame_source;
 typedef struct frames_of { /* where values come from */

@@ -35,7 +35,7 @@
 #include <stdbool.h>
 
 #include "runtime/interaction/sweep.h"
-#include "runtime/simulation/load_steps.h"
+#include "runtime/loads/load_steps.h"
 
 /* X(code, name, words) in the order of the history; all in J */
 #define LEDGER_TERMS(X)                                                                            \

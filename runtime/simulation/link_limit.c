@@ -81,8 +81,8 @@ void link_limit(const run_body *bodies, int count, step_limit *limit, int *rulin
   bool *joined = joined_bodies(bodies, count);
   int fastest = -1;
   for (int b = 0; b < count; b++)
-    if (joined[b] && (fastest < 0 || is_faster(rates_of(&bodies[b].limit),
-                                               rates_of(&bodies[fastest].limit))))
+    if (joined[b] &&
+        (fastest < 0 || is_faster(rates_of(&bodies[b].limit), rates_of(&bodies[fastest].limit))))
       fastest = b;
   free(joined);
   if (fastest < 0) return;

@@ -10,7 +10,7 @@
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/group_monitor.h"
 #include "runtime/interaction/damage.h"
-#include "runtime/simulation/load_steps.h"
+#include "runtime/loads/load_steps.h"
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 

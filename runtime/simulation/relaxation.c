@@ -6,7 +6,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "runtime/simulation/load_steps.h"
+#include "runtime/loads/load_steps.h"
 
 enum { LOOK_EVERY = 25 };                /* steps */
 static const double forgotten = 0.01;    /* part of the largest force that still counts */

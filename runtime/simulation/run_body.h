@@ -11,8 +11,8 @@
 #include "runtime/interaction/sweep.h"
 #include "runtime/lattice/law_parts.h"
 #include "runtime/lattice/parameter_planes.h"
+#include "runtime/loads/loads.h"
 #include "runtime/simulation/ledger.h"
-#include "runtime/simulation/loads.h"
 
 typedef struct run_law { /* a law at work on a body: an interaction of the run */
   const deck_interaction *from;

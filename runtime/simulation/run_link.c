@@ -42,7 +42,7 @@ run_link *run_links_new(run_body *bodies, int body_count, int *count) {
     take_copies(link, bodies);
     load_bodies(link, *count - 1, bodies);
   }
-  for (int b = 0; b < body_count && *count > 0; b++)
+  for (int b = 0; b<body_count && * count> 0; b++)
     loads_links_added(bodies[b].loads);
   return links;
 }

@@ -4,7 +4,7 @@
 
 #include "runtime/base/clock.h"
 #include "runtime/base/subnormals.h"
-#include "runtime/simulation/load_steps.h"
+#include "runtime/loads/load_steps.h"
 
 /* --- samples ---------------------------------------------------------------------------------- */
 

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "runtime/simulation/load_clock.h"
+#include "runtime/loads/load_clock.h"
 #include "runtime/simulation/relaxation.h"
 #include "runtime/simulation/run_clock.h"
 

@@ -10,8 +10,8 @@
 #include "runtime/body/motion.h"
 #include "runtime/interaction/interaction.h"
 #include "runtime/lattice/lattice.h"
-#include "runtime/simulation/load_steps.h"
-#include "runtime/simulation/loads.h"
+#include "runtime/loads/load_steps.h"
+#include "runtime/loads/loads.h"
 #include "tests/runtime/simulation/chain.h"
 
 #define PUSHED                                                                                     \

@@ -30,7 +30,7 @@
 #define PERILAT_RUNTIME_LOAD_STEPS_H
 
 #include "runtime/body/momentum.h"
-#include "runtime/simulation/loads.h"
+#include "runtime/loads/loads.h"
 
 /* At the state observed: what loaded particles add to the sums over the body, J. */
 typedef struct load_look {

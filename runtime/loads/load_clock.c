@@ -1,4 +1,4 @@
-#include "runtime/simulation/load_clock.h"
+#include "runtime/loads/load_clock.h"
 
 #include <math.h>
 

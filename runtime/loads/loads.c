@@ -1,4 +1,4 @@
-#include "runtime/simulation/loads.h"
+#include "runtime/loads/loads.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* What acts on a few particles from outside: supports, drives, forces, end moments, collected from
+/* This room: loads. What acts on a few particles from outside: supports, drives, forces, end moments, collected from
    a deck; load_steps.h says what they do in a step. */
 #ifndef PERILAT_RUNTIME_LOADS_H
 #define PERILAT_RUNTIME_LOADS_H
@@ -8,7 +8,7 @@
 #include "runtime/deck/deck.h"
 #include "runtime/lattice/regions.h"
 #include "runtime/lattice/rows.h"
-#include "runtime/simulation/load_clock.h"
+#include "runtime/loads/load_clock.h"
 
 typedef struct load_sums { /* J, since the start */
   double work; /* done by applied forces up to now and by reactions up to the last half step */
@@ -37,12 +37,12 @@ typedef struct constraint { /* one component of one particle that is held or dri
 typedef struct applied { /* part of a force that acts on one component of one particle */
   int64_t site;
   int32_t component;
-  int32_t cause;   /* index into the deck's forces, then end moments, then the run's links */
+  int32_t cause;      /* index into the deck's forces, then end moments, then the run's links */
   const double *link; /* N, N m: of a link, what it exerts in the present state; else NULL */
-  int64_t holder;  /* index of the constraint on the same component, or -1 */
-  double share;    /* force = share * time function */
-  double now;      /* N: force of the coming step */
-  double velocity; /* m/s: after the last step */
+  int64_t holder;     /* index of the constraint on the same component, or -1 */
+  double share;       /* force = share * time function */
+  double now;         /* N: force of the coming step */
+  double velocity;    /* m/s: after the last step */
   load_sums sums;
 } applied;
 

@@ -1,4 +1,4 @@
-#include "runtime/simulation/load_steps.h"
+#include "runtime/loads/load_steps.h"
 
 #include <math.h>
 
