@@ -155,7 +155,7 @@ static void sound_bonds_are_not_searched(void **state) {
   static const char *const texts[] = {
       START SPACE("fcc", "shells = 2 rotation = 17 axis = 1, 2, 3", "25 mm") LAW("cohesive"),
       START PLANE("square", "horizon = 3.015 rotation = 33") LAW("elastic_central"),
-      START PLANE("hexagonal", "rotation = 5") LAW("mplm_linear")};
+      START PLANE("hexagonal", "rotation = 5") LAW("mplm_concrete")};
   for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
     deck_case c;
     open_case(&c, texts[k]);

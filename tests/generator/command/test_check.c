@@ -232,7 +232,7 @@ static void commands_agree(void **state) {
 static void bonds_of_plane_strain_are_asked_for(void **state) {
   workplace *w = *state;
   char text[1000];
-  static const char *const laws[] = {"mplm_bilinear", "mplm_linear", "elastic_micropolar"};
+  static const char *const laws[] = {"mplm_bilinear", "mplm_concrete", "elastic_micropolar"};
 #define IN_PLANE_STRAIN "check beam.nml --set lattice.setting=plane_strain --set material.model="
   for (size_t k = 0; k < sizeof laws / sizeof *laws; k++) {
     char command[200];

@@ -55,12 +55,14 @@ static char *check_cut(model *m, loop_cutting cutting) {
 
 static void kernels_match_however_loops_are_cut(void **state) {
   (void)state;
-  static const char *const names[] = {"mplm_bilinear", "cohesive", "mplm_linear"};
+  static const char *const names[] = {"mplm_bilinear", "cohesive", "mplm_concrete",
+                                      "mplm_concrete"};
+  const law_choice friction = {"friction", "stick_slip"};
   for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
     model m;
     char path[4096];
     snprintf(path, sizeof path, "%s/models/%s.plm", SOURCE_DIR, names[k]);
-    assert_true(model_open(&m, path, NULL, 0) && model_plan(&m));
+    assert_true(model_open(&m, path, &friction, k == 3) && model_plan(&m));
     char *whole = check_cut(&m, CUT_NEVER), *cut = check_cut(&m, CUT_ALWAYS);
     assert_string_not_equal(whole, cut);
     free(whole);

@@ -46,7 +46,7 @@ static void check_law_on(const char *name, law_setting setting, int neighbours) 
 static void kernels_in_the_plane_match(void **state) {
   (void)state;
   check_law_on("models/mplm_bilinear", SETTING_PLANE_STRESS, 4);
-  check_law_on("models/mplm_linear", SETTING_PLANE_STRESS, 12);
+  check_law_on("models/mplm_concrete", SETTING_PLANE_STRESS, 12);
   check_law_on("models/elastic_micropolar", SETTING_PLANE_STRESS, 28);
   check_law_on("tests/generator/laws/shear", SETTING_PLANE_STRESS, 8);
   check_law_with("tests/generator/laws/frame", SETTING_PLANE_STRESS, 0, "e_t");

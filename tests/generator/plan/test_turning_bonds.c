@@ -310,7 +310,7 @@ static void forces_and_moments_are_in_balance(void **state) {
     const char *law, *kind;
     int shells;
   } bodies[] = {
-      {"models/mplm_bilinear", "square", 2},       {"models/mplm_linear", "hexagonal", 2},
+      {"models/mplm_bilinear", "square", 2},       {"models/mplm_concrete", "hexagonal", 2},
       {"tests/generator/laws/frame", "square", 1}, {"tests/generator/laws/frame", "fcc", 1},
       {"tests/generator/laws/shear", "cubic", 2},  {"models/mplm_space", "fcc", 2}};
   for (size_t k = 0; k < sizeof bodies / sizeof *bodies; k++)

@@ -280,8 +280,8 @@ static void write_right(const rows *g) {
 static void laws_on_one_lattice_have_their_densities(void **state) {
   (void)state;
   static const char *const materials[] = {
-      BESIDE("'elastic_micropolar'", "'mplm_linear' zeta = 0.02 rho = 7000"),
-      BESIDE("'elastic_micropolar'", "'mplm_linear' zeta = 0.02 rho = 'right.csv:rho'"),
+      BESIDE("'elastic_micropolar'", "'mplm_concrete' zeta = 0.02 rho = 7000"),
+      BESIDE("'elastic_micropolar'", "'mplm_concrete' zeta = 0.02 rho = 'right.csv:rho'"),
       BESIDE("'lps'", "'pmb' rho = 7000")};
   for (int k = 0; k < 3; k++) {
     deck_case c;

@@ -95,7 +95,7 @@ static void two_copies_of_a_law_are_the_law(void **state) {
   CHECK(BALL, "lps", COPY("lps"));
   CHECK(DISC("square", "horizon = 2.015"), "pmb", COPY("pmb"));
   CHECK(DISC("hexagonal", ""), "mplm_bilinear", COPY("mplm_bilinear"));
-  CHECK(DISC("square", "shells = 2"), "mplm_linear", COPY("mplm_linear"));
+  CHECK(DISC("square", "shells = 2"), "mplm_concrete", COPY("mplm_concrete"));
   CHECK(BALL, "mplm_space", COPY("mplm_space"));
   CHECK(DISC("hexagonal", ""), "elastic_central", ACROSS("elastic_central"));
 }
@@ -173,7 +173,7 @@ static void forces_are_slopes_of_the_energy(void **state) {
   check_slope(DISC("square", "horizon = 2.015") WHOLE("lps") RIGHT("pmb"), 5e-7);
   check_slope(DISC("blue_noise", "") WHOLE("splm_elastic") RIGHT("lps"), 5e-7);
   check_slope(DISC("hexagonal", "") WHOLE("elastic_micropolar") RIGHT("mplm_bilinear")
-                  ACROSS("mplm_linear"),
+                  ACROSS("mplm_concrete"),
               5e-9);
 }
 
@@ -279,7 +279,7 @@ static void threads_and_a_resume_give_the_same_bits(void **state) {
   (void)state;
   static const struct {
     const char *kind, *materials;
-  } runs[] = {{"hexagonal", WHOLE("mplm_bilinear") RIGHT("mplm_linear")},
+  } runs[] = {{"hexagonal", WHOLE("mplm_bilinear") RIGHT("mplm_concrete")},
               {"square", WHOLE("splm_concrete") RIGHT("lps")},
               {"blue_noise", WHOLE("pmb") RIGHT("splm_concrete")}};
   for (size_t k = 0; k < sizeof runs / sizeof *runs; k++) {
@@ -409,10 +409,10 @@ static void slips_are_told_at_their_line(void **state) {
                                 "'elastic_central' /\n",
        "is in both regions, `a` and `c`", "between = 'a', 'c'"},
       {WHOLE("elastic_micropolar") "&region name = 'c' shape = 'point' at = 0, 0 /\n"
-                                   "&material lattice = 'l' region = 'c' model = 'mplm_linear' /\n",
+                                   "&material lattice = 'l' region = 'c' model = 'mplm_concrete' /\n",
        "no bond has both ends in the region `c`", "region = 'c'"},
       {WHOLE("elastic_micropolar") "&region name = 'c' shape = 'disc' centre = 0, 0 radius = 1 /\n"
-                                   "&material lattice = 'l' region = 'c' model = 'mplm_linear' /\n",
+                                   "&material lattice = 'l' region = 'c' model = 'mplm_concrete' /\n",
        "all bonds of `l` belong to other materials", "model = 'elastic_micropolar'"},
       {WHOLE(
            "elastic_central") "&lattice name = 'l.a-b' kind = 'hexagonal' spacing = 1 thickness = "

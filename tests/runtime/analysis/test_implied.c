@@ -116,11 +116,33 @@ static void linear_work_of_fracture(void **state) {
     probe p;
     implied_bond b;
     double s = k == 2 ? 10e-3 : 20e-3, eps_t = 1.26e-4;
-    open_law(&p, "mplm_linear", &energy, k > 0, s);
+    open_law(&p, "mplm_concrete", &energy, k > 0, s);
     implied_bond_curve(p.law, p.parameters, p.lattice, 0, &b);
     assert_true(b.separates);
     near(b.row_energy, k > 0 ? 175 : 10 * 24.86e9 * s * eps_t * eps_t / (3 * (1 - 0.2)), 2e-6);
     near(b.peak_force, 24.86e9 * s * 0.1524 / (sqrt(3) * 0.8) * eps_t, 1e-6);
+    close_law(&p);
+  }
+}
+
+/* Where the stiffness falls along a line the force rises beyond eps_t, and the ratio of G_F is
+   another: alpha^2 + alpha + 1 = 3 times the one above. */
+static void work_of_fracture_where_stiffness_falls(void **state) {
+  (void)state;
+  const law_choice choices[] = {{"softening", "strain"}, {"tension", "energy"}};
+  for (int k = 0; k < 2; k++) {
+    probe p;
+    implied_bond b;
+    const double s = 20e-3, eps_t = 1.26e-4;
+    const double ratio = 3 * (1 - 0.2) * 175 / (24.86e9 * s * eps_t * eps_t);
+    const double alpha = k ? (sqrt(12 * ratio - 3) - 1) / 2 : 10;
+    open_law(&p, "mplm_concrete", choices, 1 + k, s);
+    implied_bond_curve(p.law, p.parameters, p.lattice, 0, &b);
+    assert_true(b.separates);
+    near(b.row_energy, k ? 175 : 37 * 24.86e9 * s * eps_t * eps_t / (3 * (1 - 0.2)), 2e-6);
+    near(b.stretch_at_peak, alpha * eps_t / 2, 1e-3);
+    near(b.peak_force,
+         24.86e9 * s * 0.1524 / (sqrt(3) * 0.8) * eps_t * alpha * alpha / (4 * (alpha - 1)), 1e-6);
     close_law(&p);
   }
 }
@@ -231,6 +253,7 @@ int main(void) {
       cmocka_unit_test(bilinear_work_of_fracture),
       cmocka_unit_test(cohesive_work_of_fracture),
       cmocka_unit_test(linear_work_of_fracture),
+      cmocka_unit_test(work_of_fracture_where_stiffness_falls),
       cmocka_unit_test(cracks_cost_all_bonds_that_they_cut),
       cmocka_unit_test(bending_breaks_inclined_bonds_early),
       cmocka_unit_test(an_elastic_bond_never_separates),
