@@ -252,6 +252,9 @@ typedef struct pl_family {
   /* Of `ledger`: [count] J, added to: what the particle's halves of its bonds lose in this step.
      Where there is no particle, or one without bonds, it means nothing. */
   double *lost[PL_LOSSES];
+  /* Of `force_state`: [dof] N, then N m; planes one for each neighbour, `new_plane` apart, written:
+     what the particle's own side of the bond does to it. 0 where the bond is absent. */
+  double *const *force_state;
 } pl_family;
 
 /* uniforms: rows: [neighbours][uniform_count], as `prepare` wrote them for the bond class of each
@@ -346,6 +349,27 @@ typedef struct pl_law {
      fields, to the bit, and pl_family.lost. No passes: it has neither states nor rate terms, or
      what they take is not known. A body is run with one of the two. */
   pl_program ledger;
+
+  /* Of laws of families: the law alone, family by family: new fields, to what `step` finds, and
+     pl_family.force_state; nothing is added up or left to other ends. With T_k the plane toward
+     neighbour k and T_k' the neighbour's plane back, `step` gives
+
+         force on the particle = sum_k (T_k - T_k'),   moment on it = sum_k M_k
+
+     and sum_k T_k x_k / V over the reference chords x_k is its stress by virtual work (V is the
+     particle's volume). Of a law of bonds in this form T_k is half of the bond's force, M_k all of
+     the moment.
+
+     Read are, of the particle, its displacement, velocity, old fields, parameters, volume, mass,
+     share, shape matrix and whether it is held; of its neighbours the same but the shape matrix,
+     old fields toward it only of laws that read them. With one pass that is all: a family of a
+     particle and its neighbours is complete by itself, and where the neighbours' sites are no part
+     of a run they need no bonds. With more passes the law reads what neighbours know of their own
+     families, which earlier passes leave in links: the passes go over these neighbours, too, as
+     those of `step` do.
+
+     No passes: the kernel was made without. */
+  pl_program force_state;
 } pl_law;
 
 /* The one symbol that a compiled kernel exports. */
