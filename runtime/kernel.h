@@ -177,7 +177,8 @@ typedef struct pl_family {
   long neighbours;       /* of a full family; even */
   /* doubles between planes of a field, or of what lists know of bonds */
   long plane;
-  long new_plane, link_plane; /* the same of new fields and what is observed; of links of bonds */
+  /* the same of new fields, force states and what is observed; of links of bonds */
+  long new_plane, link_plane;
   const long *offset, *link_offset; /* [neighbours] sites; of rows only */
   /* [count] bit k: the bond to neighbour k < neighbours/2 exists; that to its opposite is a bit
      there. */
@@ -350,25 +351,25 @@ typedef struct pl_law {
      what they take is not known. A body is run with one of the two. */
   pl_program ledger;
 
-  /* Of laws of families: the law alone, family by family: new fields, to what `step` finds, and
-     pl_family.force_state; nothing is added up or left to other ends. With T_k the plane toward
-     neighbour k and T_k' the neighbour's plane back, `step` gives
+  /* Of laws of families, where it was asked for (`perilat build law.plm` does): the law alone,
+     family by family, as `states` of laws of bonds. It gives the new fields of `step` (on lists to
+     the bit, on rows to rounding) and pl_family.force_state; nothing is added up or left to other
+     ends. With T_k, M_k the planes toward neighbour k, and T_k' the neighbour's plane back, those of
+     `step` are
 
          force on the particle = sum_k (T_k - T_k'),   moment on it = sum_k M_k
 
-     and sum_k T_k x_k / V over the reference chords x_k is its stress by virtual work (V is the
-     particle's volume). Of a law of bonds in this form T_k is half of the bond's force, M_k all of
-     the moment.
+     and sum_k T_k x_k / V over the reference chords x_k is the particle's stress (first
+     Piola-Kirchhoff; V is its volume). Of a law of bonds in this form T_k is half of the bond's
+     force, M_k all of its moment.
 
-     Read are, of the particle, its displacement, velocity, old fields, parameters, volume, mass,
-     share, shape matrix and whether it is held; of its neighbours the same but the shape matrix,
-     old fields toward it only of laws that read them. With one pass that is all: a family of a
-     particle and its neighbours is complete by itself, and where the neighbours' sites are no part
-     of a run they need no bonds. With more passes the law reads what neighbours know of their own
-     families, which earlier passes leave in links: the passes go over these neighbours, too, as
-     those of `step` do.
-
-     No passes: the kernel was made without. */
+     It reads, of the particle: displacements, velocities, old fields, parameters, volume, mass,
+     share, shape, held; of the neighbours the same but the shape, and of their old fields toward
+     neighbours, if there are such (PL_ON_NEIGHBOUR), those toward the particle, under the opposite
+     number. With one pass that is all: a particle with its neighbours is complete by itself, and
+     neighbours of which no pass is run need no bonds on lists, on rows the bits of those to the
+     particle. With more passes the law reads what neighbours find of their own families, which
+     earlier passes leave in links: these must have been run for the neighbours, too. */
   pl_program force_state;
 } pl_law;
 
