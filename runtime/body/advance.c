@@ -47,10 +47,11 @@ kick_components(const body *of, const body_block *b, int row, const double *cons
 
 int64_t advance_kick(const body *of, const body_block *b, int row,
                      const double *const force[PL_MAX_DOF]) {
+  const row_part whole = whole_row(of, row);
   int64_t bad = of->mobility[0] ? kick_components(of, b, row, force, true)
                                 : kick_components(of, b, row, force, false);
   for (int d = 0; d < of->dof; d++)
-    bad |= motion_push(of, whole_row(of, row), d, b->next + d * of->lattice->pitch);
+    bad |= motion_push(of, &whole, d, b->next + d * of->lattice->pitch);
   return bad;
 }
 
@@ -62,6 +63,7 @@ static double work_over(const body *of, int row, int component, const double *v)
 }
 
 void advance_row(body *of, body_block *b, int row, const double *const force[PL_MAX_DOF]) {
+  const row_part whole = whole_row(of, row);
   if (advance_kick(of, b, row, force)) {
     motion_note_bad(of, b, row, 0);
     return;
@@ -69,5 +71,5 @@ void advance_row(body *of, body_block *b, int row, const double *const force[PL_
   for (int d = 0; d < of->dof && of->works; d++)
     of->row_internal[row] += work_over(of, row, d, of->velocity[d] + body_start(of, row)) +
                              work_over(of, row, d, b->next + d * of->lattice->pitch);
-  motion_drift(of, b, whole_row(of, row));
+  motion_drift(of, b, &whole);
 }

@@ -19,20 +19,20 @@ static int64_t add_push(long count, double push, double limit, const double *res
   return bad;
 }
 
-int64_t motion_push(const body *w, row_part at, int component, double *next) {
+int64_t motion_push(const body *w, const row_part *at, int component, double *next) {
   if (!w->weight || component >= w->dimensions) return 0;
   const double push = w->time_step * motion_force_part(w) * w->gravity[component];
-  return add_push(at.end - at.first, push, w->limit[component],
-                  w->weight + body_start(w, at.row) + at.first, next + at.first);
+  return add_push(at->end - at->first, push, w->limit[component],
+                  w->weight + body_start(w, at->row) + at->first, next + at->first);
 }
 
 /* All components in one loop, with a literal number of them. */
-static inline __attribute__((always_inline)) void drift(const body *w, int dof, row_part at,
+static inline __attribute__((always_inline)) void drift(const body *w, int dof, const row_part *at,
                                                         const double *next) {
-  const long start = body_start(w, at.row), pitch = w->lattice->pitch;
+  const long start = body_start(w, at->row), pitch = w->lattice->pitch;
   const double step = w->time_step;
   INDEPENDENT
-  for (long q = at.first; q < at.end; q++)
+  for (long q = at->first; q < at->end; q++)
     for (int d = 0; d < dof; d++) {
       const double now = next[d * pitch + q];
       w->velocity[d][start + q] = now;
@@ -40,12 +40,12 @@ static inline __attribute__((always_inline)) void drift(const body *w, int dof, 
     }
 }
 
-static void turn_part(const body *w, row_part at, const double *next) {
-  const long start = body_start(w, at.row) + at.first, count = at.end - at.first;
+static void turn_part(const body *w, const row_part *at, const double *next) {
+  const long start = body_start(w, at->row) + at->first, count = at->end - at->first;
   const double *rate[3];
   double *turned[3];
   for (int k = 0; k < 3; k++) {
-    rate[k] = next + (3 + k) * w->lattice->pitch + at.first;
+    rate[k] = next + (3 + k) * w->lattice->pitch + at->first;
     turned[k] = w->displacement[3 + k] + start;
     memcpy(w->velocity[3 + k] + start, rate[k], (size_t)count * sizeof *rate[k]);
   }
@@ -78,9 +78,9 @@ void motion_change(body *w, int component, long site, double change) {
 }
 
 /* Of a part's particles, over the mean; NULL where all are alike. */
-static const double *relative_mass(const body *w, int component, row_part at) {
+static const double *relative_mass(const body *w, int component, const row_part *at) {
   const double *relative = w->relative_mass[body_turns(w, component)];
-  return relative ? relative + body_start(w, at.row) + at.first : NULL;
+  return relative ? relative + body_start(w, at->row) + at->first : NULL;
 }
 
 void motion_note_bad(const body *w, body_block *b, int row, long first) {
@@ -98,20 +98,20 @@ void motion_note_bad(const body *w, body_block *b, int row, long first) {
     }
 }
 
-static void keep_ledger(body *w, const body_block *b, row_part at) {
-  const long start = body_start(w, at.row) + at.first, count = at.end - at.first;
+static void keep_ledger(body *w, const body_block *b, const row_part *at) {
+  const long start = body_start(w, at->row) + at->first, count = at->end - at->first;
   for (int d = 0; d < w->dof; d++) {
-    const double *next = b->next + d * w->lattice->pitch + at.first, *m = relative_mass(w, d, at);
+    const double *next = b->next + d * w->lattice->pitch + at->first, *m = relative_mass(w, d, at);
     if (w->decay < 1 && w->ledger)
-      w->row_mass[at.row] +=
+      w->row_mass[at->row] +=
           0.5 * w->mass[d] * motion_drag(w) * lane_square(count, m, w->velocity[d] + start, next);
     if (w->weight && d < w->dimensions)
-      w->row_gravity[at.row] +=
+      w->row_gravity[at->row] +=
           w->gravity_work[d] * (m ? lane_dot(count, NULL, m, next) : lane_total(count, next));
   }
 }
 
-void motion_drift(body *w, body_block *b, row_part at) {
+void motion_drift(body *w, body_block *b, const row_part *at) {
   if ((w->decay < 1 && w->ledger) || w->weight) keep_ledger(w, b, at);
   if (w->dof == 2)
     drift(w, 2, at, b->next);
@@ -123,11 +123,12 @@ void motion_drift(body *w, body_block *b, row_part at) {
 void motion_observe(body *w, const body_block *b, int row) {
   const long start = body_start(w, row);
   const long count = w->count[row];
+  const row_part whole = whole_row(w, row);
   body_row *r = &w->observed[row];
   r->kinetic = r->free = r->mass = r->internal = r->state = r->rate = 0;
   for (int d = 0; d < w->dof; d++) {
     const double *v = w->velocity[d] + start, *next = b->next + d * w->lattice->pitch;
-    const double *m = relative_mass(w, d, whole_row(w, row));
+    const double *m = relative_mass(w, d, &whole);
     const double half = 0.5 * w->mass[d], square = lane_dot(count, m, v, v),
                  product = lane_dot(count, m, v, next);
     r->kinetic += half * product;

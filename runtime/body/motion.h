@@ -28,14 +28,14 @@ static inline row_part whole_row(const body *w, int row) {
 
 /* What gravity adds to the velocities after the kick, next[count of the row]; not 0 when one is not
    below its limit. */
-int64_t motion_push(const body *w, row_part at, int component, double *next);
+int64_t motion_push(const body *w, const row_part *at, int component, double *next);
 /* Notes the first bad velocity among the block's `next` from place `first` of a row on: from there
    on the row stays. */
 void motion_note_bad(const body *w, body_block *b, int row, long first);
 /* The velocities become the block's `next`, the displacements follow, the ledger of mass damping
    and gravity goes on. Rotations in space are rotation vectors, velocities rates of turning about
    x, y and z: a step turns the particle further, exp(dt w) after what it has turned. */
-void motion_drift(body *w, body_block *b, row_part at);
+void motion_drift(body *w, body_block *b, const row_part *at);
 /* A particle that has moved turns out to have another velocity after the step, by `change` (m/s,
    rad/s): its place follows. */
 void motion_change(body *w, int component, long site, double change);

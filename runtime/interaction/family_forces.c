@@ -193,7 +193,7 @@ static void run_part(family_forces *f, int pass, row_part at, const uint64_t *bo
   pl_family run;
   if (at.first >= at.end) return;
   family_run_begin(w, &w->law->step, 0, &run);
-  family_run_part(w, 0, at, &run);
+  family_run_part(w, 0, &at, &run);
   run.bonds = bonds + start;
   run.incoming = incoming ? incoming + start : NULL;
   run.new_field = planes_at(&f->field, start);

@@ -53,10 +53,10 @@ void family_run_begin(const sweep *w, const pl_program *program, int block, pl_f
                      .time_step = w->body->time_step};
 }
 
-void family_run_part(const sweep *w, int block, row_part at, pl_family *run) {
-  const long start = body_start(w->body, at.row) + at.first;
+void family_run_part(const sweep *w, int block, const row_part *at, pl_family *run) {
+  const long start = body_start(w->body, at->row) + at->first;
   point_at_fields(w, &family_of(w)->blocks[block], start);
-  run->count = at.end - at.first;
+  run->count = at->end - at->first;
   run->rows = 1;
   run->new_plane = w->lattice->size;
   run->bonds = w->lattice->bonds + start;
@@ -69,7 +69,7 @@ void family_run_part(const sweep *w, int block, row_part at, pl_family *run) {
     run->lost[PL_LOST_TO_STATES] = (aside ? w->lost_state : w->dissipated_state) + start;
     run->lost[PL_LOST_TO_RATES] = (aside ? w->lost_rate : w->dissipated_rate) + start;
   }
-  point_at_neighbours(w->lattice, at.row, start, run);
+  point_at_neighbours(w->lattice, at->row, start, run);
   for (int d = 0; d < w->body->dof; d++) {
     run->displacement[d] = w->body->displacement[d] + start;
     run->velocity[d] = w->body->velocity[d] + start;
@@ -77,7 +77,8 @@ void family_run_part(const sweep *w, int block, row_part at, pl_family *run) {
 }
 
 void family_run_row(const sweep *w, int block, int row, pl_family *run) {
-  family_run_part(w, block, whole_row(w->body, row), run);
+  const row_part whole = whole_row(w->body, row);
+  family_run_part(w, block, &whole, run);
 }
 
 static void point_at_links(const sweep *w, int block, int row) {

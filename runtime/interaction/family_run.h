@@ -52,7 +52,7 @@ static inline family *family_of(const sweep *w) {
    than a fresh pl_family would. */
 void family_run_begin(const sweep *w, const pl_program *program, int block, pl_family *run);
 void family_run_row(const sweep *w, int block, int row, pl_family *run);
-void family_run_part(const sweep *w, int block, row_part at, pl_family *run);
+void family_run_part(const sweep *w, int block, const row_part *at, pl_family *run);
 
 /* The latter, and links of the whole body. */
 void family_run_row_with_links(const sweep *w, int block, int row, pl_family *run);

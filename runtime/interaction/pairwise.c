@@ -304,9 +304,9 @@ static void move_part(body *w, body_block *b, moved_row *m, row_part at) {
   const double begun = w->timed ? monotonic_seconds() : 0;
   int64_t bad = kick_part(w, &m->from, at, b->next);
   for (int d = 0; d < w->dimensions && w->weight; d++)
-    bad |= motion_push(w, at, d, b->next + d * w->lattice->pitch);
+    bad |= motion_push(w, &at, d, b->next + d * w->lattice->pitch);
   if (!bad && m->moved == at.first) {
-    motion_drift(w, b, at);
+    motion_drift(w, b, &at);
     m->moved = at.end;
   }
   if (w->timed) b->moving += monotonic_seconds() - begun;
@@ -434,10 +434,11 @@ static void observe_row(sweep *w, int block, int row, const row_forces *here,
                         const row_forces *below) {
   body_block *b = &w->body->blocks[block];
   const long start = body_start(w->body, row), count = w->body->count[row];
+  const row_part whole = whole_row(w->body, row);
   const gathered from = gather(w, row, here, below);
-  kick_part(w->body, &from, whole_row(w->body, row), b->next);
+  kick_part(w->body, &from, whole, b->next);
   for (int d = 0; d < w->body->dof; d++) {
-    motion_push(w->body, whole_row(w->body, row), d, b->next + d * w->body->lattice->pitch);
+    motion_push(w->body, &whole, d, b->next + d * w->body->lattice->pitch);
     for (long q = 0; q < count; q++)
       w->body->force[d][start + q] = d < 2 ? bond_sum(&from, d, q) : -bond_sum(&from, 2, q);
   }

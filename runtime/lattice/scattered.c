@@ -68,8 +68,23 @@ static double radius_of(int dimensions, double measure) {
   return dimensions == 2 ? sqrt(measure / M_PI) : pl_cbrt(0.75 * measure / M_PI);
 }
 
+static double longest_given(const scattered *from) {
+  double longest = 0;
+  for (long k = 0; k < from->bond_count; k++) {
+    double square = 0;
+    for (int a = 0; a < from->points.dimensions; a++) {
+      const double *at = from->points.at[a];
+      const double way = at[from->bonds[k].j] - at[from->bonds[k].i];
+      square += way * way;
+    }
+    longest = pl_fmax(longest, sqrt(square));
+  }
+  return longest;
+}
+
 static double horizon_of(const builder *b) {
   if (b->from->horizon > 0) return b->from->horizon;
+  if (b->from->bonds) return longest_given(b->from);
   return radius_of(b->points.dimensions, (b->from->neighbours + 1) * mean_measure(b));
 }
 
@@ -91,7 +106,7 @@ static bool allocate(rows *w) {
 /* Without bonds there still is one number, so that no array is empty. */
 static bool new_rows(builder *b, int numbers) {
   const scattered *from = b->from;
-  const bool plane = from->points.dimensions == 2;
+  const bool plane = from->points.dimensions == 2 && from->area == 0;
   const double measure = mean_measure(b);
   const long row_count = (from->points.count + ROW_SITES - 1) / ROW_SITES;
   rows *w = b->rows = must_calloc(1, sizeof *w);
@@ -107,6 +122,7 @@ static bool new_rows(builder *b, int numbers) {
               .volume = measure * (plane ? from->mass_thickness : 1),
               .site_area = plane ? measure : 0,
               .stiffness_thickness = plane ? from->stiffness_thickness : 0,
+              .area = from->area,
               .particle_count = from->points.count};
   for (int k = 0; k < w->directions; k++) { /* what laws are told of all bonds together */
     w->chord[k][0] = w->length[k] = from->spacing;
@@ -117,7 +133,7 @@ static bool new_rows(builder *b, int numbers) {
 
 static void place_particles(builder *b) {
   rows *w = b->rows;
-  const double thickness = w->dimensions == 2 ? b->from->mass_thickness : 1;
+  const double thickness = w->site_area > 0 ? b->from->mass_thickness : 1;
   double *const at[3] = {w->x, w->y, w->z};
   w->particle_site = must_alloc(((size_t)w->particle_count + 1) * sizeof *w->particle_site);
   for (long q = 0; q < w->size; q++) {
@@ -176,12 +192,41 @@ static void join_neighbours(rows *w, const numbered_bond *bonds, long count) {
   w->bond_count = count;
 }
 
+static int by_rank(const void *a, const void *b) {
+  const point_pair *p = a, *q = b;
+  if (p->i != q->i) return p->i < q->i ? -1 : 1;
+  return p->j < q->j ? -1 : p->j > q->j;
+}
+
+/* Those given, of ranks along the curve and in their order: nothing depends on numbers. */
+static point_pairs given_pairs(const builder *b) {
+  const scattered *from = b->from;
+  point_pairs pairs = {.count = from->bond_count, .crowded = -1};
+  int32_t *rank = must_alloc(((size_t)from->points.count + 1) * sizeof *rank);
+  pairs.items = must_alloc(((size_t)pairs.count + 1) * sizeof *pairs.items);
+  for (long r = 0; r < from->points.count; r++)
+    rank[b->order[r]] = (int32_t)r;
+  for (long k = 0; k < pairs.count; k++) {
+    const int32_t i = rank[from->bonds[k].i], j = rank[from->bonds[k].j];
+    pairs.items[k] = (point_pair){i < j ? i : j, i < j ? j : i};
+  }
+  qsort(pairs.items, (size_t)pairs.count, sizeof *pairs.items, by_rank);
+  free(rank);
+  return pairs;
+}
+
+static point_pairs find_pairs(const builder *b) {
+  const scattered *from = b->from;
+  if (from->bonds) return given_pairs(b);
+  return from->horizon > 0 ? pairs_within(&b->points, from->horizon, ROWS_MAX_NEIGHBOURS)
+                           : pairs_of_nearest(&b->points, from->neighbours, ROWS_MAX_NEIGHBOURS);
+}
+
 rows *scattered_rows(const scattered *from, long *crowded) {
   builder b = {.from = from};
   *crowded = -1;
   order_points(&b);
-  b.pairs = from->horizon > 0 ? pairs_within(&b.points, from->horizon, ROWS_MAX_NEIGHBOURS)
-                              : pairs_of_nearest(&b.points, from->neighbours, ROWS_MAX_NEIGHBOURS);
+  b.pairs = find_pairs(&b);
   if (b.pairs.crowded >= 0) {
     *crowded = b.order[b.pairs.crowded];
     free_builder(&b);

@@ -13,11 +13,17 @@
 
 typedef struct scattered {
   point_cloud points;
-  const double *measure; /* [points.count] m^2 of the plane, m^3 of space */
+  const double *measure; /* [points.count] m^2 of the plane, m^3 of space and of bars */
   double spacing;        /* m, nominal: scales tolerances and limits, and is told to laws */
   double horizon; /* m: bonds join particles at most this far apart; 0: `neighbours` decides */
   int neighbours; /* a bond: either particle is among so many nearest ones of the other */
+  /* [bond_count] instead of both: these bonds, each once, between particles at different places; no
+     particle has more than ROWS_MAX_NEIGHBOURS */
+  const point_pair *bonds;
+  long bond_count;
   double stiffness_thickness, mass_thickness; /* m; in the plane */
+  double
+      area; /* m^2: of bars, whose particles have volumes as `measure` and no thickness; else 0 */
 } scattered;
 
 /* With `neighbours` the rows' horizon is the radius of a disc or sphere of one particle more than

@@ -144,8 +144,9 @@ static double velocity_at(const loads *l, const body *w, const constraint *c, lo
 
 /* The step is the drive's last: it ends within half a step of its instant, or earlier. */
 static bool lets_go(const loads *l, const body *w, const constraint *c, long step) {
+  if (c->drive < 0 || l->clock.ramp > 0) return false; /* supports do not */
   const double last = load_clock_time(&l->clock, w, step) + 0.5 * w->time_step;
-  return l->clock.ramp == 0 && last >= end_of(l, c) - hardly(w);
+  return last >= end_of(l, c) - hardly(w);
 }
 
 /* Velocity after that step: the drive's last one, and from its end on what the particle gains by
@@ -347,7 +348,7 @@ static bool has_moved(const load_run *r, int64_t site) {
 static void correct_free_way(const body *w, int component, int64_t site, double before,
                              double after, double change, load_sums *sums) {
   const double mass = body_mass(w, component, site);
-  if (component < w->dimensions)
+  if (w->weight && component < w->dimensions)
     sums->work += w->gravity_work[component] * (mass / w->mass[component]) * change;
   sums->dissipated += 0.5 * mass * motion_drag(w) * change * (2 * (before + after) + change);
   if (w->works) sums->internal -= 0.5 * w->time_step * w->force[component][site] * change;
@@ -370,36 +371,47 @@ static void apply_forces(const load_run *r) {
   }
 }
 
-/* Values of the deck's functions after the step: few of them serve many particles. */
-typedef struct remembered {
-  int32_t index[8]; /* of a function, + 1; 0: none */
-  double value[8];
-} remembered;
+/* What a drive or a force does in the step: few of them serve many particles. */
+typedef struct cause_step {
+  int32_t next;         /* index of the cause, + 1; 0: none */
+  bool varies;          /* from particle to particle */
+  bool lets_go, summed; /* of drives */
+  double value;         /* after the step, unless it varies */
+} cause_step;
 
-/* True: *value is that of the function; else it is to be set now. */
-static bool is_remembered(remembered *m, int32_t index, double **value) {
-  const int slot = index % 8;
-  *value = &m->value[slot];
-  if (m->index[slot] == index + 1) return true;
-  m->index[slot] = index + 1;
-  return false;
+enum { REMEMBERED = 8 };
+
+static cause_step step_of_drive(const load_run *r, const constraint *c) {
+  return (cause_step){.next = c->drive + 1,
+                      .varies = time_function_varies(&drive_of(r->l, c)->motion),
+                      .lets_go = lets_go(r->l, r->w, c, r->step),
+                      .summed = r->l->clock.ramp == 0 && is_summed(r->l, c),
+                      .value = motion_at(r->l, r->w, c, r->step + 1)};
 }
 
-static double motion_after(const load_run *r, const constraint *c, remembered *m) {
-  double *motion;
-  if (c->drive < 0) return 0;
-  if (time_function_varies(&drive_of(r->l, c)->motion))
-    return motion_at(r->l, r->w, c, r->step + 1);
-  if (!is_remembered(m, c->drive, &motion)) *motion = motion_at(r->l, r->w, c, r->step + 1);
-  return *motion;
+static cause_step step_of_force(const load_run *r, const applied *f) {
+  return (cause_step){.next = f->cause + 1,
+                      .varies = time_function_varies(cause_of(r->l, f->cause)),
+                      .value = factor_at(r->l, r->w, f, r->step + 1)};
 }
 
-static double force_after(const load_run *r, const applied *f, remembered *m) {
-  double *factor;
-  if (time_function_varies(cause_of(r->l, f->cause)))
-    return f->share * factor_at(r->l, r->w, f, r->step + 1);
-  if (!is_remembered(m, f->cause, &factor)) *factor = factor_at(r->l, r->w, f, r->step + 1);
-  return f->share * *factor;
+/* Of what holds a particle; a support does nothing. */
+static const cause_step *drive_step(const load_run *r, const constraint *c, cause_step *known) {
+  static const cause_step support = {0};
+  if (c->drive < 0) return &support;
+  cause_step *drive = &known[c->drive % REMEMBERED];
+  if (drive->next != c->drive + 1) *drive = step_of_drive(r, c);
+  return drive;
+}
+
+static double motion_after(const load_run *r, const constraint *c, const cause_step *drive) {
+  return drive->varies ? motion_at(r->l, r->w, c, r->step + 1) : drive->value;
+}
+
+static double force_after(const load_run *r, const applied *f, cause_step *known) {
+  cause_step *force = &known[f->cause % REMEMBERED];
+  if (force->next != f->cause + 1) *force = step_of_force(r, f);
+  return f->share * (force->varies ? factor_at(r->l, r->w, f, r->step + 1) : force->value);
 }
 
 /* Force that gives a particle one velocity instead of another after a step. */
@@ -409,8 +421,8 @@ static double force_for(const body *w, int component, int64_t site, double chang
 
 /* Gives a particle the velocity `prescribed` instead of the one it would have. What this takes
    works with the mean of the velocities before and after. */
-static double push(body *w, int component, int64_t site, double before, double prescribed,
-                   load_sums *sums) {
+static inline double push(body *w, int component, int64_t site, double before, double prescribed,
+                          load_sums *sums) {
   double *v = &w->velocity[component][site];
   const double force = force_for(w, component, site, prescribed - *v);
   correct_free_way(w, component, site, before, *v, prescribed - *v, sums);
@@ -419,12 +431,13 @@ static double push(body *w, int component, int64_t site, double before, double p
   return force;
 }
 
-/* Moves the particle to `target` instead of where it would go. */
-static double pull(body *w, constraint *c, double target) {
+/* Moves the particle to `target` instead of where it would go; `leaves`: and lets it go there. */
+static inline double pull(body *w, constraint *c, double target, bool leaves) {
+  double *at = &w->displacement[c->component][c->site];
   const double free = w->velocity[c->component][c->site];
   const double prescribed = (target - c->held) / w->time_step;
   const double force = push(w, c->component, c->site, c->velocity, prescribed, &c->sums);
-  w->displacement[c->component][c->site] += w->time_step * (prescribed - free);
+  *at = leaves ? *at + w->time_step * (prescribed - free) : target;
   c->held = target;
   return force;
 }
@@ -457,7 +470,8 @@ static double impulsive(const body *w, const constraint *c) {
 }
 
 /* A motion that begins between the ends of the step: until then the particle was free. */
-static bool begins_on_the_way(const load_run *r, constraint *c, remembered *after, double *target) {
+static bool begins_on_the_way(const load_run *r, constraint *c, const cause_step *drive,
+                              double *target) {
   body *w = r->w;
   if (has_ended(r->l, w, c, r->step)) return false;
   const double rest = load_clock_time(&r->l->clock, w, r->step + 1) - start_of(r->l, c);
@@ -467,79 +481,85 @@ static bool begins_on_the_way(const load_run *r, constraint *c, remembered *afte
   c->active = 1;
   c->anchor = here - rest * v;
   c->held = here - w->time_step * v;
-  *target = c->anchor + motion_after(r, c, after);
+  *target = c->anchor + motion_after(r, c, drive);
   return true;
 }
 
 /* Where the motion takes the particle in the step; false: it is free. Of the step that it lets go
    in, the part that the drive still covers decides. */
-static bool aims(const load_run *r, constraint *c, remembered *after, double *target) {
+static inline bool aims(const load_run *r, constraint *c, const cause_step *drive, double *target) {
   body *w = r->w;
-  if (!c->active) return begins_on_the_way(r, c, after, target);
-  if (lets_go(r->l, w, c, r->step)) {
+  if (!c->active) return begins_on_the_way(r, c, drive, target);
+  if (drive->lets_go) {
     const double free = w->velocity[c->component][c->site];
     *target = c->held + w->time_step * velocity_let_go(r->l, w, c, r->step, free);
   } else {
-    *target = c->anchor + motion_after(r, c, after);
+    *target = c->anchor + motion_after(r, c, drive);
   }
   return true;
 }
 
 /* After the step, in which `force` was needed; `held`: from its beginning. */
-static void settle(const load_run *r, constraint *c, bool held, double force) {
+static inline void settle(const load_run *r, constraint *c, const cause_step *drive, bool held,
+                          double force) {
   body *w = r->w;
   c->reaction = held ? force - impulsive(w, c) : 0;
-  if (held && lets_go(r->l, w, c, r->step)) c->active = 0;
+  if (held && drive->lets_go) c->active = 0;
   c->velocity = w->velocity[c->component][c->site];
-  if (is_summed(r->l, c) && r->l->clock.ramp == 0) c->anchor = c->held;
+  if (drive->summed) c->anchor = c->held;
   c->impulse = c->active && !held ? impulse_of(r->l, w, c, r->step + 1) : 0;
 }
 
-static void apply_motion(const load_run *r, constraint *c, remembered *after) {
+static void apply_motion(const load_run *r, constraint *c, cause_step *known) {
+  const cause_step *drive = drive_step(r, c, known);
   const bool held = c->active;
   double target, force = 0;
-  if (aims(r, c, after, &target)) force = pull(r->w, c, target);
-  settle(r, c, held, force);
-  if (c->active) r->w->displacement[c->component][c->site] = c->held;
+  if (aims(r, c, drive, &target)) force = pull(r->w, c, target, held && drive->lets_go);
+  settle(r, c, drive, held, force);
 }
 
-static void apply_turn(const load_run *r, const held_turn *t, remembered *after) {
+static void apply_turn(const load_run *r, const held_turn *t, cause_step *known) {
   double target[3] = {0, 0, 0}, moment[3] = {0, 0, 0};
   int held = 0, before = 0;
   for (int k = 0; k < t->count; k++) {
-    const int axis = axis_of(r->w, &t->first[k]);
-    if (t->first[k].active) before |= 1 << axis;
-    if (aims(r, &t->first[k], after, &target[axis])) held |= 1 << axis;
+    constraint *c = &t->first[k];
+    const int axis = axis_of(r->w, c);
+    if (c->active) before |= 1 << axis;
+    if (aims(r, c, drive_step(r, c, known), &target[axis])) held |= 1 << axis;
   }
   if (held) pull_turn(r->w, t, held, before, target, moment);
   for (int k = 0; k < t->count; k++) {
-    const int axis = axis_of(r->w, &t->first[k]);
-    if (held >> axis & 1) t->first[k].held = target[axis];
-    settle(r, &t->first[k], before >> axis & 1, moment[axis]);
+    constraint *c = &t->first[k];
+    const int axis = axis_of(r->w, c);
+    if (held >> axis & 1) c->held = target[axis];
+    settle(r, c, drive_step(r, c, known), before >> axis & 1, moment[axis]);
   }
   keep_turning(r->w, t);
 }
 
 static void apply_motions(const load_run *r) {
-  remembered after = {{0}, {0}};
+  cause_step known[REMEMBERED] = {{0}};
   for (long i = r->first_constraint; i < r->last_constraint; i++) {
+    constraint *c = &r->l->constraints[i];
     const held_turn turn = turn_at(r->l, r->w, i);
-    if (has_moved(r, r->l->constraints[i].site)) {
+    if (has_moved(r, c->site)) {
       if (turn.count)
-        apply_turn(r, &turn, &after);
+        apply_turn(r, &turn, known);
       else
-        apply_motion(r, &r->l->constraints[i], &after);
+        apply_motion(r, c, known);
     }
+    for (const constraint *last = c + (turn.count ? turn.count : 1); c < last; c++)
+      take_up(r->l, r->w, c, r->step + 1);
     if (turn.count) i += turn.count - 1;
   }
 }
 
 /* A force works with the mean of its values at both ends of the way. */
 static void next_forces(const load_run *r) {
-  remembered after = {{0}, {0}};
+  cause_step known[REMEMBERED] = {{0}};
   for (long i = r->first_force; i < r->last_force; i++) {
     applied *f = &r->l->forces[i];
-    const double next = force_after(r, f, &after);
+    const double next = force_after(r, f, known);
     f->velocity = r->w->velocity[f->component][f->site];
     f->sums.work += 0.5 * r->w->time_step * (f->now + next) * f->velocity;
     f->now = next;
@@ -551,8 +571,6 @@ void load_steps_apply(loads *l, body *w, int block, long step) {
   apply_forces(&r);
   apply_motions(&r);
   next_forces(&r);
-  for (long i = r.first_constraint; i < r.last_constraint; i++)
-    take_up(l, w, &l->constraints[i], step + 1);
 }
 
 void load_steps_turn(const loads *l, body *w, long step) {

@@ -85,9 +85,10 @@ static void a_row_drifts_by_its_new_velocities(void **state) {
   body_add_gravity(w);
   w->gravity[1] = -9.81;
   set_motion(w, ROW, next);
+  const row_part whole = whole_row(w, ROW);
   for (int d = 0; d < DOF; d++)
-    assert_true(!motion_push(w, whole_row(w, ROW), d, next + d * g->pitch));
-  motion_drift(w, &w->blocks[0], whole_row(w, ROW));
+    assert_true(!motion_push(w, &whole, d, next + d * g->pitch));
+  motion_drift(w, &w->blocks[0], &whole);
   const long start = body_start(w, ROW);
   for (int d = 0; d < DOF; d++)
     for (long q = 0; q < w->count[ROW]; q++) {
@@ -222,7 +223,8 @@ static void rotations_follow_each_other(void **state) {
         sum[k] = starts[n][k] + turns[m][k];
         size = fmax(size, fabs(sum[k]));
       }
-      motion_drift(w, &w->blocks[0], whole_row(w, ROW));
+      const row_part row = whole_row(w, ROW);
+      motion_drift(w, &w->blocks[0], &row);
       for (int k = 0; k < 3; k++) {
         assert_true(w->velocity[3 + k][q] == turns[m][k] / step);
         now[k] = w->displacement[3 + k][q];

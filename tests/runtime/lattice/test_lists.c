@@ -10,10 +10,10 @@
 #include <stdio.h>
 
 #include "runtime/analysis/stability.h"
-#include "runtime/deck/deck_read.h"
-#include "runtime/interaction/sweep.h"
 #include "runtime/deck/deck.h"
+#include "runtime/deck/deck_read.h"
 #include "runtime/interaction/interaction.h"
+#include "runtime/interaction/sweep.h"
 #include "runtime/lattice/lattice.h"
 #include "runtime/lattice/rows_select.h"
 #include "runtime/lattice/scattered.h"
@@ -251,6 +251,56 @@ static void crowds_and_loners(void **state) {
   check_list(g);
   assert_int_equal(g->bond_count, 0);
   rows_free(g);
+  points_free(&p);
+}
+
+static bool joins(const rows_bond *b, int32_t i, int32_t j) {
+  return (b->i == i && b->j == j) || (b->i == j && b->j == i);
+}
+
+/* In any order, from either end. Of a bar, volumes are as given. */
+static void bonds_may_be_given(void **state) {
+  (void)state;
+  test_points p = points_drawn(2, 60, (const double[3]){1, 1, 1}, 5);
+  double measure[60];
+  point_pair pairs[60 * 59 / 2];
+  for (long k = 0; k < 60; k++)
+    measure[k] = 1 + 0.01 * (double)k;
+  long crowded, count = 0;
+  scattered from = {.points = p.cloud,
+                    .measure = measure,
+                    .spacing = 1,
+                    .horizon = 0.25,
+                    .stiffness_thickness = 2,
+                    .mass_thickness = 3};
+  rows *found = scattered_rows(&from, &crowded);
+  rows_bond *bonds = rows_bonds(found);
+  for (long k = found->bond_count - 1; k >= 0; k--)
+    pairs[count++] = (point_pair){bonds[k].j, bonds[k].i};
+  from.horizon = 0;
+  from.bonds = pairs;
+  from.bond_count = count;
+  rows *given = scattered_rows(&from, &crowded);
+  check_list(given);
+  assert_int_equal(given->bond_count, found->bond_count);
+  rows_bond *same = rows_bonds(given);
+  for (long k = 0; k < found->bond_count; k++) {
+    long n = 0;
+    while (n < count && !joins(&same[n], bonds[k].i, bonds[k].j))
+      n++;
+    assert_true(n < count);
+    assert_true(given->list->length[same[n].slot] == found->list->length[bonds[k].slot]);
+  }
+  free(same);
+  assert_true(given->horizon <= found->horizon && given->horizon > 0.2);
+  rows_free(given);
+  from.area = 4;
+  given = scattered_rows(&from, &crowded);
+  assert_true(given->area == 4 && given->site_area == 0 && given->stiffness_thickness == 0);
+  assert_true(given->site_volume[given->particle_site[7]] == measure[7]);
+  rows_free(given);
+  rows_free(found);
+  free(bonds);
   points_free(&p);
 }
 
@@ -568,6 +618,7 @@ int main(void) {
       cmocka_unit_test(lists_keep_their_promises),
       cmocka_unit_test(horizon_holds_the_neighbours),
       cmocka_unit_test(crowds_and_loners),
+      cmocka_unit_test(bonds_may_be_given),
       cmocka_unit_test(slits_cut),
       cmocka_unit_test(protection_reaches_as_far),
       cmocka_unit_test(a_lattice_as_a_list),
