@@ -258,6 +258,7 @@ static double gap_of(const body *b, int d) {
       sum += own - other;
       size += fabs(own) + fabs(other);
     }
+    assert_true(isfinite(sum) && isfinite(b->force[d][q]));
     worst = fmax(worst, fabs(b->force[d][q] - sum));
     largest = fmax(largest, size);
   }
@@ -358,7 +359,8 @@ static void assert_same_alone(const body *b) {
 
 static int tried[FORM_PAIRS + 1], lists;
 
-static void check_planned(model *m, int neighbours) {
+/* Returns how many passes the law alone has. */
+static int check_planned(model *m, int neighbours) {
   char error[2000];
   const char *note;
   body b;
@@ -378,16 +380,18 @@ static void check_planned(model *m, int neighbours) {
   }
   tried[m->plan->form]++;
   lists += kernel->topology == PL_LIST;
+  return kernel->force_state.pass_count;
 }
 
-static void check_in(const char *path, const law_choice *choice, law_setting setting,
-                     bool irregular, int planned, int neighbours) {
+static int check_in(const char *path, const law_choice *choice, law_setting setting, bool irregular,
+                    int planned, int neighbours) {
   model m;
   assert_true(model_open(&m, path, choice, choice != NULL));
   m.law = law_on_lattice(m.law, setting, irregular, planned);
   assert_true(model_plan_of_families(&m, &(law_variation){.alone = true}));
-  check_planned(&m, neighbours);
+  const int passes = check_planned(&m, neighbours);
   model_close(&m);
+  return passes;
 }
 
 static int in_setting(const char *path, const law_choice *choice, law_setting setting) {
@@ -408,25 +412,58 @@ static void both_sides_say_what_a_step_finds(void **state) {
   assert_true(tried[FORM_LOOPS] && tried[FORM_UNROLLED] && tried[FORM_PAIRS] && lists);
 }
 
+/* Also of those whose steps leave rotations of the ends to their neighbours. */
 static void laws_of_bonds_in_this_form_say_half(void **state) {
   (void)state;
-  static const char *const plane[] = {"cohesive", "elastic_central", "mplm_bilinear",
-                                      "mplm_linear"};
-  for (size_t k = 0; k < sizeof plane / sizeof *plane; k++) {
+  static const struct {
+    const char *law;
+    law_setting setting;
+  } of[] = {{"models/cohesive", SETTING_PLANE_STRESS},
+            {"models/elastic_central", SETTING_PLANE_STRESS},
+            {"models/mplm_bilinear", SETTING_PLANE_STRESS},
+            {"models/mplm_linear", SETTING_PLANE_STRESS},
+            {"models/mplm_space", SETTING_SPACE},
+            {"tests/generator/laws/frame", SETTING_SPACE}};
+  for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
     char path[4096];
-    snprintf(path, sizeof path, SOURCE_DIR "/models/%s.plm", plane[k]);
-    check_in(path, NULL, SETTING_PLANE_STRESS, false, 0, 8);
-    check_in(path, NULL, SETTING_PLANE_STRESS, false, 28, 28);
-    check_in(path, NULL, SETTING_PLANE_STRESS, true, 0, 20);
+    snprintf(path, sizeof path, SOURCE_DIR "/%s.plm", of[k].law);
+    assert_int_equal(check_in(path, NULL, of[k].setting, false, 0, 8), 1);
+    assert_int_equal(check_in(path, NULL, of[k].setting, false, 18, 18), 1);
+    assert_int_equal(check_in(path, NULL, of[k].setting, true, 0, 20), 1);
   }
-  check_in(SOURCE_DIR "/models/mplm_space.plm", NULL, SETTING_SPACE, false, 18, 18);
-  check_in(SOURCE_DIR "/models/mplm_space.plm", NULL, SETTING_SPACE, true, 0, 20);
-  check_in(SOURCE_DIR "/tests/generator/laws/frame.plm", NULL, SETTING_SPACE, false, 6, 6);
-  check_in(SOURCE_DIR "/tests/generator/laws/frame.plm", NULL, SETTING_SPACE, true, 0, 20);
+}
+
+/* One pass, unless the law asks what neighbours find of their own families. */
+static void few_laws_ask_neighbours_for_their_families(void **state) {
+  (void)state;
+  const law_choice objective = {"profile", "objective"};
+  const char *concrete = SOURCE_DIR "/models/splm_concrete.plm";
+  static const char *const one[] = {"lps", "pmb", "splm_elastic", "splm_concrete"};
+  for (size_t k = 0; k < sizeof one / sizeof *one; k++) {
+    char path[4096];
+    snprintf(path, sizeof path, SOURCE_DIR "/models/%s.plm", one[k]);
+    assert_int_equal(check_in(path, NULL, SETTING_PLANE_STRESS, true, 0, 20), 1);
+  }
+  assert_int_equal(check_in(SOURCE_DIR "/models/eps.plm", NULL, SETTING_SPACE, true, 0, 20), 1);
+  assert_int_equal(check_in(concrete, &objective, SETTING_PLANE_STRESS, true, 0, 20), 2);
+}
+
+/* Kernels of decks are made without. */
+static void only_hosts_are_given_it(void **state) {
+  (void)state;
+  model m;
+  char error[2000];
+  const char *note;
+  assert_true(model_open(&m, SOURCE_DIR "/models/lps.plm", NULL, 0) && model_plan(&m));
+  assert_int_equal(model_kernel(&m, true, &note, error, sizeof error)->force_state.pass_count, 0);
+  assert_null(strstr(model_c_text(&m), "force_state_0"));
+  model_close(&m);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(both_sides_say_what_a_step_finds),
-                                     cmocka_unit_test(laws_of_bonds_in_this_form_say_half)};
+                                     cmocka_unit_test(laws_of_bonds_in_this_form_say_half),
+                                     cmocka_unit_test(few_laws_ask_neighbours_for_their_families),
+                                     cmocka_unit_test(only_hosts_are_given_it)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
