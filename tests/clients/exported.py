@@ -1,9 +1,15 @@
 """What `perilat export` says of the frames of the specimens: the numbers that other programs must show."""
 import csv
+import math
 
-SPECIMENS = ("plane", "space", "irregular")
+SPECIMENS = ("plane", "space", "irregular", "bars")
 FRAMES = 4
 END = 0.3e-3  # s, and not a step more than a hundredth of it
+
+
+def comparable(values):
+    """What has no number (bonds of a bar have no damage) is None, which is equal to itself."""
+    return [None if math.isnan(value) else value for value in values]
 
 
 class Columns:
@@ -30,4 +36,5 @@ class Frame:
         self.displacement = particles.vectors("displacement_x", "displacement_y", "displacement_z")
         self.damage = particles.columns["damage"]
         self.ends = [(int(i), int(j)) for i, j in zip(bonds.columns["i"], bonds.columns["j"])]
-        (self.omega,) = (column for name, column in bonds.columns.items() if name.endswith("/omega"))
+        (omega,) = (column for name, column in bonds.columns.items() if name.endswith("/omega"))
+        self.omega = comparable(omega)
