@@ -100,7 +100,8 @@
     "a band between two columns of the --data before it, or two values, e.g. '4 kN,5 kN'")         \
   X(plot, "--line", "VALUE",                                                                       \
     "a line at a value, e.g. '58.88 kN' or 'f_t A = 58.88 kN'; may be given several times")        \
-  X(plot, "--map", "FIELD", "a map of this field of particles or bonds instead of curves")         \
+  X(plot, "--map", "FIELD",                                                                        \
+    "a map of this field of particles or bonds instead of curves, or of two damages, A,B")         \
   X(plot, "--frame", "N", "frame of the map, from 0; -1 is the last (default)")                    \
   X(plot, "--frames", "LIST",                                                                      \
     "several frames in one picture: 0,5,-1, or those nearest to values: cmod=0.1mm,0.2mm")         \

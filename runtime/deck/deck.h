@@ -244,6 +244,7 @@ typedef enum monitor_kind {
   MONITOR_TIP_SPEED,        /* m/s: of that */
   MONITOR_STRESS,           /* Pa */
   MONITOR_STRAIN,           /* 1 */
+  MONITOR_APPLIED,          /* N, N m */
   MONITOR_REACTIONS         /* N, `between`: half of the second's reaction less the first's */
 } monitor_kind;
 

@@ -22,7 +22,7 @@ static const deck_key_info monitor_keys[] = {
      .type = DECK_CHOICE,
      .choices = "reaction|displacement|velocity|opening|damaged|broken|field|acceleration|"
                 "momentum|angular_momentum|energy|force|moment|tip|tip_speed|stress|"
-                "strain",
+                "strain|applied",
      .required = true,
      DECK_AT(monitor, kind),
      .doc = "decides which of the next ten keys are needed"},
@@ -31,8 +31,9 @@ static const deck_key_info monitor_keys[] = {
      DECK_AT(monitor, region),
      .doc =
          "reaction: force that its supports and drives exert on the body, of a rotation the sum of "
-         "the couples on its particles, without the moments r x F of forces; displacement, "
-         "velocity, acceleration, field, stress, strain: mean; momentum, angular_momentum, "
+         "the couples on its particles, without the moments r x F of forces; applied: sum of what "
+         "`&force` and `&end_moment` exert on its particles; displacement, velocity, "
+         "acceleration, field, stress, strain: mean; momentum, angular_momentum, "
          "energy: of its particles, without it of all; force, moment: only bonds between its "
          "particles; "
          "tip, tip_speed: only bonds of its particles"},
@@ -54,7 +55,8 @@ static const deck_key_info monitor_keys[] = {
      .type = DECK_CHOICE,
      .choices = COMPONENTS,
      DECK_AT(monitor, component),
-     .doc = "reaction, displacement, velocity, opening, acceleration, momentum: direction; force: "
+     .doc = "reaction, applied, displacement, velocity, opening, acceleration, momentum: "
+            "direction; force: "
             "direction, without it along the normal; moment, angular_momentum: axis, in the plane "
             "`z`, which need not be said; moment in space without it about the normal; energy: "
             "`kinetic` or `stored`; stress, strain: `xx`, `yy`, "
@@ -123,7 +125,8 @@ static const deck_key_info monitor_keys[] = {
 };
 
 enum {
-  OF_MOTION = 1 << MONITOR_REACTION | 1 << MONITOR_DISPLACEMENT | 1 << MONITOR_VELOCITY,
+  OF_MOTION = 1 << MONITOR_REACTION | 1 << MONITOR_APPLIED | 1 << MONITOR_DISPLACEMENT |
+              1 << MONITOR_VELOCITY,
   OF_FIELD = 1 << MONITOR_FIELD,
   OF_PAIR = 1 << MONITOR_OPENING | 1 << MONITOR_REACTIONS,
   OF_DAMAGE = 1 << MONITOR_DAMAGED | 1 << MONITOR_BROKEN,
@@ -138,16 +141,25 @@ enum {
   OF_LATTICE = OF_WHOLE | OF_DAMAGE,
   ALONG_AXIS = OF_MOTION | OF_PAIR | 1 << MONITOR_ACCELERATION | 1 << MONITOR_MOMENTUM
 };
-static const char *const monitor_words[] = {
-    "a reaction monitor",  "a displacement monitor",
-    "a velocity monitor",  "an opening monitor",
-    "a damaged monitor",   "a broken monitor",
-    "a field monitor",     "an acceleration monitor",
-    "a momentum monitor",  "an angular_momentum monitor",
-    "an energy monitor",   "a force monitor",
-    "a moment monitor",    "a tip monitor",
-    "a tip_speed monitor", "a stress monitor",
-    "a strain monitor",    "a reaction monitor with `between`"};
+static const char *const monitor_words[] = {"a reaction monitor",
+                                            "a displacement monitor",
+                                            "a velocity monitor",
+                                            "an opening monitor",
+                                            "a damaged monitor",
+                                            "a broken monitor",
+                                            "a field monitor",
+                                            "an acceleration monitor",
+                                            "a momentum monitor",
+                                            "an angular_momentum monitor",
+                                            "an energy monitor",
+                                            "a force monitor",
+                                            "a moment monitor",
+                                            "a tip monitor",
+                                            "a tip_speed monitor",
+                                            "a stress monitor",
+                                            "a strain monitor",
+                                            "an applied monitor",
+                                            "a reaction monitor with `between`"};
 static const deck_key_use monitor_uses[] = {
     {"region", OF_MOTION | OF_FIELD | OF_PLACE | OF_PART | OF_SECTION | OF_TIP, false},
     {"lattice", OF_LATTICE, false},
@@ -396,6 +408,7 @@ const char *deck_monitor_unit(const deck_monitor *m, bool rotates) {
   switch (m->kind) {
   case MONITOR_REACTION:
   case MONITOR_REACTIONS:
+  case MONITOR_APPLIED:
   case MONITOR_FORCE:
     return rotates ? "N*m" : "N";
   case MONITOR_DISPLACEMENT:

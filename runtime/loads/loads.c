@@ -353,16 +353,33 @@ void loads_free(loads *l) {
   free(l);
 }
 
-long loads_constraints_of(const loads *l, int region, int component, int32_t **indices) {
+/* [size of the rows]: 1 at the sites of a region's particles. */
+static unsigned char *marked_sites(const loads *l, int region) {
   const region_sites *at = &l->regions[region];
-  long count = 0;
-  *indices = must_calloc((size_t)l->constraint_count + 1, sizeof **indices);
   unsigned char *inside = must_calloc((size_t)l->lattice->size, 1);
   for (long p = 0; p < at->count; p++)
     inside[l->lattice->particle_site[at->particles[p]]] = 1;
+  return inside;
+}
+
+long loads_constraints_of(const loads *l, int region, int component, int32_t **indices) {
+  long count = 0;
+  *indices = must_calloc((size_t)l->constraint_count + 1, sizeof **indices);
+  unsigned char *inside = marked_sites(l, region);
   for (long c = 0; c < l->constraint_count; c++)
     if (inside[l->constraints[c].site] && l->constraints[c].component == component)
       (*indices)[count++] = (int32_t)c;
+  free(inside);
+  return count;
+}
+
+long loads_forces_of(const loads *l, int region, int component, int32_t **indices) {
+  long count = 0;
+  *indices = must_calloc((size_t)l->force_count + 1, sizeof **indices);
+  unsigned char *inside = marked_sites(l, region);
+  for (long f = 0; f < l->force_count; f++)
+    if (inside[l->forces[f].site] && l->forces[f].component == component)
+      (*indices)[count++] = (int32_t)f;
   free(inside);
   return count;
 }

@@ -74,5 +74,7 @@ void loads_links_added(loads *l);
 bool loads_initial_motion(const loads *l, body *w, diagnostics *d);
 /* Indices of the constraints of a region's particles in a component; malloc'ed. */
 long loads_constraints_of(const loads *l, int region, int component, int32_t **indices);
+/* Likewise of the forces and end moments on these. */
+long loads_forces_of(const loads *l, int region, int component, int32_t **indices);
 
 #endif

@@ -22,6 +22,7 @@ void plot_frame_free(plot_frame *m) {
   free(m->moved);
   free(m->values);
   free(m->damage);
+  free(m->second);
   free(m->pairs);
   free(m->marked);
 }
@@ -223,6 +224,37 @@ static bool read_damage(result_file *f, plot_frame *m, const char *path, const p
   return false;
 }
 
+/* NULL with a sentence: a damage of bonds. */
+static double *read_one_damage(result_file *f, const plot_frame *m, const char *field, long frame,
+                               char *error, size_t size) {
+  char name[512], unit_text[64];
+  long count = 0;
+  int components = 0;
+  if (!result_find(f, "/frames", field, name, sizeof name, error, size)) return NULL;
+  double *values = result_read_frame(f, name, frame, &count, &components, unit_text,
+                                     sizeof unit_text, error, size);
+  if (values && strchr(name, '/') && count == m->bonds && components == 1) return values;
+  if (values) snprintf(error, size, "`%s` is not on bonds: of two damages both are", field);
+  free(values);
+  return NULL;
+}
+
+/* "omega_t,omega_c": the larger of the two, and which it is. */
+static bool read_two_damages(result_file *f, plot_frame *m, const plot_map_options *o, char *error,
+                             size_t size) {
+  const size_t first = strcspn(o->field, ",");
+  snprintf(m->damages[0], sizeof m->damages[0], "%.*s", (int)first, o->field);
+  snprintf(m->damages[1], sizeof m->damages[1], "%s", o->field + first + 1);
+  m->damage = read_one_damage(f, m, m->damages[0], o->frame, error, size);
+  m->second = m->damage ? read_one_damage(f, m, m->damages[1], o->frame, error, size) : NULL;
+  for (long b = 0; m->second && b < m->bonds; b++) {
+    const bool larger = m->second[b] > m->damage[b] || isnan(m->damage[b]);
+    if (larger) m->damage[b] = m->second[b];
+    m->second[b] = larger;
+  }
+  return m->second != NULL;
+}
+
 /* NULL with a sentence that says how to store them when they are not there. */
 static double *read_displacements(result_file *f, const plot_frame *m, const char *path, long frame,
                                   char *error, size_t size) {
@@ -279,7 +311,10 @@ static bool read_frame(result_file *f, const char *path, plot_frame *m, const pl
   char *title = result_read_title(f);
   snprintf(m->title, sizeof m->title, "%s", o->title ? o->title : title);
   free(title);
-  m->of_damage = strcmp(o->field, "damage") == 0;
+  const bool two = strchr(o->field, ',') != NULL;
+  m->of_damage = two || strcmp(o->field, "damage") == 0;
+  if (two)
+    return read_two_damages(f, m, o, error, size) && (!o->mark || read_marks(f, m, o, error, size));
   return read_damage(f, m, path, o, error, size) &&
          (m->of_damage || read_values(f, m, o, error, size)) &&
          (!o->mark || read_marks(f, m, o, error, size));
@@ -320,6 +355,7 @@ static void take_particles(plot_frame *m, const long *order, long count) {
   take_rows(&m->reference, order, count, m->dimensions);
   take_rows(&m->moved, order, count, m->dimensions);
   take_rows(&m->damage, bonds, kept, 1);
+  take_rows(&m->second, bonds, kept, 1);
   if (m->marks_on_bonds)
     take_rows(&m->marked, bonds, kept, 1);
   else
@@ -509,6 +545,13 @@ bool plot_frame_read(plot_frame *m, const char *path, const plot_map_options *o,
   if (!good) return false;
   const bool crowded = m->of_damage && has_crowded_bonds(m);
   const bool surface = m->dimensions == 3 && o->slice_axis < 0;
+  if (m->second && (crowded || surface)) {
+    snprintf(error, size,
+             "two damages are shown on bonds, and these would hide each other here: show `%s` or "
+             "`%s`%s",
+             m->damages[0], m->damages[1], surface ? ", or a slice" : "");
+    return false;
+  }
   if (m->marked && m->marks_on_bonds && (crowded || surface)) mark_particles(m);
   if (crowded) show_on_particles(m, -1);
   if (m->dimensions == 3) describe_extents(m);

@@ -12,8 +12,11 @@ typedef struct plot_frame {
   long particles, bonds;
   double *reference, *moved; /* [particles][2] m */
   double *damage;            /* [bonds] NULL without */
-  int32_t *pairs;            /* [bonds][2] */
-  double *values;            /* of the particles, or of the bonds; NULL: a map of damage */
+  /* [bonds] 1 where the second of two damages is the larger one, `damage`; NULL: one damage */
+  double *second;
+  char damages[2][64]; /* names of the two */
+  int32_t *pairs;      /* [bonds][2] */
+  double *values;      /* of the particles, or of the bonds; NULL: a map of damage */
   long value_count;
   bool of_bonds; /* the values are those of bonds */
   /* Of the particles, or of the bonds: 1 where there is a mark, else 0; NULL without marks. */

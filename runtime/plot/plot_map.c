@@ -1,7 +1,8 @@
 /* Map of one frame, or of several side by side: bonds and particles where they have moved to.
    Damage is shown in the classes of Asadollahi (2014, table 4.3): up to 0.3 yellow, 0.6 orange, 0.8
-   brown, below 1 red; separated bonds as black crack lines. Other fields colour the particles or
-   the bonds by their value. */
+   brown, below 1 red; separated bonds as black crack lines. Two damages are shown in two colours
+   each, as Gerstle et al. (2013, figure 5) do. Other fields colour the particles or the bonds by
+   their value. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,14 +26,25 @@ enum {
   MOST_HEIGHT = 1500
 };
 
-static const struct {
+typedef struct damage_class {
   double up_to;
   colour ink;
-  const char *text;
-} classes[] = {{0.0, {0.80, 0.82, 0.85}, "sound"},     {0.3, {0.95, 0.80, 0.10}, "0 - 0.3"},
-               {0.6, {0.95, 0.50, 0.05}, "0.3 - 0.6"}, {0.8, {0.55, 0.30, 0.10}, "0.6 - 0.8"},
-               {1.0, {0.85, 0.05, 0.05}, "0.8 - 1"},   {INFINITY, {0, 0, 0}, "separated"}};
-enum { CLASSES = sizeof classes / sizeof *classes, SEPARATED = CLASSES - 1, NO_CLASS = -1 };
+  const char *text; /* of two damages: what stands behind the name of one */
+  int of;           /* of two damages: 0, 1 */
+} damage_class;
+
+/* The worse below the better; the last is that of separated bonds. */
+enum { CLASSES = 6, KINDS = 5, SEPARATED = CLASSES - 1 };
+static const damage_class classes[CLASSES] = {
+    {0.0, {0.80, 0.82, 0.85}, "sound", 0},     {0.3, {0.95, 0.80, 0.10}, "0 - 0.3", 0},
+    {0.6, {0.95, 0.50, 0.05}, "0.3 - 0.6", 0}, {0.8, {0.55, 0.30, 0.10}, "0.6 - 0.8", 0},
+    {1.0, {0.85, 0.05, 0.05}, "0.8 - 1", 0},   {INFINITY, {0, 0, 0}, "separated", 0}};
+static const damage_class kinds[KINDS] = {{0.0, {0.80, 0.82, 0.85}, "sound", 0},
+                                          {1.0, {0.95, 0.80, 0.10}, " below 1", 0},
+                                          {1.0, {0.35, 0.70, 0.95}, " below 1", 1},
+                                          {INFINITY, {0.05, 0.20, 0.65}, " = 1", 1},
+                                          {INFINITY, {0, 0, 0}, " = 1", 0}};
+enum { NO_CLASS = -1 };
 
 /* Bonds of laws without damage, as of bars. */
 static const colour plain_ink = {0.45, 0.48, 0.52};
@@ -134,9 +146,22 @@ static int class_of(double damage) {
   return k;
 }
 
+static const damage_class *classes_of(const map *m) {
+  return m->frame.second ? kinds : classes;
+}
+static int class_count(const map *m) {
+  return m->frame.second ? KINDS : CLASSES;
+}
+
+/* In the table of the map. */
 static int class_of_bond(const map *m, long b) {
   if (!m->frame.damage) return 0;
-  return isnan(m->frame.damage[b]) ? NO_CLASS : class_of(m->frame.damage[b]);
+  const double damage = m->frame.damage[b];
+  if (isnan(damage)) return NO_CLASS;
+  if (!m->frame.second) return class_of(damage);
+  if (!(damage > 0)) return 0;
+  const bool second = m->frame.second[b] > 0;
+  return damage >= 1 ? second ? KINDS - 2 : KINDS - 1 : second ? 2 : 1;
 }
 
 static void stroke_bond(canvas *c, const map *m, long b) {
@@ -158,12 +183,13 @@ static void stroke_crack(canvas *c, const map *m, long b) {
 
 static void draw_class(canvas *c, const map *m, int k) {
   const double thin = pl_fmax(0.4, 0.12 * m->frame.spacing * m->scale);
-  canvas_colour(c, k == NO_CLASS ? plain_ink : classes[k].ink);
-  cairo_set_line_width(c->cr, k == 0 ? 0.6 * thin : k == SEPARATED ? 1.6 * thin : 1.4 * thin);
+  const int separated = class_count(m) - 1;
+  canvas_colour(c, k == NO_CLASS ? plain_ink : classes_of(m)[k].ink);
+  cairo_set_line_width(c->cr, k == 0 ? 0.6 * thin : k == separated ? 1.6 * thin : 1.4 * thin);
   cairo_set_line_cap(c->cr, CAIRO_LINE_CAP_ROUND);
   for (long b = 0; b < m->frame.bonds; b++) {
     if (class_of_bond(m, b) != k) continue;
-    if (k == SEPARATED)
+    if (k == separated)
       stroke_crack(c, m, b);
     else
       stroke_bond(c, m, b);
@@ -177,7 +203,8 @@ static void draw_bonds(canvas *c, const map *m, bool coloured) {
     draw_class(c, m, 0);
     draw_class(c, m, NO_CLASS);
   }
-  for (int k = coloured ? 1 : SEPARATED; k < CLASSES; k++)
+  const int separated = class_count(m) - 1;
+  for (int k = coloured ? 1 : separated; k <= separated; k++)
     draw_class(c, m, k);
 }
 
@@ -387,13 +414,17 @@ static void draw_damage_legend(canvas *c, const sheet *s) {
   bool occurs[CLASSES] = {s->panels[0].frame.bonds == 0};
   for (int k = 0; k < s->count; k++)
     find_classes(&s->panels[k], occurs);
-  for (int k = CLASSES - 1; k >= 0; k--) {
+  for (int k = class_count(s->panels) - 1; k >= 0; k--) {
+    const damage_class *of = &classes_of(s->panels)[k];
+    char text[128];
     if (!occurs[k]) continue;
-    x -= canvas_text_width(c, 18, classes[k].text);
+    snprintf(text, sizeof text, "%s%s",
+             k && s->panels[0].frame.second ? s->panels[0].frame.damages[of->of] : "", of->text);
+    x -= canvas_text_width(c, 18, text);
     canvas_colour(c, (colour){0.1, 0.1, 0.1});
-    canvas_text(c, x, y, 18, ANCHOR_LEFT, classes[k].text);
+    canvas_text(c, x, y, 18, ANCHOR_LEFT, text);
     x -= 36;
-    canvas_colour(c, classes[k].ink);
+    canvas_colour(c, of->ink);
     canvas_line(c, x, y - 6, x + 28, y - 6, k == 0 ? 4 : 5);
     x -= 22;
   }

@@ -12,7 +12,8 @@ C_LINKAGE_BEGIN
 typedef struct plot_map_options {
   const char *output;
   long frame; /* from 0; negative: from the end (-1 the last) */
-  /* "damage" (bonds in its colour classes, default) or any field of particles or bonds */
+  /* "damage" (bonds in its colour classes, default), any field of particles or bonds, or two
+     damages of bonds, "omega_t,omega_c": each bond in the colours of that which is larger */
   const char *field;
   int component; /* of a vector field; -1: magnitude */
   double factor; /* displacements are drawn times this; negative: chosen so that they can be seen */

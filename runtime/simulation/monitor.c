@@ -21,9 +21,9 @@ static bool counts_damage(const deck_monitor *m) {
 /* A component of the motion of particles, or of the forces on them. */
 static bool has_component(const deck_monitor *m) {
   return m->kind == MONITOR_REACTION || m->kind == MONITOR_REACTIONS ||
-         m->kind == MONITOR_DISPLACEMENT || m->kind == MONITOR_VELOCITY ||
-         m->kind == MONITOR_OPENING || m->kind == MONITOR_ACCELERATION ||
-         m->kind == MONITOR_MOMENTUM;
+         m->kind == MONITOR_APPLIED || m->kind == MONITOR_DISPLACEMENT ||
+         m->kind == MONITOR_VELOCITY || m->kind == MONITOR_OPENING ||
+         m->kind == MONITOR_ACCELERATION || m->kind == MONITOR_MOMENTUM;
 }
 
 static bool follows_tip(const deck_monitor *m) {
@@ -61,6 +61,17 @@ static void take_reactions(monitor *m, int list, const monitors *all, const char
   if (of)
     m->index_count[list] = loads_constraints_of(of->loads, deck_find_region(all->deck, name),
                                                 m->deck->component, &m->indices[list]);
+}
+
+static void take_forces(monitor *m, const monitors *all, diagnostics *d) {
+  const run_body *of = m->of[0];
+  m->index_count[0] = loads_forces_of(of->loads, deck_find_region(all->deck, m->deck->region),
+                                      m->deck->component, &m->indices[0]);
+  if (m->index_count[0] > 0) return;
+  diag_report(d, DIAG_CONFLICT, m->deck->item.where,
+              "this is always 0: no `&force` or `&end_moment` acts %s `%s` on particles of `%s`",
+              m->deck->component < of->body->dimensions ? "along" : "in",
+              deck_component_name(of->body->dimensions, m->deck->component), m->deck->region);
 }
 
 static bool check_component(const deck_monitor *m, const pl_law *law, diagnostics *d) {
@@ -243,6 +254,9 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
     take_reactions(m, 0, all, m->deck->between[0]);
     take_reactions(m, 1, all, m->deck->between[1]);
     break;
+  case MONITOR_APPLIED:
+    take_forces(m, all, d);
+    break;
   case MONITOR_OPENING:
     take_sites(m, 0, all, m->deck->between[0]);
     take_sites(m, 1, all, m->deck->between[1]);
@@ -373,6 +387,8 @@ static char *quantity_words(const monitors *all, const monitor *m, arena *a) {
     return region_words(all, m, "reaction", a);
   case MONITOR_REACTIONS:
     return difference_words(all, m, "half the reaction", a);
+  case MONITOR_APPLIED:
+    return region_words(all, m, "force on particles", a);
   case MONITOR_OPENING:
     return difference_words(all, m, "mean displacement", a);
   case MONITOR_DISPLACEMENT:
@@ -413,6 +429,13 @@ static double reaction_sum(const monitor *m, int list) {
   double sum = 0;
   for (long c = 0; c < m->index_count[list]; c++)
     sum += m->of[list]->loads->constraints[m->indices[list][c]].reaction;
+  return sum;
+}
+
+static double applied_sum(const monitor *m) {
+  double sum = 0;
+  for (long c = 0; c < m->index_count[0]; c++)
+    sum += m->of[0]->loads->forces[m->indices[0][c]].now;
   return sum;
 }
 
@@ -524,6 +547,8 @@ static double value_now(const monitors *all, const monitor *m, long step) {
     return reaction_sum(m, 0);
   case MONITOR_REACTIONS:
     return 0.5 * (reaction_sum(m, 1) - reaction_sum(m, 0));
+  case MONITOR_APPLIED:
+    return applied_sum(m);
   case MONITOR_DISPLACEMENT:
     return displacement_mean(m, 0);
   case MONITOR_VELOCITY:

@@ -1,5 +1,5 @@
-/* Several frames in one picture, by number and by the values of a history, and marks on particles
-   and bonds. */
+/* Several frames in one picture, by number and by the values of a history, marks on particles and
+   bonds, and two damages in one map. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
@@ -118,6 +118,51 @@ static void mistakes_are_said(void **state) {
   assert_non_null(strstr(w->said, "has 61 frames; one picture shows 48 at most"));
 }
 
+static int times_in(const char *text, const char *what) {
+  int count = 0;
+  for (const char *p = text; (p = strstr(p, what)); p++)
+    count++;
+  return count;
+}
+
+/* Of three particles in a row the middle one moves: one bond tears, the other is crushed. */
+static const char torn_and_crushed[] =
+    "&simulation end_time = '2 ms' /\n"
+    "&lattice name = 'c' kind = 'hexagonal' spacing = '20 mm' thickness = '127 mm' /\n"
+    "&material lattice = 'c' model = 'mplm_concrete' crushing = 'text' /\n"
+    "&body lattice = 'c' shape = 'rectangle' corner = 0, -0.001 size = 0.04, 0.002 /\n"
+    "&region name = 'ends' shape = 'polygon' points = -0.01, -0.01, 0.05, -0.01, 0.05, 0.01, 0.03, "
+    "0.01, 0.03, -0.005, 0.01, -0.005, 0.01, 0.01, -0.01, 0.01 /\n"
+    "&region name = 'middle' shape = 'point' at = 0.02, 0 /\n"
+    "&support region = 'ends' fix = 'x', 'y', 'rotation' /\n"
+    "&support region = 'middle' fix = 'y', 'rotation' /\n"
+    "&drive region = 'middle' component = 'x' displacement = '0.022 mm' times = 0, '1 ms', '2 ms' "
+    "values = 0, 1, 4 /\n"
+    "&output result = 'two.h5' frames = 2 fields = 'displacement', 'damage', 'omega_t', 'omega_c' "
+    "/\n";
+
+/* Colours of the two bonds, and of the two lines of the legend. */
+static void two_damages_have_two_colours_each(void **state) {
+  workplace *w = *state;
+  static const char *const inks[4] = {"rgb(95%,80%,10%)", "rgb(35%,70%,95%)", "rgb(0%,0%,0%)",
+                                      "rgb(5%,20%,65%)"};
+  write_text(w, "two.nml", torn_and_crushed);
+  expect(w, "run two.nml", 0, "two.h5");
+  for (int frame = 1; frame <= 2; frame++) {
+    size_t size;
+    shell(w, "$P plot two.h5 --map omega_t,omega_c --frame %d --factor 1 -o two.svg", frame);
+    char *text = read_bytes(w, "two.svg", &size);
+    for (int k = 0; k < 4; k++) {
+      const int wanted = (k < 2) == (frame == 1) ? 2 : 0;
+      if (times_in(text, inks[k]) != wanted)
+        fail_msg("frame %d: %s stands %d times", frame, inks[k], times_in(text, inks[k]));
+    }
+    free(text);
+  }
+  expect(w, "plot two.h5 --map omega_t,displacement", 1, "`displacement` is not on bonds");
+  expect(w, "plot two.h5 --map omega_t,omega_x", 1, "did you mean `omega_c`?");
+}
+
 /* Marks of a picture, without that of the legend: by their colour. */
 static int marks_in(workplace *w, const char *mark) {
   size_t size;
@@ -150,6 +195,7 @@ int main(void) {
   cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
       IN_WORKPLACE(frames_are_found_by_number_and_by_value),
       IN_WORKPLACE(several_frames_in_one_picture), IN_WORKPLACE(mistakes_are_said),
-      IN_WORKPLACE(marks_stand_where_the_field_says)};
+      IN_WORKPLACE(marks_stand_where_the_field_says),
+      IN_WORKPLACE(two_damages_have_two_colours_each)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -47,6 +47,9 @@ static const misfit misfits[] = {
      "greater than 0 and at most 1"},
     {RUN LAW BLOCK USE "&monitor name = 'n' kind = 'broken' above = 0 /\n", DIAG_OUT_OF_BOUNDS,
      "greater than 0 and at most 1"},
+    {RUN LAW BLOCK USE "&force region = 'edge' component = 'y' total = 3 /\n"
+                       "&monitor name = 'n' kind = 'applied' region = 'edge' component = 'x' /\n",
+     DIAG_CONFLICT, "no `&force` or `&end_moment` acts along `x` on particles of `edge`"},
     {RUN LAW BLOCK USE "&monitor name = 'n' kind = 'stress' at = 0.12, 0 component = 'xx' /\n",
      DIAG_EMPTY_REGION, "no particle stands within a spacing of `at`"},
     {RUN LAW BLOCK USE "&body lattice = 'c' shape = 'point' at = 0.11, 0 /\n"

@@ -1,4 +1,4 @@
-/* Monitors: means, zeros, scales and peaks; reactions between two regions. */
+/* Monitors: means, zeros, scales and peaks; reactions between two regions; applied forces. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -86,6 +86,51 @@ static void the_reaction_between_two_regions_is_the_mean_of_both_ends(void **sta
   }
   assert_true(small_last(&r, "left") < 0 && small_last(&r, "right") > 0);
   assert_true(uneven > 1e-2 * small_last(&r, "right"));
+  small_close(&r);
+}
+
+/* Two forces on one end, one of them on the whole chain: each particle has its share, and what is
+   held has it too. */
+static void the_applied_force_is_the_sum_of_what_acts_on_the_region(void **state) {
+  (void)state;
+  char text[2048];
+  snprintf(
+      text, sizeof text,
+      "&simulation end_time = 1e-4 step = 1e-7 /\n" CHAIN
+      "&material lattice = 'c' model = 'm' /\n" POINT("left", "0", "0") POINT(
+          "right", "0.05",
+          "0") "&region name = 'all' shape = 'rectangle' corner = "
+               "-0.001, -0.001 size = 0.06, 0.002 /\n"
+               "&support region = 'left' fix = 'x' /\n"
+               "&force region = 'right' component = 'x' total = 300 rise = 1e-4 /\n"
+               "&force region = 'all' component = 'x' total = -60 start = 5e-5 /\n"
+               "&force region = 'right' component = 'y' total = 7 /\n"
+               "&monitor name = 'at_right' kind = 'applied' region = 'right' component = 'x' /\n"
+               "&monitor name = 'mean' kind = 'applied' region = 'right' component = 'x' average = "
+               "1e-5 /\n"
+               "&monitor name = 'up' kind = 'applied' region = 'all' component = 'y' scale = -2 /\n"
+               "&monitor name = 'at_left' kind = 'applied' region = 'left' component = 'x' /\n"
+               "&output frames = 0 sample = 1e-5 /\n",
+      5 * SPACING);
+  small_run r;
+  must_open(&r, &elastic_bar, text);
+  assert_int_equal(small_go(&r), STEP_END);
+  const double *time, *right, *mean, *up, *left;
+  const char *symbol;
+  const long samples = simulation_history(r.simulation, &time);
+  simulation_series(r.simulation, small_series(&r, "at_right"), &symbol, &right);
+  simulation_series(r.simulation, small_series(&r, "mean"), NULL, &mean);
+  simulation_series(r.simulation, small_series(&r, "up"), NULL, &up);
+  simulation_series(r.simulation, small_series(&r, "at_left"), NULL, &left);
+  assert_string_equal(symbol, "N");
+  for (long k = 0; k < samples; k++) {
+    const double share = time[k] > 5.1e-5 ? -10 : 0;
+    if (fabs(time[k] - 5e-5) < 1e-6) continue; /* begins here, with a part of a step */
+    assert_true(fabs(right[k] - (300 * time[k] / 1e-4 + share)) < 1e-9);
+    assert_true(fabs(left[k] - share) < 1e-9 && fabs(up[k] + 14) < 1e-9);
+  }
+  /* the last 100 states, the present one included */
+  assert_true(fabs(mean[4] - (right[4] - 300 * 49.5e-7 / 1e-4)) < 1e-9);
   small_close(&r);
 }
 
@@ -186,6 +231,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(means_zeros_and_scales_are_as_defined),
       cmocka_unit_test(the_reaction_between_two_regions_is_the_mean_of_both_ends),
+      cmocka_unit_test(the_applied_force_is_the_sum_of_what_acts_on_the_region),
       cmocka_unit_test(a_window_holds_the_last_steps),
       cmocka_unit_test(the_first_stop_that_applies_is_told),
       cmocka_unit_test(what_is_watched_stands_in_words),

@@ -1,0 +1,281 @@
+#include "runtime/lattice/tied.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
+#include "runtime/lattice/scattered.h"
+
+/* How far outside of a cell a place may be by rounding, as a weight. */
+#define ROUNDING 1e-9
+/* Sites that may be corners of the cell: the nearest ones. */
+enum { NEAREST = 14, MOST_CORNERS = ROWS_MOST_COPIED };
+
+typedef struct candidate {
+  int32_t particle;
+  double square; /* of the distance, m^2 */
+  double at[3];  /* from the place, m */
+} candidate;
+
+typedef struct tier {
+  const deck_link *link;
+  const rows *bar, *body;
+  int32_t *near; /* [near_count] particles of the body that are near the bar */
+  long near_count;
+  rows_copy *copies; /* [2 count] of the bar, then of the place */
+  double *at[3];     /* [2 count] m */
+  point_pair *pairs; /* [count] */
+  long count, outside;
+} tier;
+
+/* --- cells ------------------------------------------------------------------------------------ */
+
+static int by_distance(const void *a, const void *b) {
+  const candidate *p = a, *q = b;
+  if (p->square != q->square) return p->square < q->square ? -1 : 1;
+  return p->particle < q->particle ? -1 : p->particle > q->particle;
+}
+
+static int find_nearest(const tier *t, const double at[3], candidate nearest[NEAREST]) {
+  candidate *all = must_calloc((size_t)t->near_count + 1, sizeof *all);
+  long count = 0;
+  for (long n = 0; n < t->near_count; n++) {
+    candidate *c = &all[count++];
+    c->particle = t->near[n];
+    rows_place(t->body, t->body->particle_site[c->particle], c->at);
+    for (int a = 0; a < 3; a++) {
+      c->at[a] = a < t->body->dimensions ? c->at[a] - at[a] : 0;
+      c->square += c->at[a] * c->at[a];
+    }
+  }
+  qsort(all, (size_t)count, sizeof *all, by_distance);
+  const int found = count < NEAREST ? (int)count : NEAREST;
+  for (int n = 0; n < found; n++)
+    nearest[n] = all[n];
+  free(all);
+  return found;
+}
+
+/* Determinant of the edges from the first of the corners, one of which is replaced by the place. */
+static double volume_of(int dimensions, const candidate *const corner[MOST_CORNERS], int replaced) {
+  static const double here[3] = {0, 0, 0};
+  const double *p[MOST_CORNERS];
+  double e[3][3];
+  for (int k = 0; k <= dimensions; k++)
+    p[k] = k == replaced ? here : corner[k]->at;
+  for (int k = 0; k < dimensions; k++)
+    for (int a = 0; a < dimensions; a++)
+      e[k][a] = p[k + 1][a] - p[0][a];
+  if (dimensions == 2) return e[0][0] * e[1][1] - e[0][1] * e[1][0];
+  return e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
+         e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
+         e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
+}
+
+/* Weights of the corners; false: flat, or the place is outside. */
+static bool weigh(int dimensions, double flat, const candidate *const corner[MOST_CORNERS],
+                  double weight[MOST_CORNERS]) {
+  const double whole = volume_of(dimensions, corner, -1);
+  if (!(fabs(whole) > flat)) return false;
+  for (int k = 0; k <= dimensions; k++) {
+    weight[k] = volume_of(dimensions, corner, k) / whole;
+    if (weight[k] < -ROUNDING) return false;
+  }
+  return true;
+}
+
+/* Of all cells of nearest sites that hold the place, that whose corners are the nearest. */
+typedef struct cell_search {
+  int dimensions, count;
+  double flat; /* m^2, m^3: cells that are no larger are none */
+  const candidate *nearest;
+  const candidate *corner[MOST_CORNERS];
+  double least;
+  rows_copy *best;
+} cell_search;
+
+static void take_cell(cell_search *s) {
+  double weight[MOST_CORNERS], sum = 0;
+  for (int k = 0; k <= s->dimensions; k++)
+    sum += s->corner[k]->square;
+  if (!(sum < s->least) || !weigh(s->dimensions, s->flat, s->corner, weight)) return;
+  s->least = sum;
+  s->best->count = 0;
+  for (int k = 0; k <= s->dimensions; k++) {
+    if (weight[k] <= ROUNDING) continue;
+    s->best->particle[s->best->count] = s->corner[k]->particle;
+    s->best->weight[s->best->count++] = weight[k];
+  }
+}
+
+static void search_cells(cell_search *s, int corners, int from) {
+  if (corners > s->dimensions || corners == MOST_CORNERS) {
+    take_cell(s);
+    return;
+  }
+  for (int n = from; n < s->count; n++) {
+    s->corner[corners] = &s->nearest[n];
+    search_cells(s, corners + 1, n + 1);
+  }
+}
+
+static void make_weights_whole(rows_copy *c) {
+  double sum = 0;
+  for (int k = 0; k < c->count; k++)
+    sum += c->weight[k];
+  for (int k = 0; k < c->count; k++)
+    c->weight[k] /= sum;
+}
+
+static bool find_cell(const tier *t, const double at[3], rows_copy *out) {
+  candidate nearest[NEAREST];
+  const double edge = t->body->spacing;
+  cell_search s = {.dimensions = t->body->dimensions,
+                   .count = find_nearest(t, at, nearest),
+                   .flat = 1e-6 * (t->body->dimensions == 2 ? edge * edge : edge * edge * edge),
+                   .nearest = nearest,
+                   .least = INFINITY,
+                   .best = out};
+  search_cells(&s, 0, 0);
+  if (out->count == 0) return false;
+  make_weights_whole(out);
+  return true;
+}
+
+/* --- the bar ---------------------------------------------------------------------------------- */
+
+/* Particles before and after one, from which the bar's direction there is taken. */
+static void find_direction(const tier *t, int32_t particle, rows_copy *c, double tangent[3]) {
+  const int32_t last = (int32_t)t->bar->particle_count - 1;
+  const bool closed = t->bar->bond_count > last;
+  c->before = particle > 0 ? particle - 1 : closed ? last : 0;
+  c->after = particle < last ? particle + 1 : closed ? 0 : last;
+  double from[3], to[3], length = 0;
+  rows_place(t->bar, t->bar->particle_site[c->before], from);
+  rows_place(t->bar, t->bar->particle_site[c->after], to);
+  for (int a = 0; a < 3; a++)
+    length += (to[a] - from[a]) * (to[a] - from[a]);
+  for (int a = 0; a < 3; a++)
+    tangent[a] = (to[a] - from[a]) / sqrt(length);
+}
+
+static void tie(tier *t, int32_t particle) {
+  rows_copy bar = {.lattice = t->link->of_bar, .count = 1, .particle = {particle}, .weight = {1}},
+            place_of = {.lattice = t->link->of_around};
+  double at[3], tangent[3];
+  rows_place(t->bar, t->bar->particle_site[particle], at);
+  if (!find_cell(t, at, &place_of)) {
+    t->outside++;
+    return;
+  }
+  find_direction(t, particle, &bar, tangent);
+  place_of.before = bar.before;
+  place_of.after = bar.after;
+  place_of.ahead = t->link->spacing;
+  bar.along = place_of.along = true;
+  const long n = 2 * t->count;
+  t->copies[n] = bar;
+  t->copies[n + 1] = place_of;
+  for (int a = 0; a < t->body->dimensions; a++) {
+    t->at[a][n] = at[a];
+    t->at[a][n + 1] = at[a] + place_of.ahead * tangent[a];
+  }
+  t->pairs[t->count++] = (point_pair){(int32_t)n, (int32_t)n + 1};
+}
+
+/* --- all of it -------------------------------------------------------------------------------- */
+
+/* Particles of the body that may be corners of cells at the bar. */
+static void find_near(tier *t) {
+  enum { SPACINGS = 3 };
+  const long bar = t->bar->particle_count, count = bar + t->body->particle_count;
+  unsigned char *near = must_calloc((size_t)count + 1, 1);
+  int32_t *numbers = must_calloc((size_t)bar + 1, sizeof *numbers);
+  double *at[3] = {NULL, NULL, NULL};
+  for (int a = 0; a < t->body->dimensions; a++)
+    at[a] = must_calloc((size_t)count + 1, sizeof **at);
+  for (long n = 0; n < count; n++) {
+    const rows *g = n < bar ? t->bar : t->body;
+    double here[3];
+    rows_place(g, g->particle_site[n < bar ? n : n - bar], here);
+    for (int a = 0; a < t->body->dimensions; a++)
+      at[a][n] = here[a];
+    if (n < bar) numbers[n] = (int32_t)n;
+  }
+  const point_cloud cloud = {t->body->dimensions, count, {at[0], at[1], at[2]}};
+  points_near(&cloud, numbers, bar, SPACINGS * t->body->spacing, near);
+  t->near = must_calloc((size_t)t->body->particle_count + 1, sizeof *t->near);
+  for (long p = 0; p < t->body->particle_count; p++)
+    if (near[bar + p]) t->near[t->near_count++] = (int32_t)p;
+  for (int a = 0; a < 3; a++)
+    free(at[a]);
+  free(numbers);
+  free(near);
+}
+
+static rows *rows_of(const tier *t) {
+  const long count = 2 * t->count;
+  double *measure = must_calloc((size_t)count + 1, sizeof *measure);
+  for (long n = 0; n < count; n++)
+    measure[n] = t->bar->area * t->link->spacing;
+  const scattered from = {.points = {t->body->dimensions, count, {t->at[0], t->at[1], t->at[2]}},
+                          .measure = measure,
+                          .spacing = t->link->spacing,
+                          .bonds = t->pairs,
+                          .bond_count = t->count,
+                          .area = t->bar->area};
+  long crowded;
+  rows *w = scattered_rows(&from, &crowded);
+  free(measure);
+  return w;
+}
+
+static bool is_tied(const tier *t, diagnostics *d) {
+  const deck_link *k = t->link;
+  if (t->count > 0 && t->outside > 0) {
+    diag_report(
+        d, DIAG_DECK_WARNING, deck_where(&k->item, "bar"),
+        "%ld of the bar's particles that the link `%s` chooses lie outside of `%s`, and are "
+        "not joined",
+        t->outside, k->name, k->around);
+    return true;
+  }
+  if (t->count > 0) return true;
+  if (t->outside > 0) {
+    diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&k->item, "bar"),
+                "the link `%s` joins nothing: the bar `%s` lies outside of `%s`", k->name, k->bar,
+                k->around);
+    diag_hint(d, "compare the bar's `points` with the lattice's bodies and notches");
+  } else {
+    diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&k->item, "first"),
+                "the bar `%s` has %ld particles: there is none with the number %d", k->bar,
+                t->bar->particle_count, k->first);
+    diag_hint(d, "they are counted from 0");
+  }
+  return false;
+}
+
+rows *tied_build(const deck_link *link, const rows *bar, const rows *body, diagnostics *d) {
+  const size_t most = (size_t)bar->particle_count + 1;
+  tier t = {.link = link,
+            .bar = bar,
+            .body = body,
+            .copies = must_calloc(2 * most, sizeof(rows_copy)),
+            .pairs = must_calloc(most, sizeof(point_pair))};
+  for (int a = 0; a < body->dimensions; a++)
+    t.at[a] = must_calloc(2 * most, sizeof(double));
+  find_near(&t);
+  for (long p = link->first; p < bar->particle_count; p += link->every)
+    tie(&t, (int32_t)p);
+  rows *w = is_tied(&t, d) ? rows_of(&t) : NULL;
+  if (w)
+    w->copies = t.copies;
+  else
+    free(t.copies);
+  free(t.near);
+  free(t.pairs);
+  for (int a = 0; a < 3; a++)
+    free(t.at[a]);
+  return w;
+}
