@@ -196,9 +196,19 @@ static bool suits_chain(const deck_material *m, const deck_lattice *l, const law
   return false;
 }
 
+static bool suits_link(const deck_material *m, const law *of, diagnostics *said) {
+  if (of->tree->law != LAW_STATE) return true;
+  diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),
+              "the law `%s` reads whole families, but a link has bonds between two bodies alone",
+              of->tree->name);
+  diag_hint(said, "take a law of bonds, such as `bar_bond`");
+  return false;
+}
+
 static bool suits_section(const deck_material *m, const deck_lattice *l, const law *of,
                           diagnostics *said) {
   if (!l) return true;
+  if (deck_lattice_is_link(l) && !suits_link(m, of, said)) return false;
   if (deck_lattice_is_chain(l)) return suits_chain(m, l, of, said);
   if (!law_reads(of, QUANTITY_AREA)) return true;
   diag_report(

@@ -63,6 +63,23 @@ bool deck_item_region_known(deck_reader *r, const deck_item *item, const char *n
   return deck_region_known(r, deck_where(item, "region"), name);
 }
 
+bool deck_moves(deck_reader *r, span where, int lattice) {
+  if (lattice < 0 || !deck_lattice_is_link(&r->k->lattices[lattice])) return true;
+  const deck_link *link = &r->k->lattices[lattice];
+  diag_report(
+      r->d, DIAG_CONFLICT, where,
+      "the particles of the link `%s` are copies of those that it joins, and move with them",
+      deck_shown(r->memory, link->name));
+  diag_hint(r->d, "take the bar `%s` or the lattice `%s`", deck_shown(r->memory, link->bar),
+            deck_shown(r->memory, link->around));
+  return false;
+}
+
+bool deck_moving_region_known(deck_reader *r, const deck_item *item, const char *name) {
+  return deck_item_region_known(r, item, name) &&
+         deck_moves(r, deck_where(item, "region"), deck_lattice_of_region(r, name));
+}
+
 void deck_check_name(deck_reader *r, const char *kind, const char *name, const deck_item *item,
                      const deck_item *first) {
   if (name && strlen(name) > NAMELIST_LONGEST_NAME)

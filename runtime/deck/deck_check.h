@@ -28,6 +28,10 @@ bool deck_link_known(deck_reader *r, const deck_item *item, const char *name);
 bool deck_region_known(deck_reader *r, span where, const char *name);
 bool deck_item_region_known(deck_reader *r, const deck_item *item, const char *name);
 bool deck_monitor_known(deck_reader *r, span where, const char *name);
+/* Particles of that lattice (-1: it is not known) move by themselves: it is no link. */
+bool deck_moves(deck_reader *r, span where, int lattice);
+/* Both of a region's. */
+bool deck_moving_region_known(deck_reader *r, const deck_item *item, const char *name);
 /* A name is new, and fits into the paths of a result. `first`: the item that has it already, or
    NULL. */
 void deck_check_name(deck_reader *r, const char *kind, const char *name, const deck_item *item,

@@ -606,7 +606,7 @@ static void check_material(deck_reader *r, const namelist_group *from, void *int
   const int first = deck_find_material(r->k, item->lattice);
   deck_refuse_both(r, from, "region", "between");
   if (first < 0 || item->region || item->between[0]) return;
-  const char *word = item->bar ? "bar" : "lattice";
+  const char *word = item->bar ? "bar" : item->link ? "link" : "lattice";
   diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, word),
               "the %s `%s` has a material already", word, deck_shown(r->memory, item->lattice));
   diag_note(r->d, r->k->materials[first].item.where, "it is given here");
@@ -617,7 +617,8 @@ DECK_LIST(
     material, .identity = "lattice", .parts = {"bar", "link", "region", "between"}, .open = true,
     .check = check_material,
     .doc =
-        "The law of a lattice's or bar's bonds, or its parameters in a region. Every other key "
+        "The law of a lattice's, a bar's or a link's bonds, or its parameters in a region. Every "
+        "other key "
         "sets a "
         "parameter or an option of the law, e.g. `E = '30 GPa'`, or by place `E = '30 [GPa]*(1 + "
         "x/2 [m])'` or `E = 'field.csv:E'`.");

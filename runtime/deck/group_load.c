@@ -44,7 +44,7 @@ static void check_support(deck_reader *r, const namelist_group *from, void *into
   (void)from;
   const int errors = r->d->errors;
   const span where = deck_where(&item->item, "fix");
-  deck_item_region_known(r, &item->item, item->region);
+  deck_moving_region_known(r, &item->item, item->region);
   item->fix = deck_components(r, where, item->region, item->fix);
   if (r->d->errors == errors) note_motions(r, item->region, item->fix, where);
 }
@@ -108,7 +108,7 @@ static void warn_of_jump(deck_reader *r, const namelist_group *from, const time_
 }
 
 static void complete_drive(deck_reader *r, const namelist_group *from, deck_drive *item) {
-  deck_item_region_known(r, &item->item, item->region);
+  deck_moving_region_known(r, &item->item, item->region);
   if (!deck_take_component(r, &item->item, item->region, &item->component)) return;
   const bool rotates = deck_is_rotation(r, item->region, item->component);
   check_other_motions(r, item);
@@ -205,7 +205,7 @@ static void check_force(deck_reader *r, const namelist_group *from, void *into) 
   deck_force *item = into;
   static const deck_load_kind kinds[] = {{"total", "N", false, &deck_formula_of_all},
                                          {"moment", "N*m", false, &deck_formula_of_all}};
-  deck_item_region_known(r, &item->item, item->region);
+  deck_moving_region_known(r, &item->item, item->region);
   const int kind = deck_load_kind_of(r->memory, from, kinds, 2, r->d);
   const namelist_key *component = namelist_find(from, "component");
   if (kind < 0) return;
@@ -244,7 +244,7 @@ static const deck_key_info end_moment_keys[] = {
 static void check_end_moment(deck_reader *r, const namelist_group *from, void *into) {
   deck_end_moment *item = into;
   static const deck_load_kind kind = {"moment", "N*m", false, &deck_formula_of_time};
-  deck_item_region_known(r, &item->item, item->region);
+  deck_moving_region_known(r, &item->item, item->region);
   if (deck_load_kind_of(r->memory, from, &kind, 1, r->d) < 0 ||
       !deck_load_read(r->memory, from, &kind, &item->moment, r->d))
     return;
@@ -381,7 +381,7 @@ static const deck_key_info initial_displacement_keys[] = {
 
 static void check_initial(deck_reader *r, const namelist_group *from, deck_initial *item,
                           const char *unit_text, const char *unit_of_rotation, const char *hint) {
-  deck_item_region_known(r, &item->item, item->region);
+  deck_moving_region_known(r, &item->item, item->region);
   if (!deck_take_component(r, &item->item, item->region, &item->component)) return;
   const bool rotates = deck_is_rotation(r, item->region, item->component);
   const int errors = r->d->errors;

@@ -139,6 +139,7 @@ enum {
   OF_PART = OF_TURNS | OF_ENERGY | 1 << MONITOR_MOMENTUM, /* of a region or of all */
   OF_WHOLE = OF_PLACE | OF_PART | OF_SECTION | OF_TIP,    /* of a lattice without a region */
   OF_LATTICE = OF_WHOLE | OF_DAMAGE,
+  OF_MOVING = OF_MOTION | OF_PAIR | OF_PLACE | OF_TURNS | 1 << MONITOR_MOMENTUM,
   ALONG_AXIS = OF_MOTION | OF_PAIR | 1 << MONITOR_ACCELERATION | 1 << MONITOR_MOMENTUM
 };
 static const char *const monitor_words[] = {"a reaction monitor",
@@ -275,6 +276,20 @@ static bool check_lattice(deck_reader *r, const namelist_group *from, const deck
   return false;
 }
 
+/* Of a link the bonds are watched: its particles move as others do. */
+static void check_moves(deck_reader *r, const deck_monitor *item) {
+  const bool kinetic = is_kind(item, OF_ENERGY) && item->component == MONITOR_KINETIC;
+  if (!kinetic && !is_kind(item, OF_MOVING)) return;
+  if (item->lattice) {
+    deck_moves(r, deck_where(&item->item, "lattice"), deck_find_lattice(r->k, item->lattice));
+  } else if (item->region) {
+    deck_moves(r, deck_where(&item->item, "region"), deck_lattice_of_region(r, item->region));
+  }
+  for (int end = 0; end < 2 && item->between[end]; end++)
+    deck_moves(r, deck_where(&item->item, "between"),
+               deck_lattice_of_region(r, item->between[end]));
+}
+
 /* One of the two says of which particles. */
 static bool check_place(deck_reader *r, const namelist_group *from, const deck_monitor *item) {
   if (!is_kind(item, OF_PLACE)) return true;
@@ -396,6 +411,7 @@ static void check_monitor(deck_reader *r, const namelist_group *from, void *into
   if (dimensions) deck_check_places(r, from, &deck_group_monitor, dimensions);
   if (is_kind(item, OF_SECTION) && !has_length(r, &item->item, "normal", item->normal)) return;
   if (!take_component(r, from, item)) return;
+  check_moves(r, item);
   if (item->kind == MONITOR_REACTION || item->kind == MONITOR_REACTIONS) check_reaction(r, item);
 }
 

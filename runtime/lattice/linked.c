@@ -5,7 +5,9 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/geometry/shape.h"
 #include "runtime/lattice/scattered.h"
+#include "runtime/particles/site_marks.h"
 
 /* A place is reached that is further by so much: rounding. */
 #define REACH_TOLERANCE 1e-6
@@ -13,6 +15,7 @@
 #define SHORT_LINK 0.1
 
 typedef struct linker {
+  const deck *deck;
   const deck_lattice *link;
   const rows *bar, *body;
   double reach;    /* m */
@@ -24,16 +27,35 @@ typedef struct linker {
   long count;
   point_pair *pairs; /* [pair_count] of copies */
   long pair_count;
-  double shortest, longest; /* m */
+  long cut;        /* more would cross notches */
+  double shortest; /* m */
 } linker;
 
-static double distance(const linker *l, int32_t of_bar, int32_t of_body) {
-  double from[3], to[3], square = 0;
-  rows_place(l->bar, l->bar->particle_site[of_bar], from);
-  rows_place(l->body, l->body->particle_site[of_body], to);
+typedef struct chord {
+  double from[3], to[3];
+  double length; /* m */
+} chord;
+
+static chord chord_of(const linker *l, int32_t of_bar, int32_t of_body) {
+  chord c;
+  double square = 0;
+  rows_place(l->bar, l->bar->particle_site[of_bar], c.from);
+  rows_place(l->body, l->body->particle_site[of_body], c.to);
   for (int a = 0; a < l->body->dimensions; a++)
-    square += (to[a] - from[a]) * (to[a] - from[a]);
-  return sqrt(square);
+    square += (c.to[a] - c.from[a]) * (c.to[a] - c.from[a]);
+  c.length = sqrt(square);
+  return c;
+}
+
+/* Of the body around, whether it has taken particles or bonds. */
+static bool crosses_notch(const linker *l, const chord *c) {
+  for (int n = 0; n < l->deck->notch_count; n++) {
+    const deck_notch *notch = &l->deck->notchs[n];
+    if (site_of_lattice(&l->deck->lattices[l->link->of_around], notch->lattice) &&
+        shape_crossed(&notch->shape, c->from, c->to, REACH_TOLERANCE * l->body->spacing))
+      return true;
+  }
+  return false;
 }
 
 static void choose(linker *l) {
@@ -79,10 +101,16 @@ static void add_pair(linker *l, int32_t i, int32_t j, double length) {
   l->pairs = must_realloc(l->pairs, ((size_t)l->pair_count + 1) * sizeof *l->pairs);
   l->pairs[l->pair_count++] = (point_pair){i, j};
   l->shortest = pl_fmin(l->shortest, length);
-  l->longest = pl_fmax(l->longest, length);
 }
 
 /* What stands on one place is not joined (Gerstle et al. 2013, section 4). */
+static bool is_joined(linker *l, const chord *c) {
+  if (c->length > l->reach || c->length <= REACH_TOLERANCE * l->body->spacing) return false;
+  const bool cut = crosses_notch(l, c);
+  l->cut += cut;
+  return !cut;
+}
+
 static void join(linker *l) {
   const long body = l->body->particle_count;
   long near_count = 0;
@@ -95,11 +123,11 @@ static void join(linker *l) {
     const int32_t here = (int32_t)l->count;
     bool joined = false;
     for (long m = 0; m < near_count; m++) {
-      const double length = distance(l, l->chosen[n], near[m]);
-      if (length > l->reach || length <= REACH_TOLERANCE * l->body->spacing) continue;
+      const chord c = chord_of(l, l->chosen[n], near[m]);
+      if (!is_joined(l, &c)) continue;
       if (!joined) l->copies[l->count++] = (rows_copy){l->link->of_bar, l->chosen[n]};
       joined = true;
-      add_pair(l, here, copy_of_body(l, near[m]), length);
+      add_pair(l, here, copy_of_body(l, near[m]), c.length);
     }
   }
   free(near);
@@ -161,12 +189,26 @@ static bool has_pairs(const linker *l, diagnostics *d) {
     return false;
   }
   if (l->pair_count > 0) return true;
+  if (l->cut > 0) {
+    diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&k->item, "within"),
+                "the link `%s` joins nothing: each of its bonds would cross a notch", k->name);
+    diag_hint(d, "move the bar or the notch; a larger `within` may reach around it");
+    return false;
+  }
   diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&k->item, "within"),
               "the link `%s` joins nothing: no particle of `%s` is within %.4g mm of one of the "
               "bar `%s`",
               k->name, k->around, 1e3 * l->reach, k->bar);
   diag_hint(d, "does the bar lie in the body? `within` counts spacings of the lattice");
   return false;
+}
+
+static void warn_of_cut(const linker *l, diagnostics *d) {
+  if (l->cut == 0) return;
+  diag_report(d, DIAG_DECK_WARNING, l->link->item.where,
+              "notches of `%s` cut %ld bond%s of the link `%s`", l->link->around, l->cut,
+              l->cut == 1 ? "" : "s", l->link->name);
+  diag_hint(d, "the bar itself goes through a notch whole");
 }
 
 static void warn_of_short(const linker *l, diagnostics *d) {
@@ -198,7 +240,7 @@ static bool is_crowded(const linker *l, diagnostics *d) {
 
 rows *linked_build(const deck *k, int lattice, rows *const *built, diagnostics *d) {
   const deck_lattice *link = &k->lattices[lattice];
-  linker l = {.link = link, .bar = built[link->of_bar], .body = built[link->of_around]};
+  linker l = {.deck = k, .link = link, .bar = built[link->of_bar], .body = built[link->of_around]};
   if (!l.bar || !l.body) return NULL; /* what is wrong with these has been said */
   l.reach = link->within * l.body->spacing * (1 + REACH_TOLERANCE);
   find(&l);
@@ -206,6 +248,7 @@ rows *linked_build(const deck *k, int lattice, rows *const *built, diagnostics *
   rows *w = has_pairs(&l, d) && !is_crowded(&l, d) ? rows_of(&l, &crowded) : NULL;
   if (w) {
     warn_of_short(&l, d);
+    warn_of_cut(&l, d);
     w->copies = l.copies;
     l.copies = NULL;
   }

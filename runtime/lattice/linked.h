@@ -1,6 +1,6 @@
 /* The particles of a link: copies of those of a bar and of the body around it that it joins, and
-   the bonds between them. They stand where theirs do, are as heavy, and move with them; a link's
-   law is at work on the bonds.
+   the bonds between them, but those that would cross a notch. They stand where theirs do, are as
+   heavy, and move with them; a link's law is at work on the bonds.
 
        bar     o     o     o     o     o          every = 2, first = 0
                |\   /      |\   /      |\

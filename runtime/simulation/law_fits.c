@@ -157,10 +157,31 @@ static bool laws_have_names(const deck *k, diagnostics *d) {
   return true;
 }
 
+/* Particles that a link turns have rotations of their own. */
+static bool link_suits(const deck *k, const run_body *bodies, int link, diagnostics *d) {
+  const deck_link *of = &k->lattices[link];
+  const pl_law *law = bodies[link].law;
+  const int ends[] = {of->of_bar, of->of_around};
+  for (int n = 0; n < 2; n++) {
+    const run_body *end = &bodies[ends[n]];
+    if (end->law->dof >= law->dof) continue;
+    diag_report(
+        d, DIAG_NOT_SUPPORTED, law_fits_where(k, link),
+        "the law `%s` of the link `%s` bends bonds, but the particles of `%s` do not rotate",
+        law->name, of->name, end->name);
+    diag_note(d, law_fits_where(k, end->lattice), "by this law");
+    diag_hint(d, "take a law of beams there, or one of springs for the link");
+    return false;
+  }
+  return true;
+}
+
 bool bodies_fit(const deck *k, const run_body *bodies, int count, diagnostics *d) {
   bool good = are_alike(k, bodies, count, d) && laws_have_names(k, d);
   for (int b = 0; b < count && count > 1; b++)
     good = has_own_name(k, b, d) && good;
+  for (int b = 0; b < count && good; b++)
+    good = !run_body_is_link(&bodies[b]) || link_suits(k, bodies, b, d);
   return good;
 }
 

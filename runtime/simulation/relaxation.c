@@ -105,23 +105,37 @@ bool relaxation_due(const relaxation *r, int64_t step) {
 
 /* --- a look ----------------------------------------------------------------------------------- */
 
+/* Of bonds and links, which give way as the body moves. */
+static void take_forces(const run_body *of, int d, double *force) {
+  const loads *l = of->loads;
+  memcpy(force, of->body->force[d], (size_t)of->lattice_rows->size * sizeof *force);
+  for (long i = 0; i < l->force_count; i++)
+    if (l->forces[i].link && l->forces[i].component == d)
+      force[l->forces[i].site] += l->forces[i].now;
+}
+
 /* Since the last look: work of the forces, and its motion. */
-static void add_motion(const body *w, relaxed_body *last, double *work, double *motion) {
-  for (int d = 0; d < w->dof; d++)
+static void add_motion(const run_body *of, relaxed_body *last, double *force, double *work,
+                       double *motion) {
+  const body *w = of->body;
+  for (int d = 0; d < w->dof; d++) {
+    take_forces(of, d, force);
     for (long p = 0; p < w->lattice->particle_count; p++) {
       const long q = w->lattice->particle_site[p];
       const double way = w->displacement[d][q] - last->displacement[d][q];
-      *work -= way * (w->force[d][q] - last->force[d][q]);
+      *work -= way * (force[q] - last->force[d][q]);
       *motion += body_mass(w, d, q) * way * way;
       last->displacement[d][q] = w->displacement[d][q];
-      last->force[d][q] = w->force[d][q];
+      last->force[d][q] = force[q];
     }
+  }
 }
 
 static void adapt(relaxation *r) {
   for (int b = 0; b < r->body_count; b++) {
     double work = 0, motion = 0;
-    add_motion(r->bodies[b].body, &r->looked_at[b], &work, &motion);
+    if (run_body_is_link(&r->bodies[b])) continue;
+    add_motion(&r->bodies[b], &r->looked_at[b], r->total, &work, &motion);
     if (work > 0 && motion > 0) r->looked_at[b].state.rate = 2 * sqrt(work / motion);
   }
 }
@@ -193,10 +207,11 @@ static double unbalance_of(const relaxation *r, int number) {
   return sum.free == 0 ? 0 : sqrt(sum.free) / against;
 }
 
-/* NaN is no balance. */
+/* NaN is no balance. The forces of a link are looked at where they act. */
 static double largest_unbalance(const relaxation *r) {
   double most = 0;
   for (int b = 0; b < r->body_count; b++) {
+    if (run_body_is_link(&r->bodies[b])) continue;
     const double here = unbalance_of(r, b);
     if (!(here <= most)) most = here;
   }
