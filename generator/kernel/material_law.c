@@ -209,7 +209,7 @@ static bool suits_section(const deck_material *m, const deck_lattice *l, const l
                           diagnostics *said) {
   if (!l) return true;
   if (deck_lattice_is_link(l) && !suits_link(m, of, said)) return false;
-  if (deck_lattice_is_chain(l)) return suits_chain(m, l, of, said);
+  if (deck_lattice_is_chain(l) || l->area > 0) return suits_chain(m, l, of, said);
   if (!law_reads(of, QUANTITY_AREA)) return true;
   diag_report(
       said, DIAG_CONFLICT, deck_where(&m->item, "model"),

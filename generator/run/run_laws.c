@@ -71,6 +71,8 @@ static double nearest_distance(const rows *w) {
 static deck_lattice lattice_like(const deck_lattice *d, const rows *w) {
   deck_lattice like = *d;
   if (deck_lattice_is_bar(d)) return lattice_default_bars(d->setting, w->spacing, d->area);
+  if (deck_lattice_is_link(d) && d->area > 0)
+    return lattice_default_bars(d->setting, d->spacing, d->area);
   if (deck_lattice_is_link(d)) return lattice_default(d->setting, d->spacing, d->thickness);
   if (!deck_lattice_is_irregular(d)) return like;
   const deck_lattice usual = lattice_default(d->setting, 0, 0);

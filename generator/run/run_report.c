@@ -265,6 +265,11 @@ static void announce_link(const run *r, int lattice) {
       longest = pl_fmax(longest, length);
     }
   }
+  if (k->to == LINK_TO_PLACE) {
+    printf("  link       %s: %ld particles of %s tied to places in %s, every %.6g mm\n", k->name,
+           w->bond_count, k->bar, k->around, 1e3 * k->spacing);
+    return;
+  }
   printf("  link       %s: %ld bonds of %.4g to %.4g mm join %ld particles of %s to %ld of %s\n",
          k->name, w->bond_count, 1e3 * shortest, 1e3 * longest, of_bar, k->bar,
          w->particle_count - of_bar, k->around);

@@ -30,6 +30,9 @@ typedef struct deck_item { /* what every group has */
 /* Place of a key's value in the item, or of the group when the key was not written. */
 span deck_where(const deck_item *item, const char *key);
 
+/* What a link joins a bar to: all sites within reach, or the place in the cell that holds it. */
+enum link_to { LINK_TO_SITES, LINK_TO_PLACE };
+
 typedef enum volume_correction { VOLUME_WHOLE, VOLUME_LINEAR } volume_correction;
 
 /* Of a &lattice, or of a &bar or a &link, which are of the kinds `bar` and `link`: they stand behind
@@ -61,7 +64,8 @@ typedef struct deck_lattice {
   const char *bar, *around;
   int of_bar, of_around;
   int every, first; /* particles of the bar that are joined: first, first + every, ... */
-  double within;    /* spacings */
+  enum link_to to;
+  double within; /* spacings; to sites */
 } deck_lattice;
 typedef deck_lattice deck_bar, deck_link;
 

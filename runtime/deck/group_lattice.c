@@ -432,28 +432,47 @@ static const deck_key_info link_keys[] = {
      .most = 1000000000,
      DECK_AT(link, first),
      .doc = "the first of these"},
+    {.name = "to",
+     .type = DECK_CHOICE,
+     .choices = "sites|place",
+     .fallback = "'sites'",
+     DECK_AT(link, to),
+     .doc =
+         "`sites`: a bond to each particle of the lattice within reach; `place`: one bond to the "
+         "place where the bar's particle is, which moves as the corners of the triangle or "
+         "tetrahedron of sites that holds it do"},
     {.name = "within",
      .type = DECK_REAL,
      .unit = "1",
      .bound = BOUND_POSITIVE,
      .fallback = "1",
      DECK_AT(link, within),
-     .doc = "in spacings of the lattice: a bond to each of its particles that is at most so far "
-            "away, and not at the same place"},
+     .doc = "`sites`, in spacings of the lattice: how far away they may be; one at the same place "
+            "is not joined"},
 };
 
 static void begin_link(void *item) {
   ((deck_link *)item)->kind = lattice_kinds[LATTICE_KIND_link].name;
 }
 
-/* What laws are told of a lattice is that of the one around the bar. */
-static void take_around(deck_reader *r, deck_link *item) {
-  const deck_lattice *around = &r->k->lattices[item->of_around];
+/* What laws are told: of links to sites what they are of the lattice around the bar; of those to
+   places the bar's area, and the length that each stands for. */
+static void take_quantities(const deck_lattice *bar, const deck_lattice *around, deck_link *item) {
   item->setting = around->setting;
+  if (item->to == LINK_TO_PLACE) {
+    item->spacing = bar->spacing * item->every;
+    item->area = bar->area;
+    return;
+  }
   item->spacing = around->spacing;
   item->thickness = around->thickness;
   item->stiffness_thickness = around->stiffness_thickness;
   item->mass_thickness = around->mass_thickness;
+}
+
+static void take_around(deck_reader *r, deck_link *item) {
+  const deck_lattice *around = &r->k->lattices[item->of_around];
+  take_quantities(&r->k->lattices[item->of_bar], around, item);
   if (deck_lattice_is_bar(around) || deck_lattice_is_link(around))
     diag_report(r->d, DIAG_BAD_VALUE, deck_where(&item->item, "lattice"),
                 "`%s` is a %s: a link joins a bar to the lattice around it",
@@ -467,8 +486,10 @@ static void take_around(deck_reader *r, deck_link *item) {
 
 static void check_link(deck_reader *r, const namelist_group *from, void *into) {
   deck_link *item = into;
-  (void)from;
   check_lattice_name(r, item);
+  if (item->to == LINK_TO_PLACE && namelist_find(from, "within"))
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "within"),
+                "`within` is for links `to = 'sites'`: a place is where the bar is");
   if (item->every < 1)
     diag_report(r->d, DIAG_BAD_VALUE, deck_where(&item->item, "every"),
                 "`every` counts from 1, which is each particle");

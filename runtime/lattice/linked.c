@@ -7,6 +7,7 @@
 #include "dsl/base/elementary.h"
 #include "runtime/geometry/shape.h"
 #include "runtime/lattice/scattered.h"
+#include "runtime/lattice/tied.h"
 #include "runtime/particles/site_marks.h"
 
 /* A place is reached that is further by so much: rounding. */
@@ -89,10 +90,14 @@ static void find_near(linker *l) {
   free(numbers);
 }
 
+static rows_copy copy_of(int32_t lattice, int32_t particle) {
+  return (rows_copy){.lattice = lattice, .count = 1, .particle = {particle}, .weight = {1}};
+}
+
 static int32_t copy_of_body(linker *l, int32_t particle) {
   if (l->copied[particle] < 0) {
     l->copied[particle] = (int32_t)l->count;
-    l->copies[l->count++] = (rows_copy){l->link->of_around, particle};
+    l->copies[l->count++] = copy_of(l->link->of_around, particle);
   }
   return l->copied[particle];
 }
@@ -125,7 +130,7 @@ static void join(linker *l) {
     for (long m = 0; m < near_count; m++) {
       const chord c = chord_of(l, l->chosen[n], near[m]);
       if (!is_joined(l, &c)) continue;
-      if (!joined) l->copies[l->count++] = (rows_copy){l->link->of_bar, l->chosen[n]};
+      if (!joined) l->copies[l->count++] = copy_of(l->link->of_bar, l->chosen[n]);
       joined = true;
       add_pair(l, here, copy_of_body(l, near[m]), c.length);
     }
@@ -160,7 +165,7 @@ static rows *rows_of(const linker *l, long *crowded) {
   for (long n = 0; n < l->count; n++) {
     const rows *of = l->copies[n].lattice == l->link->of_around ? l->body : l->bar;
     double place_of[3];
-    rows_place(of, of->particle_site[l->copies[n].particle], place_of);
+    rows_place(of, of->particle_site[l->copies[n].particle[0]], place_of);
     for (int a = 0; a < g->dimensions; a++)
       at[a][n] = place_of[a];
     measure[n] = g->site_area > 0 ? g->site_area : g->volume;
@@ -242,6 +247,7 @@ rows *linked_build(const deck *k, int lattice, rows *const *built, diagnostics *
   const deck_lattice *link = &k->lattices[lattice];
   linker l = {.deck = k, .link = link, .bar = built[link->of_bar], .body = built[link->of_around]};
   if (!l.bar || !l.body) return NULL; /* what is wrong with these has been said */
+  if (link->to == LINK_TO_PLACE) return tied_build(link, l.bar, l.body, d);
   l.reach = link->within * l.body->spacing * (1 + REACH_TOLERANCE);
   find(&l);
   long crowded;
@@ -256,21 +262,56 @@ rows *linked_build(const deck *k, int lattice, rows *const *built, diagnostics *
   return w;
 }
 
-/* Rotations: a particle of a list turns as rows_radius_square says. */
+/* What all copies of each of a lattice's particles weigh together. [particle_count] */
+static double *weights_of(const rows *link, int lattice, const rows *g) {
+  double *sum = must_calloc((size_t)g->particle_count + 1, sizeof *sum);
+  for (long p = 0; p < link->particle_count; p++)
+    for (int k = 0; k < link->copies[p].count && link->copies[p].lattice == lattice; k++)
+      sum[link->copies[p].particle[k]] += link->copies[p].weight[k];
+  return sum;
+}
+
+static double mass_at(const rows *g, int32_t particle) {
+  return g->site_mass ? g->site_mass[g->particle_site[particle]] : g->mass;
+}
+
+/* A place moves as easily as its particles, each of which is shared out among the places that it
+   carries: so that all of them together are no heavier than it. */
+static double mass_of(const rows_copy *c, const rows *g, const double *carried) {
+  double mobility = 0;
+  for (int k = 0; k < c->count; k++)
+    mobility += c->weight[k] * carried[c->particle[k]] / mass_at(g, c->particle[k]);
+  return 1 / mobility;
+}
+
+/* Copies that turn with a bar have no inertia of their own, and no freedom: as if they were
+   heavy. */
+static double inertia_of(const rows_copy *c, const rows *g, double mass) {
+  static const double heavy = 1e6;
+  const long site = g->particle_site[c->particle[0]];
+  const double of_one = mass * (g->inertia / g->mass) * rows_radius_square(g, site);
+  return c->along ? heavy * of_one : of_one;
+}
+
+/* A particle of a list turns as rows_radius_square says. */
 void linked_take_masses(rows *link, rows *const *built) {
   const double half = link->spacing / 2;
-  double sum = 0;
+  const int bar = link->copies[0].lattice; /* they begin with one of the bar */
+  double sum = 0, *of_bar = weights_of(link, bar, built[bar]), *of_body = NULL;
   for (long p = 0; p < link->particle_count; p++) {
     const rows_copy *c = &link->copies[p];
     const rows *g = built[c->lattice];
-    const long site = g->particle_site[c->particle], here = link->particle_site[p];
-    const double mass = g->site_mass ? g->site_mass[site] : g->mass,
-                 inertia = mass * (g->inertia / g->mass) * rows_radius_square(g, site);
+    const long here = link->particle_site[p];
+    if (c->lattice != bar && !of_body) of_body = weights_of(link, c->lattice, g);
+    const double mass = mass_of(c, g, c->lattice == bar ? of_bar : of_body),
+                 inertia = inertia_of(c, g, mass);
     link->site_mass[here] = mass;
     link->site_volume[here] =
         link->volume * pl_pow(inertia / (0.4 * mass * half * half), 0.5 * link->dimensions);
     sum += mass;
   }
+  free(of_bar);
+  free(of_body);
   link->mass = sum / (double)link->particle_count;
   link->inertia = 0.4 * link->mass * half * half;
   for (long q = 0; q < link->size; q++)

@@ -53,9 +53,16 @@ typedef struct neighbour_list {
 
 enum { ROWS_CLASSES = 2, ROWS_MAX_NEIGHBOURS = 2 * PL_MAX_DIRECTIONS };
 
-/* Of a link: whose particle stands there, too. */
+/* Of a link: whose particle stands there, too; or a place of a lattice between several particles,
+   which moves as their weighted mean. */
+enum { ROWS_MOST_COPIED = 4 };
 typedef struct rows_copy {
-  int32_t lattice, particle;
+  int32_t lattice, count;
+  int32_t particle[ROWS_MOST_COPIED];
+  double weight[ROWS_MOST_COPIED]; /* of sum 1 */
+  bool along;                      /* it turns with a bar (tied.h): */
+  int32_t before, after;           /* particles of the bar that its tangent goes through */
+  double ahead;                    /* m: it is shown so far along the bar */
 } rows_copy;
 
 typedef struct rows {

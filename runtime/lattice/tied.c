@@ -145,10 +145,14 @@ static bool find_cell(const tier *t, const double at[3], rows_copy *out) {
 
 /* --- the bar ---------------------------------------------------------------------------------- */
 
+static bool is_closed(const rows *bar) {
+  return bar->bond_count == bar->particle_count;
+}
+
 /* Particles before and after one, from which the bar's direction there is taken. */
 static void find_direction(const tier *t, int32_t particle, rows_copy *c, double tangent[3]) {
   const int32_t last = (int32_t)t->bar->particle_count - 1;
-  const bool closed = t->bar->bond_count > last;
+  const bool closed = is_closed(t->bar);
   c->before = particle > 0 ? particle - 1 : closed ? last : 0;
   c->after = particle < last ? particle + 1 : closed ? 0 : last;
   double from[3], to[3], length = 0;
@@ -158,6 +162,15 @@ static void find_direction(const tier *t, int32_t particle, rows_copy *c, double
     length += (to[a] - from[a]) * (to[a] - from[a]);
   for (int a = 0; a < 3; a++)
     tangent[a] = (to[a] - from[a]) / sqrt(length);
+}
+
+/* The length of bar that a bond stands for: half of the way to the next chosen ones, which at an
+   end there may be none of. */
+static double length_of(const tier *t, int32_t particle) {
+  const double half = 0.5 * t->link->every, last = (double)t->bar->particle_count - 1;
+  if (is_closed(t->bar)) return t->link->spacing;
+  return (pl_fmin(particle + half, last) - pl_fmax(particle - half, 0)) / t->link->every *
+         t->link->spacing;
 }
 
 static void tie(tier *t, int32_t particle) {
@@ -172,7 +185,7 @@ static void tie(tier *t, int32_t particle) {
   find_direction(t, particle, &bar, tangent);
   place_of.before = bar.before;
   place_of.after = bar.after;
-  place_of.ahead = t->link->spacing;
+  place_of.ahead = length_of(t, particle);
   bar.along = place_of.along = true;
   const long n = 2 * t->count;
   t->copies[n] = bar;

@@ -9,7 +9,8 @@
        bar   o------->  shown place           length + slip = present chord along the bar,
              x tangent                        gap = chord across it
    so that stretch times length is the slip, and the shear of a micropolar law goes with the gap.
-   What the bond exerts acts on the bar's particle and, shared out by the weights, on the sites.
+   That length is the length of bar that the bond stands for: at a bar's ends half of it. What the
+   bond exerts acts on the bar's particle and, shared out by the weights, on the sites.
    Its end moments are those of the chord that is only shown, and act on nothing. */
 #ifndef PERILAT_RUNTIME_TIED_H
 #define PERILAT_RUNTIME_TIED_H

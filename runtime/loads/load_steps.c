@@ -271,7 +271,7 @@ static double damping_at_once(const loads *l) {
 }
 
 static double force_at_once(const loads *l, const applied *f) {
-  if (f->link) return *f->link;
+  if (f->link) return f->share * *f->link;
   const time_function here = function_at(l, cause_of(l, f->cause), f->site);
   return f->share * time_function_at(&here, 0);
 }
@@ -577,7 +577,7 @@ static void next_forces(const load_run *r) {
 
 void load_steps_take_links(loads *l, const body *w) {
   for (long i = 0; i < l->force_count; i++)
-    if (l->forces[i].link) take_next(w, &l->forces[i], *l->forces[i].link);
+    if (l->forces[i].link) take_next(w, &l->forces[i], l->forces[i].share * *l->forces[i].link);
 }
 
 void load_steps_apply(loads *l, body *w, int block, long step) {

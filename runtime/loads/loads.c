@@ -197,7 +197,8 @@ static int by_site_and_cause(const void *a, const void *b) {
   const applied *p = a, *q = b;
   if (p->site != q->site) return p->site < q->site ? -1 : 1;
   if (p->component != q->component) return p->component < q->component ? -1 : 1;
-  return (p->cause > q->cause) - (p->cause < q->cause);
+  if (p->cause != q->cause) return p->cause < q->cause ? -1 : 1;
+  return (p->link > q->link) - (p->link < q->link); /* shares of one link's forces */
 }
 
 /* No two items compare as equal. */
@@ -223,14 +224,15 @@ static void find_holders(loads *l, const motions *m) {
 
 /* --- links ------------------------------------------------------------------------------------ */
 
-void loads_add_link(loads *l, int64_t site, int component, int link, const double *force) {
+void loads_add_link(loads *l, int64_t site, int component, int link, double share,
+                    const double *force) {
   l->forces = must_realloc(l->forces, ((size_t)l->force_count + 1) * sizeof *l->forces);
   l->forces[l->force_count++] =
       (applied){.site = site,
                 .component = component,
                 .cause = l->deck->force_count + l->deck->end_moment_count + link,
                 .link = force,
-                .share = 1};
+                .share = share};
 }
 
 static int64_t holder_of(const loads *l, const applied *f) {

@@ -64,9 +64,10 @@ typedef struct loads {
 loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, diagnostics *d);
 void loads_free(loads *l);
 
-/* A force of the run's link of that number, which stands at `force` (N, N m) when it is known; the
-   last one is to be followed by loads_links_added. */
-void loads_add_link(loads *l, int64_t site, int component, int link, const double *force);
+/* A share of a force of the run's link of that number, which stands at `force` (N, N m) when it is
+   known; the last one is to be followed by loads_links_added. */
+void loads_add_link(loads *l, int64_t site, int component, int link, double share,
+                    const double *force);
 void loads_links_added(loads *l);
 
 /* Displacements and velocities that regions begin with. False with diagnostics where a velocity is

@@ -32,6 +32,19 @@ static long *first_particles(const run_body *bodies, int count) {
   return first;
 }
 
+static bool some_are_taken(const rows *g, const long *first, const unsigned char *taken) {
+  for (long p = 0; p < g->particle_count; p++)
+    for (int k = 0; k < g->copies[p].count; k++)
+      if (taken[first[g->copies[p].lattice] + g->copies[p].particle[k]]) return true;
+  return false;
+}
+
+static void take_all(const rows *g, const long *first, unsigned char *taken) {
+  for (long p = 0; p < g->particle_count; p++)
+    for (int k = 0; k < g->copies[p].count; k++)
+      taken[first[g->copies[p].lattice] + g->copies[p].particle[k]] = 1;
+}
+
 /* Links are dealt out to groups in which no two share a particle: the first group that has none of
    a link's particles takes it. taken[group][particle]. Returns the sum over the groups of the
    fastest of each. */
@@ -44,15 +57,10 @@ static rates sum_of_links(const run_body *bodies, int count) {
     const rows *g = bodies[b].lattice_rows;
     if (!g->copies) continue;
     int k = 0;
-    for (bool shared = true; k < groups; k += shared) {
-      shared = false;
-      for (long p = 0; p < g->particle_count && !shared; p++)
-        shared = taken[k][first[g->copies[p].lattice] + g->copies[p].particle];
-      if (!shared) break;
-    }
+    while (k < groups && some_are_taken(g, first, taken[k]))
+      k++;
     if (k == groups) taken[groups++] = must_calloc((size_t)first[count] + 1, 1);
-    for (long p = 0; p < g->particle_count; p++)
-      taken[k][first[g->copies[p].lattice] + g->copies[p].particle] = 1;
+    take_all(g, first, taken[k]);
     const rates own = rates_of(&bodies[b].limit);
     if (is_faster(own, group[k])) group[k] = own;
   }

@@ -1,9 +1,10 @@
 #include "runtime/simulation/run_link.h"
 
+#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
 #include "runtime/interaction/joint.h"
 
 /* The only law of the link's body. */
@@ -13,23 +14,52 @@ static sweep *law_of(const run_link *link) {
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
+static int64_t site_of(const run_body *of, int32_t particle) {
+  return of->lattice_rows->particle_site[particle];
+}
+
+static link_copy follower_of(const rows_copy *c, run_body *bodies, int bar) {
+  const run_body *from = &bodies[c->lattice], *along = &bodies[bar];
+  link_copy f = {.of = from->body, .count = c->count};
+  for (int k = 0; k < c->count; k++) {
+    f.site[k] = site_of(from, c->particle[k]);
+    f.weight[k] = c->weight[k];
+  }
+  if (!c->along) return f;
+  double start[3], end[3];
+  f.bar = along->body;
+  f.before = site_of(along, c->before);
+  f.after = site_of(along, c->after);
+  f.ahead = c->ahead;
+  rows_place(along->lattice_rows, f.before, start);
+  rows_place(along->lattice_rows, f.after, end);
+  for (int a = 0; a < 3; a++)
+    f.tangent[a] = end[a] - start[a];
+  return f;
+}
+
 static void take_copies(run_link *link, run_body *bodies) {
   const rows *g = link->own->lattice_rows;
   link->copies = must_calloc((size_t)g->particle_count + 1, sizeof *link->copies);
-  for (long p = 0; p < g->particle_count; p++) {
-    const run_body *from = &bodies[g->copies[p].lattice];
-    link->copies[p] =
-        (link_copy){from->body, from->lattice_rows->particle_site[g->copies[p].particle]};
-  }
+  for (long p = 0; p < g->particle_count; p++)
+    link->copies[p] = follower_of(&g->copies[p], bodies, g->copies[0].lattice);
+}
+
+/* End moments of copies that turn with a bar act on nothing (tied.h). */
+static int components_of(const run_link *link, const link_copy *c) {
+  return c->bar ? link->own->body->dimensions : link->own->body->dof;
 }
 
 static void load_bodies(const run_link *link, int number, run_body *bodies) {
   const rows *g = link->own->lattice_rows;
   const sweep *law = law_of(link);
-  for (long p = 0; p < g->particle_count; p++)
-    for (int d = 0; d < law->body->dof; d++)
-      loads_add_link(bodies[g->copies[p].lattice].loads, link->copies[p].site, d, number,
-                     &law->force[d][g->particle_site[p]]);
+  for (long p = 0; p < g->particle_count; p++) {
+    const link_copy *c = &link->copies[p];
+    for (int k = 0; k < c->count; k++)
+      for (int d = 0; d < components_of(link, c); d++)
+        loads_add_link(bodies[g->copies[p].lattice].loads, c->site[k], d, number, c->weight[k],
+                       &law->force[d][g->particle_site[p]]);
+  }
 }
 
 run_link *run_links_new(run_body *bodies, int body_count, int *count) {
@@ -55,16 +85,78 @@ void run_links_free(run_link *links, int count) {
 
 /* --- forces ----------------------------------------------------------------------------------- */
 
+static double mean_of(const link_copy *c, double *const *values, int d) {
+  double sum = 0;
+  for (int k = 0; k < c->count; k++)
+    sum += c->weight[k] * values[d][c->site[k]];
+  return sum;
+}
+
+/* The bar's unit tangent in the reference state and now, and how quickly it turns now. */
+static void find_tangent(const link_copy *c, double then[3], double now[3], double spin[3]) {
+  double rate[3] = {0, 0, 0}, length = 0, before = 0;
+  for (int a = 0; a < 3; a++)
+    now[a] = c->tangent[a];
+  for (int a = 0; a < c->bar->dimensions; a++) {
+    now[a] += c->bar->displacement[a][c->after] - c->bar->displacement[a][c->before];
+    rate[a] = c->bar->velocity[a][c->after] - c->bar->velocity[a][c->before];
+  }
+  for (int a = 0; a < 3; a++) {
+    length += now[a] * now[a];
+    before += c->tangent[a] * c->tangent[a];
+  }
+  for (int a = 0; a < 3; a++) {
+    const int b = (a + 1) % 3, e = (a + 2) % 3;
+    spin[a] = (now[b] * rate[e] - now[e] * rate[b]) / length;
+  }
+  for (int a = 0; a < 3; a++) {
+    now[a] /= sqrt(length);
+    then[a] = c->tangent[a] / sqrt(before);
+  }
+}
+
+/* By the shortest turn that takes the tangent from what it was to what it is. */
+static void turn_copy(body *copy, long here, const double then[3], const double now[3],
+                      const double spin[3]) {
+  double axis[3], sine = 0, cosine = 0;
+  for (int a = 0; a < 3; a++) {
+    const int b = (a + 1) % 3, e = (a + 2) % 3;
+    axis[a] = then[b] * now[e] - then[e] * now[b];
+    sine += axis[a] * axis[a];
+    cosine += then[a] * now[a];
+  }
+  sine = sqrt(sine);
+  const double angle = pl_atan2(sine, cosine), part = sine > 0 ? angle / sine : 1;
+  for (int d = copy->dimensions; d < copy->dof; d++) {
+    const int a = copy->dimensions == 2 ? 2 : d - copy->dimensions;
+    copy->displacement[d][here] = part * axis[a];
+    copy->velocity[d][here] = spin[a];
+  }
+}
+
+/* A place is shown further along the bar's tangent, and turns with it. */
+static void follow_bar(const link_copy *c, body *copy, long here) {
+  double then[3], now[3], spin[3];
+  find_tangent(c, then, now, spin);
+  turn_copy(copy, here, then, now, spin);
+  for (int a = 0; a < copy->dimensions; a++) {
+    const int b = (a + 1) % 3, e = (a + 2) % 3;
+    copy->displacement[a][here] += c->ahead * (now[a] - then[a]);
+    copy->velocity[a][here] += c->ahead * (spin[b] * now[e] - spin[e] * now[b]);
+  }
+}
+
 static void follow(const run_link *link) {
   const rows *g = link->own->lattice_rows;
   body *copy = link->own->body;
   for (long p = 0; p < g->particle_count; p++) {
     const long here = g->particle_site[p];
     const link_copy *c = &link->copies[p];
-    for (int d = 0; d < copy->dof; d++) {
-      copy->displacement[d][here] = c->of->displacement[d][c->site];
-      copy->velocity[d][here] = c->of->velocity[d][c->site];
+    for (int d = 0; d < components_of(link, c); d++) {
+      copy->displacement[d][here] = mean_of(c, c->of->displacement, d);
+      copy->velocity[d][here] = mean_of(c, c->of->velocity, d);
     }
+    if (c->bar) follow_bar(c, copy, here);
   }
 }
 
@@ -74,9 +166,9 @@ static void add_work(run_link *link) {
   const sweep *law = law_of(link);
   double power = 0;
   for (long p = 0; p < g->particle_count; p++) {
-    const long here = g->particle_site[p];
-    for (int d = 0; d < law->body->dof; d++)
-      power += law->force[d][here] * law->body->velocity[d][here];
+    const link_copy *c = &link->copies[p];
+    for (int d = 0; d < components_of(link, c); d++)
+      power += law->force[d][g->particle_site[p]] * mean_of(c, c->of->velocity, d);
   }
   link->work -= 0.5 * law->body->time_step * power;
 }

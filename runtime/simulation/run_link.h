@@ -11,9 +11,14 @@
 
 #include "runtime/simulation/run_body.h"
 
+/* What a copy follows: particles, and of one that turns with a bar those before and after it. */
 typedef struct link_copy {
-  const body *of;
-  int64_t site; /* of the particle */
+  const body *of, *bar;
+  int count;
+  int64_t site[ROWS_MOST_COPIED], before, after;
+  double weight[ROWS_MOST_COPIED];
+  double tangent[3]; /* in the reference state, through `before` and `after`, m */
+  double ahead;      /* m */
 } link_copy;
 
 typedef struct run_link {
