@@ -184,7 +184,9 @@ static bool take_setting(const deck_material *m, const deck_lattice *l, model *o
    no strain but that along it. */
 static bool suits_chain(const deck_material *m, const deck_lattice *l, const law *of,
                         diagnostics *said) {
-  const char *word = deck_lattice_is_bar(l) ? "bar" : "chain";
+  const char *word = deck_lattice_is_bar(l)    ? "bar"
+                     : deck_lattice_is_link(l) ? "link to places"
+                                               : "chain";
   const bool families = of->tree->law == LAW_STATE;
   if (!families && !law_reads(of, QUANTITY_T)) return true;
   diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),

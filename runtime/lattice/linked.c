@@ -279,6 +279,7 @@ static double mass_at(const rows *g, int32_t particle) {
    carries: so that all of them together are no heavier than it. */
 static double mass_of(const rows_copy *c, const rows *g, const double *carried) {
   double mobility = 0;
+  if (c->count == 1) return mass_at(g, c->particle[0]) / carried[c->particle[0]];
   for (int k = 0; k < c->count; k++)
     mobility += c->weight[k] * carried[c->particle[k]] / mass_at(g, c->particle[k]);
   return 1 / mobility;

@@ -142,8 +142,8 @@ static void the_report_says_what_bars_are(void **state) {
   assert_non_null(strstr(w->said, "): along this bar E = 200 GPa, E A = 6 MN\n"));
   expect(w, "check bars.nml --set bar[tie].diameter='10 mm' --set material[tie].E='100 GPa'", 0,
          "along this bar E = 100 GPa, E A = 7.854 MN\n");
-  expect(w, "check bars.nml --set material[tie].model=mplm_linear", 1,
-         "the law `mplm_linear` reads the thickness `t`, which a bar does not have");
+  expect(w, "check bars.nml --set material[tie].model=mplm_concrete", 1,
+         "the law `mplm_concrete` reads the thickness `t`, which a bar does not have");
   expect(w, "check bars.nml --set material[tie].model=lps", 1,
          "the law `lps` reads whole families, but a bar has bonds along one line alone");
   expect(w, "check bars.nml --set bar[tie].spacing='1 nm'", 1,

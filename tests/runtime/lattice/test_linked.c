@@ -68,7 +68,7 @@ static double joined(const rows *w, int32_t of_bar, int32_t of_body) {
     const rows_copy *i = &w->copies[bonds[k].i], *j = &w->copies[bonds[k].j],
                     *bar = i->lattice == BAR ? i : j, *body = i->lattice == BAR ? j : i;
     assert_true(bar->lattice == BAR && body->lattice == CONCRETE);
-    if (bar->particle == of_bar && body->particle == of_body)
+    if (bar->particle[0] == of_bar && body->particle[0] == of_body)
       length += w->list->length[bonds[k].slot];
   }
   free(bonds);
@@ -131,10 +131,10 @@ static void masses_are_those_of_the_particles(void **state) {
   for (long p = 0; p < w->particle_count; p++) {
     const rows_copy *c = &w->copies[p];
     const rows *g = b.built[c->lattice];
-    const long site = g->particle_site[c->particle], here = w->particle_site[p];
+    const long site = g->particle_site[c->particle[0]], here = w->particle_site[p];
     const double mass = g->site_mass ? g->site_mass[site] : g->mass,
                  inertia = mass * g->inertia / g->mass * rows_radius_square(g, site);
-    assert_true(apart(w, p, g, c->particle) < 1e-15);
+    assert_true(apart(w, p, g, c->particle[0]) < 1e-15);
     assert_true(w->site_mass[here] == mass);
     assert_true(fabs(mass * w->inertia / w->mass * rows_radius_square(w, here) / inertia - 1) <
                 1e-12);

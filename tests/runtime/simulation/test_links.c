@@ -141,9 +141,9 @@ static void check_bond(double along, double across, double turn, const double ex
   assert_true(fabs(b.length - 5e-3) < 1e-12);
   body *moved = body_of(&r, CONCRETE), *turned = body_of(&r, BAR);
   assert_true(of->of == moved && bar->of == turned);
-  moved->displacement[0][of->site] = along * b.e[0] - across * b.e[1];
-  moved->displacement[1][of->site] = along * b.e[1] + across * b.e[0];
-  turned->displacement[2][bar->site] = turn;
+  moved->displacement[0][of->site[0]] = along * b.e[0] - across * b.e[1];
+  moved->displacement[1][of->site[0]] = along * b.e[1] + across * b.e[0];
+  turned->displacement[2][bar->site[0]] = turn;
   run_link_find(&r.simulation->links[0], 0);
   for (int end = 0; end < 2; end++) {
     const long q = g->particle_site[b.at[end]];
