@@ -217,7 +217,9 @@ static bool suits_section(const deck_material *m, const deck_lattice *l, const l
       said, DIAG_CONFLICT, deck_where(&m->item, "model"),
       "the law `%s` reads `area`, the cross-section of a bar, which chains and bars alone have",
       of->tree->name);
-  diag_hint(said, "give the lattice `kind = 'chain'` and an `area`, or take another law");
+  diag_hint(said, deck_lattice_is_link(l)
+                      ? "take another law, such as `bar_bond`"
+                      : "give the lattice `kind = 'chain'` and an `area`, or take another law");
   return false;
 }
 

@@ -216,7 +216,8 @@ static void check_neighbours(deck_reader *r, const namelist_group *from, deck_la
 
 /* A &lattice of that kind may be. */
 static bool is_in_space(int kind) {
-  return lattice_kinds[kind].dimensions != 2 && kind != LATTICE_KIND_bar;
+  return lattice_kinds[kind].dimensions != 2 && kind != LATTICE_KIND_bar &&
+         kind != LATTICE_KIND_link;
 }
 
 /* "lattices in space are 'cubic', 'fcc' and 'particles'" */

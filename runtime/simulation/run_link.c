@@ -68,7 +68,7 @@ run_link *run_links_new(run_body *bodies, int body_count, int *count) {
   for (int b = 0; b < body_count; b++) {
     if (!bodies[b].lattice_rows->copies) continue;
     run_link *link = &links[(*count)++];
-    *link = (run_link){.own = &bodies[b], .found = -1};
+    *link = (run_link){.own = &bodies[b]};
     take_copies(link, bodies);
     load_bodies(link, *count - 1, bodies);
   }
@@ -173,17 +173,32 @@ static void add_work(run_link *link) {
   link->work -= 0.5 * law->body->time_step * power;
 }
 
-void run_link_find(run_link *link, int64_t step) {
+/* What the law took in the last state becomes part of what it has taken. */
+static void book_losses(const sweep *law) {
+  for (long q = 0; law->lost_state && q < law->lattice->size; q++) {
+    law->dissipated_state[q] += law->lost_state[q];
+    law->dissipated_rate[q] += law->lost_rate[q];
+  }
+}
+
+static void find_forces(run_link *link) {
   sweep *law = law_of(link);
-  const bool again = link->found == step; /* what they lose is booked already */
-  if (again && link->known) return;
-  follow(link);
-  if (link->known) add_work(link);
-  body_step_begins(law->body, 0);
-  law->body->blocks[0].aside = again;
+  law->body->blocks[0].aside = true;
   for (int stage = 0; stage < law->engine.force_stages; stage++)
     law->engine.forces(law, stage, 0);
-  if (link->known) add_work(link);
-  link->found = step;
+}
+
+void run_link_begin(run_link *link) {
+  if (link->known) return;
+  follow(link);
+  find_forces(link);
   link->known = true;
+}
+
+void run_link_step(run_link *link) {
+  book_losses(law_of(link));
+  follow(link);
+  add_work(link);
+  find_forces(link);
+  add_work(link);
 }

@@ -25,8 +25,7 @@ typedef struct run_link {
   run_body *own;     /* the body of copies, and what the law knows of the bonds */
   link_copy *copies; /* [particles of own] */
   double work;       /* J: done on the link, by the ways that its particles have gone */
-  int64_t found;     /* step of the state whose forces are known, or were when a run was saved */
-  bool known;        /* they are */
+  bool known;        /* the forces of the present state are */
 } run_link;
 
 /* The links among bodies that have begun; *count of them. Their forces become loads of the bodies
@@ -34,7 +33,9 @@ typedef struct run_link {
 run_link *run_links_new(run_body *bodies, int body_count, int *count);
 void run_links_free(run_link *links, int count);
 
-/* Forces at the present places, after `step` steps. */
-void run_link_find(run_link *link, int64_t step);
+/* Forces of the state that a run begins or goes on with; nothing where they are known. */
+void run_link_begin(run_link *link);
+/* Forces after a step of all bodies, and their work since the last state. */
+void run_link_step(run_link *link);
 
 #endif

@@ -76,10 +76,8 @@ static part_list parts_of(const simulation *s, run_progress *head) {
     add_loads(&l, s->bodies[b].loads);
     add_part(&l, "ledger", &s->bodies[b].ledger, sizeof s->bodies[b].ledger);
   }
-  for (int k = 0; k < s->link_count; k++) {
+  for (int k = 0; k < s->link_count; k++)
     add_part(&l, "work of a link", &s->links[k].work, sizeof s->links[k].work);
-    add_part(&l, "link found", &s->links[k].found, sizeof s->links[k].found);
-  }
   if (s->relaxation) add_relaxation(&l, s->relaxation);
   for (int m = 0; m < s->monitors->count; m++)
     add_part(&l, s->deck->monitors[m].name, &s->monitors->items[m].state, sizeof(monitor_state));
@@ -185,6 +183,8 @@ bool simulation_restore(simulation *s, const char *path, const char *fingerprint
   const bool good = checkpoint_read(path, fingerprint, l.items, l.count, error, size);
   free(l.items);
   if (good) s->clock.at = head;
+  for (int k = 0; k < s->link_count; k++)
+    s->links[k].known = false;
   for (int b = 0; b < s->body_count; b++) {
     if (good) put_places_back(s->bodies[b].loads, &own[b]);
     if (good) sweep_fields_set(s->bodies[b].state);

@@ -90,10 +90,20 @@ static bool some_body_is_bad(const simulation *s) {
   return false;
 }
 
-/* At the present places. */
-static void find_links(simulation *s) {
+/* The deck's time of the present places, for the laws. */
+static void set_time(simulation *s) {
+  for (int b = 0; b < s->body_count; b++) {
+    body *of = s->bodies[b].body;
+    of->time = load_clock_time(&s->bodies[b].loads->clock, of, (long)s->clock.at.step);
+  }
+}
+
+static void step_links(simulation *s) {
+  set_time(s);
   for (int k = 0; k < s->link_count; k++)
-    run_link_find(&s->links[k], s->clock.at.step);
+    run_link_step(&s->links[k]);
+  for (int b = 0; b < s->body_count; b++)
+    load_steps_take_links(s->bodies[b].loads, s->bodies[b].body);
 }
 
 /* What one thread does after all have moved their rows and what is loaded in them. */
@@ -109,9 +119,7 @@ static void after_step(simulation *s) {
     load_steps_turn(s->bodies[b].loads, s->bodies[b].body, (long)s->clock.at.step);
   }
   s->clock.at.step++;
-  find_links(s);
-  for (int b = 0; b < s->body_count && s->link_count > 0; b++)
-    load_steps_take_links(s->bodies[b].loads, s->bodies[b].body);
+  if (s->link_count > 0) step_links(s);
   s->go_on = s->clock.at.step < s->until && !(s->interrupted && *s->interrupted);
   if (s->relaxation) {
     s->observe = relaxation_due(s->relaxation, s->clock.at.step);
@@ -189,14 +197,6 @@ static void do_stage(void *of, int task, int block) {
   }
 }
 
-/* The deck's time of the present places, for the laws. */
-static void set_time(simulation *s) {
-  for (int b = 0; b < s->body_count; b++) {
-    body *of = s->bodies[b].body;
-    of->time = load_clock_time(&s->bodies[b].loads->clock, of, (long)s->clock.at.step);
-  }
-}
-
 /* Blocks keep the times of what they do in steps only. */
 static int next_task(simulation *s) {
   set_time(s);
@@ -234,7 +234,9 @@ static void observe_all(simulation *s) {
 }
 
 static void begin(simulation *s) {
-  find_links(s);
+  set_time(s);
+  for (int k = 0; k < s->link_count; k++)
+    run_link_begin(&s->links[k]);
   if (s->clock.at.begun) return;
   s->clock.at.begun = 1;
   if (s->relaxation) relaxation_begin(s->relaxation);

@@ -144,7 +144,7 @@ static void check_bond(double along, double across, double turn, const double ex
   moved->displacement[0][of->site[0]] = along * b.e[0] - across * b.e[1];
   moved->displacement[1][of->site[0]] = along * b.e[1] + across * b.e[0];
   turned->displacement[2][bar->site[0]] = turn;
-  run_link_find(&r.simulation->links[0], 0);
+  run_link_begin(&r.simulation->links[0]);
   for (int end = 0; end < 2; end++) {
     const long q = g->particle_site[b.at[end]];
     const double f[3] = {law->force[0][q] * b.e[0] + law->force[1][q] * b.e[1],
@@ -232,7 +232,7 @@ static void a_rigid_turn_causes_no_force(void **state) {
   for (int b = CONCRETE; b <= BAR; b++)
     rigid_turn(body_of(&r, b), 0.9, 0.3);
   run_link *link = &r.simulation->links[0];
-  run_link_find(link, 0);
+  run_link_begin(link);
   const sweep *law = link->own->laws[0].state;
   const double rigidity = 4e6 * link->own->lattice_rows->spacing;
   double most = 0;

@@ -1,0 +1,215 @@
+/* Laws of links as they come along: `bar_bond` against the closed forms of a beam as stiff as a bond
+   of the lattice; dampers and damage in the ledger; the same bits for any number of threads and
+   after stops; laws that do not suit. */
+#define _GNU_SOURCE /* nftw */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "runtime/simulation/run_link.h"
+#include "runtime/simulation/simulation_state.h"
+#include "tests/generator/command_tools.h"
+#include "tests/runtime/hand_over.h"
+#include "tests/verification/case.h"
+
+enum { CONCRETE, BAR, LINK };
+
+static void open_text(deck_case *c, const char *text) {
+  if (!deck_case_text(c, text)) diag_print(&c->model.said, stderr);
+  if (!c->simulation) fail_msg("%s", text);
+}
+
+/* --- the elastic link ------------------------------------------------------------------------- */
+
+#define ONE_BOND                                                                                   \
+  "&simulation end_time = '1 ms' /\n&output frames = 0 /\n"                                        \
+  "&lattice name = 'c' kind = 'hexagonal' spacing = '20 mm' thickness = '120 mm' "                 \
+  "stiffness_thickness = '127 mm' /\n"                                                             \
+  "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = '100 mm', '40 mm' /\n"             \
+  "&material lattice = 'c' model = 'elastic_micropolar' /\n"                                       \
+  "&bar name = 'b' points = '46 mm', 0, '86 mm', 0 spacing = '20 mm' diameter = '12 mm' /\n"       \
+  "&material bar = 'b' model = 'beam' /\n"                                                         \
+  "&link name = 'l' bar = 'b' lattice = 'c' every = 3 within = 0.35 /\n"                           \
+  "&material link = 'l' model = 'bar_bond' zeta = 0 /\n"
+
+/* Force (N, along x and y) and moment (N m) on the bar's particle, 6 mm to the right of that of the
+   lattice, after a motion of its own. */
+static void bond_after(double x, double y, double turn, double f[3]) {
+  deck_case c;
+  open_text(&c, ONE_BOND);
+  run_link *link = &c.simulation->links[0];
+  const rows *g = link->own->lattice_rows;
+  assert_int_equal(g->bond_count, 1);
+  const int p = g->copies[0].lattice == BAR ? 0 : 1;
+  body *b = simulation_state(c.simulation, BAR)->body;
+  const double way[3] = {x, y, turn};
+  for (int d = 0; d < 3; d++)
+    b->displacement[d][link->copies[p].site] = way[d];
+  run_link_begin(link);
+  for (int d = 0; d < 3; d++)
+    f[d] = simulation_law_state(c.simulation, LINK)->force[d][g->particle_site[p]];
+  deck_case_close(&c);
+}
+
+/* EA and EI of a bond of the lattice (Gerstle et al. 2013, eq 3), here of its length s = 20 mm and
+   thickness 127 mm, over the link's own length d = 6 mm. */
+static void an_elastic_link_is_as_stiff_as_a_bond_of_the_lattice(void **state) {
+  (void)state;
+  const double E = 24.86e9, nu = 0.2, s = 0.02, t = 0.127, d = 0.006, way = 1e-10, turn = 1e-8;
+  const double EA = E * s * t / (sqrt(3) * (1 - nu)),
+               EI = E * s * s * s * t * (1 - 3 * nu) / (12 * sqrt(3) * (1 - nu * nu));
+  double f[3];
+  print_message("EA %.5g N, EI %.5g N m^2\n", EA, EI);
+  assert_true(fabs(EA / 4.5571e7 - 1) < 1e-4 && fabs(EI / 506.34 - 1) < 1e-4); /* its table 2 */
+  bond_after(way, 0, 0, f);
+  assert_true(fabs(f[0] / (-EA / d * way) - 1) < 1e-6 && fabs(f[1]) < 1e-6 * fabs(f[0]));
+  bond_after(0, way, 0, f);
+  assert_true(fabs(f[1] / (-12 * EI / (d * d * d) * way) - 1) < 1e-6);
+  assert_true(fabs(f[2] / (6 * EI / (d * d) * way) - 1) < 1e-6);
+  bond_after(0, 0, turn, f);
+  assert_true(fabs(f[1] / (6 * EI / (d * d) * turn) - 1) < 1e-6);
+  assert_true(fabs(f[2] / (-4 * EI / d * turn) - 1) < 1e-6);
+}
+
+/* --- what links lose -------------------------------------------------------------------------- */
+
+#define BEAM                                                                                       \
+  "&simulation end_time = '0.2 ms' step_safety = %g threads = %d /\n"                              \
+  "&output frames = 0 sample = '2 us' losses = T energy = T /\n"                                   \
+  "&lattice name = 'c' kind = 'hexagonal' spacing = '20 mm' thickness = '120 mm' /\n"              \
+  "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = '300 mm', '80 mm' /\n"             \
+  "&material lattice = 'c' model = 'elastic_micropolar' /\n"                                       \
+  "&bar name = 'b' points = '11 mm', '23 mm', '291 mm', '29 mm' spacing = '20 mm' diameter = "     \
+  "'12.7 mm' /\n"                                                                                  \
+  "&material bar = 'b' model = 'beam' I = '1277 mm^4' /\n"                                         \
+  "&link name = 'l' bar = 'b' lattice = 'c' every = 2 /\n"                                         \
+  "&region name = 'left' lattice = 'c' shape = 'rectangle' corner = -1, -1 size = '1.015 m', 2 "   \
+  "/\n"                                                                                            \
+  "&region name = 'tip' lattice = 'b' shape = 'rectangle' corner = '280 mm', -1 size = 1, 2 /\n"   \
+  "&support region = 'left' fix = 'xy' /\n"                                                        \
+  "&drive region = 'tip' component = 'x' velocity = '%g m/s' rise = '50 us' /\n"
+#define DAMPED "&material link = 'l' model = 'bar_bond' zeta = 0.2 /\n"
+#define BREAKS "&material link = 'l' model = 'mplm_bilinear' S_t = 1e-4 zeta = 0.05 /\n"
+
+static void open_beam(deck_case *c, const char *link, double safety, int threads, double speed) {
+  char text[4096];
+  snprintf(text + snprintf(text, sizeof text, BEAM, safety, threads, speed), 1000, "%s", link);
+  open_text(c, text);
+}
+
+typedef struct balance {
+  double imbalance, own, external, lost, links;
+} balance;
+
+static double last_of(const deck_case *c, const char *name) {
+  return deck_case_series(c, name)[simulation_history(c->simulation, NULL) - 1];
+}
+
+/* All over the work from outside. */
+static balance balance_of(const char *link, const char *lost, double safety, double speed) {
+  deck_case c;
+  char own[64];
+  open_beam(&c, link, safety, 0, speed);
+  assert_int_equal(deck_case_go(&c), STEP_END);
+  balance b = {.external = last_of(&c, "energy/external")};
+  const double *imbalance = deck_case_series(&c, "energy/imbalance"),
+               *of_link = deck_case_series(&c, "l/imbalance");
+  for (long k = 0; k < simulation_history(c.simulation, NULL); k++) {
+    b.imbalance = fmax(b.imbalance, fabs(imbalance[k]) / b.external);
+    b.own = fmax(b.own, fabs(of_link[k]) / b.external);
+  }
+  snprintf(own, sizeof own, "energy/%s", lost);
+  b.lost = last_of(&c, own) / b.external;
+  snprintf(own, sizeof own, "l/%s", lost);
+  b.links = last_of(&c, own) / b.external;
+  deck_case_close(&c);
+  return b;
+}
+
+static void what_links_lose_is_booked(void **state) {
+  (void)state;
+  static const struct {
+    const char *link, *lost;
+    double speed, falls; /* by a quarter of the step */
+  } cases[] = {{DAMPED, "dissipated_damping", 0.1, 0.4}, {BREAKS, "dissipated_damage", 1, 0.4}};
+  for (int k = 0; k < 2; k++) {
+    const balance coarse = balance_of(cases[k].link, cases[k].lost, 0.8, cases[k].speed),
+                  fine = balance_of(cases[k].link, cases[k].lost, 0.2, cases[k].speed);
+    print_message("%s: %.2g of the work, the links' %.2g; imbalance %.1e, of links %.1e, with a "
+                  "quarter of the step %.1e, %.1e\n",
+                  cases[k].lost, fine.lost, fine.links, coarse.imbalance, coarse.own,
+                  fine.imbalance, fine.own);
+    assert_true(fine.links > 1e-3 && fabs(fine.lost / fine.links - 1) < 1e-12);
+    assert_true(coarse.imbalance < 1e-4 && coarse.own < 1e-4);
+    assert_true(fine.imbalance < cases[k].falls * coarse.imbalance);
+  }
+}
+
+/* --- the same bits ---------------------------------------------------------------------------- */
+
+static void assert_same(const deck_case *a, const deck_case *b) {
+  for (int n = CONCRETE; n <= LINK; n++) {
+    const sweep *x = simulation_law_state(a->simulation, n),
+                *y = simulation_law_state(b->simulation, n);
+    const rows *g = x->lattice;
+    for (long p = 0; p < g->particle_count; p++) {
+      const long q = g->particle_site[p];
+      for (int d = 0; d < x->body->dof; d++) {
+        assert_true(x->body->displacement[d][q] == y->body->displacement[d][q]);
+        assert_true(x->body->velocity[d][q] == y->body->velocity[d][q]);
+      }
+      for (int f = 0; f < x->law->field_count; f++)
+        for (long k = 0; k < sweep_planes(x, x->law->fields[f].place); k++)
+          assert_true(x->field[f][k * g->size + q] == y->field[f][k * g->size + q]);
+    }
+  }
+  const long samples = simulation_history(a->simulation, NULL);
+  assert_int_equal(simulation_history(b->simulation, NULL), samples);
+  for (int k = 0; k < simulation_series_count(a->simulation); k++) {
+    const double *p, *q;
+    simulation_series(a->simulation, k, NULL, &p);
+    simulation_series(b->simulation, k, NULL, &q);
+    assert_memory_equal(p, q, (size_t)samples * sizeof(double));
+  }
+}
+
+/* Links that break and damp, with what they lose; restored twice. */
+static void threads_and_stops_do_not_change_a_bit(void **state) {
+  (void)state;
+  deck_case straight;
+  open_beam(&straight, BREAKS, 0.8, 1, 1);
+  assert_int_equal(deck_case_go(&straight), STEP_END);
+  assert_true(last_of(&straight, "l/dissipated_damage") > 0);
+  assert_true(last_of(&straight, "l/dissipated_damping") > 0);
+  const long steps = simulation_step_count(straight.simulation);
+  for (int threads = 2; threads <= 3; threads++) {
+    deck_case whole, first, second, third;
+    open_beam(&whole, BREAKS, 0.8, threads, 1);
+    assert_int_equal(deck_case_go(&whole), STEP_END);
+    assert_same(&straight, &whole);
+    open_beam(&first, BREAKS, 0.8, threads, 1);
+    open_beam(&second, BREAKS, 0.8, 1, 1);
+    open_beam(&third, BREAKS, 0.8, threads, 1);
+    hand_over(first.simulation, steps / 2, second.simulation);
+    hand_over(second.simulation, 2 * steps / 3, third.simulation);
+    assert_int_equal(deck_case_go(&third), STEP_END);
+    assert_same(&straight, &third);
+    deck_case_close(&whole);
+    deck_case_close(&first);
+    deck_case_close(&second);
+    deck_case_close(&third);
+  }
+  deck_case_close(&straight);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(an_elastic_link_is_as_stiff_as_a_bond_of_the_lattice),
+      cmocka_unit_test(what_links_lose_is_booked),
+      cmocka_unit_test(threads_and_stops_do_not_change_a_bit),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
