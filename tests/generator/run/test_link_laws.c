@@ -47,7 +47,7 @@ static void bond_after(double x, double y, double turn, double f[3]) {
   body *b = simulation_state(c.simulation, BAR)->body;
   const double way[3] = {x, y, turn};
   for (int d = 0; d < 3; d++)
-    b->displacement[d][link->copies[p].site] = way[d];
+    b->displacement[d][link->copies[p].site[0]] = way[d];
   run_link_begin(link);
   for (int d = 0; d < 3; d++)
     f[d] = simulation_law_state(c.simulation, LINK)->force[d][g->particle_site[p]];
