@@ -61,8 +61,8 @@ typedef struct rows_copy {
   int32_t particle[ROWS_MOST_COPIED];
   double weight[ROWS_MOST_COPIED]; /* of sum 1 */
   bool along;                      /* it turns with a bar (tied.h): */
-  int32_t before, after;           /* particles of the bar that its tangent goes through */
-  double ahead;                    /* m: it is shown so far along the bar */
+  int32_t at, before, after; /* particles of the bar: there; those that its tangent goes through */
+  double ahead;              /* m: it is shown so far along the bar */
 } rows_copy;
 
 typedef struct rows {

@@ -183,6 +183,7 @@ static void tie(tier *t, int32_t particle) {
     return;
   }
   find_direction(t, particle, &bar, tangent);
+  place_of.at = bar.at = particle;
   place_of.before = bar.before;
   place_of.after = bar.after;
   place_of.ahead = length_of(t, particle);

@@ -28,6 +28,7 @@ static link_copy follower_of(const rows_copy *c, run_body *bodies, int bar) {
   if (!c->along) return f;
   double start[3], end[3];
   f.bar = along->body;
+  f.at = site_of(along, c->at);
   f.before = site_of(along, c->before);
   f.after = site_of(along, c->after);
   f.ahead = c->ahead;
@@ -41,6 +42,8 @@ static link_copy follower_of(const rows_copy *c, run_body *bodies, int bar) {
 static void take_copies(run_link *link, run_body *bodies) {
   const rows *g = link->own->lattice_rows;
   link->copies = must_calloc((size_t)g->particle_count + 1, sizeof *link->copies);
+  for (int d = 0; d < g->dimensions; d++)
+    link->couple[d] = must_calloc((size_t)g->particle_count + 1, sizeof(double));
   for (long p = 0; p < g->particle_count; p++)
     link->copies[p] = follower_of(&g->copies[p], bodies, g->copies[0].lattice);
 }
@@ -50,11 +53,24 @@ static int components_of(const run_link *link, const link_copy *c) {
   return c->bar ? link->own->body->dimensions : link->own->body->dof;
 }
 
+static bool has_couple(const link_copy *c) {
+  return c->ahead > 0;
+}
+
+static void load_bar(const run_link *link, int number, loads *bar, long p) {
+  const link_copy *c = &link->copies[p];
+  for (int d = 0; d < link->own->body->dimensions && has_couple(c); d++) {
+    loads_add_link(bar, c->after, d, number, 1, &link->couple[d][p]);
+    loads_add_link(bar, c->before, d, number, -1, &link->couple[d][p]);
+  }
+}
+
 static void load_bodies(const run_link *link, int number, run_body *bodies) {
   const rows *g = link->own->lattice_rows;
   const sweep *law = law_of(link);
   for (long p = 0; p < g->particle_count; p++) {
     const link_copy *c = &link->copies[p];
+    load_bar(link, number, bodies[g->copies[0].lattice].loads, p);
     for (int k = 0; k < c->count; k++)
       for (int d = 0; d < components_of(link, c); d++)
         loads_add_link(bodies[g->copies[p].lattice].loads, c->site[k], d, number, c->weight[k],
@@ -78,8 +94,11 @@ run_link *run_links_new(run_body *bodies, int body_count, int *count) {
 }
 
 void run_links_free(run_link *links, int count) {
-  for (int k = 0; k < count; k++)
+  for (int k = 0; k < count; k++) {
     free(links[k].copies);
+    for (int d = 0; d < 3; d++)
+      free(links[k].couple[d]);
+  }
   free(links);
 }
 
@@ -169,6 +188,9 @@ static void add_work(run_link *link) {
     const link_copy *c = &link->copies[p];
     for (int d = 0; d < components_of(link, c); d++)
       power += law->force[d][g->particle_site[p]] * mean_of(c, c->of->velocity, d);
+    for (int d = 0; d < law->body->dimensions && has_couple(c); d++)
+      power +=
+          link->couple[d][p] * (c->bar->velocity[d][c->after] - c->bar->velocity[d][c->before]);
   }
   link->work -= 0.5 * law->body->time_step * power;
 }
@@ -181,11 +203,42 @@ static void book_losses(const sweep *law) {
   }
 }
 
+/* The force F on a place and its opposite on the bar's particle, from which the place is now by r,
+   turn the bodies by r x F. The bond's energy does not change where place and bar turn together:
+   so it takes a couple -r x F to turn the bar's tangent alone, and momentum about any point stays.
+ */
+static void find_couples(run_link *link) {
+  const rows *g = link->own->lattice_rows;
+  const sweep *law = law_of(link);
+  for (long p = 0; p < g->particle_count; p++) {
+    const link_copy *c = &link->copies[p];
+    double then[3], now[3], spin[3], r[3] = {0, 0, 0}, f[3] = {0, 0, 0}, m[3], length = 0;
+    if (!has_couple(c)) continue;
+    for (int a = 0; a < law->body->dimensions; a++) {
+      const double way = c->bar->displacement[a][c->after] - c->bar->displacement[a][c->before],
+                   d = c->tangent[a] + way;
+      r[a] = mean_of(c, c->of->displacement, a) - c->bar->displacement[a][c->at];
+      f[a] = law->force[a][g->particle_site[p]];
+      length += d * d;
+    }
+    find_tangent(c, then, now, spin);
+    for (int a = 0; a < 3; a++) {
+      const int b = (a + 1) % 3, e = (a + 2) % 3;
+      m[a] = f[b] * r[e] - f[e] * r[b];
+    }
+    for (int a = 0; a < law->body->dimensions; a++) {
+      const int b = (a + 1) % 3, e = (a + 2) % 3;
+      link->couple[a][p] = (m[b] * now[e] - m[e] * now[b]) / sqrt(length);
+    }
+  }
+}
+
 static void find_forces(run_link *link) {
   sweep *law = law_of(link);
   law->body->blocks[0].aside = true;
   for (int stage = 0; stage < law->engine.force_stages; stage++)
     law->engine.forces(law, stage, 0);
+  find_couples(link);
 }
 
 void run_link_begin(run_link *link) {

@@ -11,11 +11,12 @@
 
 #include "runtime/simulation/run_body.h"
 
-/* What a copy follows: particles, and of one that turns with a bar those before and after it. */
+/* What a copy follows: particles, and of one that turns with a bar that of the bar, those before and
+   after it. */
 typedef struct link_copy {
   const body *of, *bar;
   int count;
-  int64_t site[ROWS_MOST_COPIED], before, after;
+  int64_t site[ROWS_MOST_COPIED], at, before, after;
   double weight[ROWS_MOST_COPIED];
   double tangent[3]; /* in the reference state, through `before` and `after`, m */
   double ahead;      /* m */
@@ -24,8 +25,11 @@ typedef struct link_copy {
 typedef struct run_link {
   run_body *own;     /* the body of copies, and what the law knows of the bonds */
   link_copy *copies; /* [particles of own] */
-  double work;       /* J: done on the link, by the ways that its particles have gone */
-  bool known;        /* the forces of the present state are */
+  /* [dimensions][particles of own] N: of places that turn with a bar, on the particle after; the
+     opposite is on the one before */
+  double *couple[3];
+  double work; /* J: done on the link, by the ways that its particles have gone */
+  bool known;  /* the forces of the present state are */
 } run_link;
 
 /* The links among bodies that have begun; *count of them. Their forces become loads of the bodies
