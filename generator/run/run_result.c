@@ -222,12 +222,18 @@ static void put_particles(const run *r, int lattice, particle_arrays at) {
   if (w->list) shape_unresolved(w, at.resolved);
 }
 
+/* Those of a link are others'. */
+static size_t own_particles(const run *r, int lattice) {
+  const rows *w = simulation_rows(r->simulation, lattice);
+  return w->copies ? 0 : (size_t)w->particle_count;
+}
+
 static void particle_table(run *r, result_header *h) {
   const int bodies = simulation_bodies(r->simulation);
   bool irregular = false;
   h->dimensions = simulation_rows(r->simulation, 0)->dimensions;
   for (int b = 0; b < bodies; b++) {
-    h->particle_count += simulation_rows(r->simulation, b)->particle_count;
+    h->particle_count += (long)own_particles(r, b);
     irregular = irregular || simulation_rows(r->simulation, b)->list;
   }
   const size_t n = (size_t)h->particle_count, dimensions = (size_t)h->dimensions;
@@ -237,10 +243,11 @@ static void particle_table(run *r, result_header *h) {
                                arena_alloc(r->memory, n * sizeof(int32_t))};
   size_t first = 0;
   for (int b = 0; b < bodies; b++) {
-    put_particles(r, b,
-                  (particle_arrays){all.reference + dimensions * first, all.volume + first,
-                                    all.body + first, all.resolved + first});
-    first += (size_t)simulation_rows(r->simulation, b)->particle_count;
+    if (own_particles(r, b) > 0)
+      put_particles(r, b,
+                    (particle_arrays){all.reference + dimensions * first, all.volume + first,
+                                      all.body + first, all.resolved + first});
+    first += own_particles(r, b);
   }
   h->reference = all.reference;
   h->volume = all.volume;
@@ -248,30 +255,38 @@ static void particle_table(run *r, result_header *h) {
   h->resolved = irregular ? all.resolved : NULL;
 }
 
-/* Of bonds of a body whose particles begin at `first`. */
-static const int32_t *pairs_of(run *r, const rows *w, int32_t first) {
+/* A particle in the result; first[lattice]: the first one of each. */
+static int32_t number_of(const rows *w, int32_t particle, int lattice, const int32_t *first) {
+  const rows_copy own = {lattice, particle}, *at = w->copies ? &w->copies[particle] : &own;
+  return first[at->lattice] + at->particle;
+}
+
+static const int32_t *pairs_of(run *r, int interaction, const int32_t *first) {
+  const int lattice = r->deck->interactions[interaction].lattice;
+  const rows *w = simulation_law_rows(r->simulation, interaction),
+             *of = simulation_rows(r->simulation, lattice);
   rows_bond *bonds = rows_bonds(w);
   int32_t *pairs = arena_alloc(r->memory, 2 * (size_t)w->bond_count * sizeof *pairs);
   for (long m = 0; m < w->bond_count; m++) {
-    pairs[2 * m] = first + bonds[m].i;
-    pairs[2 * m + 1] = first + bonds[m].j;
+    pairs[2 * m] = number_of(of, bonds[m].i, lattice, first);
+    pairs[2 * m + 1] = number_of(of, bonds[m].j, lattice, first);
   }
   free(bonds);
   return pairs;
 }
 
 static void bond_table(run *r, result_header *h) {
-  int32_t first = 0;
-  int lattice = 0;
+  const int bodies = simulation_bodies(r->simulation);
+  int32_t *first = arena_alloc(r->memory, ((size_t)bodies + 1) * sizeof *first);
+  first[0] = 0;
+  for (int b = 0; b < bodies; b++)
+    first[b + 1] = first[b] + (int32_t)own_particles(r, b);
   h->interaction_count = r->deck->interaction_count;
   result_bonds *bonds = arena_alloc(r->memory, (size_t)h->interaction_count * sizeof *bonds);
-  for (int b = 0; b < h->interaction_count; b++) {
-    const deck_interaction *of = &r->deck->interactions[b];
-    const rows *w = simulation_law_rows(r->simulation, b);
-    if (of->lattice > lattice)
-      first += (int32_t)simulation_rows(r->simulation, lattice++)->particle_count;
-    bonds[b] = (result_bonds){of->name, w->bond_count, pairs_of(r, w, first)};
-  }
+  for (int b = 0; b < h->interaction_count; b++)
+    bonds[b] =
+        (result_bonds){r->deck->interactions[b].name,
+                       simulation_law_rows(r->simulation, b)->bond_count, pairs_of(r, b, first)};
   h->bonds = bonds;
 }
 

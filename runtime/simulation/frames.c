@@ -298,9 +298,9 @@ static size_t most_fields(const run_body *bodies, int count) {
   return most;
 }
 
-/* Some law of the body has what the field is about. */
+/* Some law of the body has what the field is about. Particles of links are those of others. */
 static bool exists_on(const own_field *own, const deck_output *asked, const run_body *of) {
-  for (int n = 0; n < of->law_count; n++)
+  for (int n = 0; n < of->law_count && !run_body_is_link(of); n++)
     if (own->exists(asked, of->laws[n].law)) return true;
   return false;
 }
@@ -308,7 +308,7 @@ static bool exists_on(const own_field *own, const deck_output *asked, const run_
 static long particles_of(const run_body *bodies, int count) {
   long sum = 0;
   for (int b = 0; b < count; b++)
-    sum += bodies[b].lattice_rows->particle_count;
+    sum += run_body_particles(&bodies[b]);
   return sum;
 }
 
@@ -429,11 +429,13 @@ static void add_parameter(frame_set *f, int n, int parameter, values_of *values,
   const pl_law *law = f->laws[n].law;
   const pl_parameter *p = &law->parameters[parameter];
   const bool pairs = law->kind != PL_STATE || law->pairwise;
-  if (!is_asked(f->asked, p->name)) return;
+  const bool bonds = pairs && parameter != law->density;
+  const bool link = run_body_is_link(&f->bodies[f->laws[n].from->lattice]);
+  if (!is_asked(f->asked, p->name) || (link && !bonds)) return;
   add(f,
       (frame_field){.name = p->name,
                     .unit = p->unit,
-                    .on_bonds = pairs && parameter != law->density,
+                    .on_bonds = bonds,
                     .components = 1,
                     .interaction = n,
                     .of_law = true,
@@ -500,7 +502,7 @@ frame_set *frames_new(const deck_output *asked, const run_body *bodies, int coun
       add_own(f, own, b);
   for (int k = 0; k < TENSORS; k++)
     for (int b = 0; b < count; b++)
-      add_tensor(f, k, b);
+      if (!run_body_is_link(&bodies[b])) add_tensor(f, k, b);
   for (int n = 0; n < f->law_count; n++)
     add_of_law(f, n);
   return f;
@@ -527,7 +529,7 @@ int frames_fields(const frame_set *f, const frame_field **fields) {
 
 /* Of particles whose laws do not have the field. */
 static void fill_without(const frame_field *field, const run_body *of, double *values) {
-  const long count = of->lattice_rows->particle_count * field->components;
+  const long count = run_body_particles(of) * field->components;
   const double none = strcmp(field->kind, "damage") == 0 ? 0 : NAN;
   for (long k = 0; k < count; k++)
     values[k] = none;
@@ -551,7 +553,7 @@ void frames_values(const frame_set *f, int field, double *values) {
     const run_body *here = &f->bodies[b];
     double *at = values + here->first_particle * of->components;
     fill_without(of, here, at);
-    for (int n = 0; n < here->law_count; n++)
+    for (int n = 0; n < here->law_count && !run_body_is_link(here); n++)
       values_of_law(f, field, here, &here->laws[n], at);
   }
 }

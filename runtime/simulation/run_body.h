@@ -45,7 +45,7 @@ typedef struct run_body {
   ledger ledger;
   ledger_laws energies;
   load_look look;         /* of the state observed last */
-  int32_t first_particle; /* its number in results */
+  int32_t first_particle; /* its number in results; of no use of a link */
   int first_block;        /* of the team: the block that its first one belongs to */
 } run_body;
 
@@ -53,6 +53,10 @@ typedef struct run_body {
    them by itself. */
 static inline bool run_body_is_link(const run_body *b) {
   return b->lattice_rows->copies != NULL;
+}
+/* In results, where a particle stands once. */
+static inline long run_body_particles(const run_body *b) {
+  return run_body_is_link(b) ? 0 : b->lattice_rows->particle_count;
 }
 
 /* `built` [lattice_count] has the deck's lattices so far; the body's own is built where it is NULL,

@@ -56,7 +56,7 @@ static bool open_bodies(simulation *s, diagnostics *d) {
     good = run_body_begin(of, s->deck, s->limit.step, d) && good;
     of->first_particle = particles;
     of->first_block = blocks;
-    particles += (int32_t)of->lattice_rows->particle_count;
+    particles += (int32_t)run_body_particles(of);
     blocks += of->body->block_count;
     s->blocks = most(s->blocks, of->body->block_count);
     s->step_stages = most(s->step_stages, of->state->engine.step_stages);

@@ -23,7 +23,7 @@ export PYTHONDONTWRITEBYTECODE=1
 work=$(mktemp -d "${TMPDIR:-/tmp}/perilat_clients.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-for deck in plane space irregular bars; do
+for deck in plane space irregular bars linked; do
   "$program" run "$here/$deck.nml" >"$deck.said" 2>&1 || { cat "$deck.said"; exit 1; }
   for frame in 0 1 2 3; do
     "$program" export "$deck.h5" --frame $frame -o "${deck}_particles_$frame.csv" >/dev/null
