@@ -23,6 +23,13 @@ def check_ending(file, specimen):
     assert told["compiler"] and "-O3" in told["flags"], specimen
 
 
+def check_bodies(file, specimen):
+    body = file["particles/body"][:]
+    bars = 36 + 23 if specimen == "bars" else 0
+    assert (body < 0).sum() == bars and (body[:len(body) - bars] == 0).all(), specimen
+    assert ("resolved" in file["particles"]) == (specimen == "irregular"), specimen
+
+
 def data_sets(group):
     found = []
     group.visititems(lambda name, item: found.append(item) if isinstance(item, h5py.Dataset) else None)
@@ -90,5 +97,6 @@ for specimen in SPECIMENS:
     with h5py.File(f"{sys.argv[1]}/{specimen}.h5", "r") as opened:
         check_ending(opened, specimen)
         check_words(opened, specimen)
+        check_bodies(opened, specimen)
         check_vtkhdf(opened, specimen, [Frame(sys.argv[1], specimen, frame) for frame in range(FRAMES)])
     print(f"{specimen}: h5py {h5py.__version__}, HDF5 {h5py.version.hdf5_version}")
