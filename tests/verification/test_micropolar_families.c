@@ -1,5 +1,5 @@
 /* Micropolar laws of bonds off the hexagon and in space, with their compiled kernels: the isotropic
-   lattice of mplm_space, rigid and spinning bodies, the stable step of a body, cantilevers against
+   lattices of mplm_space and mplm_concrete_space, rigid and spinning bodies, the stable step of a body, cantilevers against
    theory. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,24 +21,31 @@
 #define SPACE_DECK                                                                                 \
   "&simulation end_time = %g step_safety = %g /\n"                                                 \
   "&lattice name = 'c' kind = 'fcc' shells = 2 spacing = 0.01 rotation = %g axis = 1, 2, 3 /\n"    \
-  "&material lattice = 'c' model = 'mplm_space' nu = %g /\n"                                       \
+  "&material lattice = 'c' model = '%s' E = 30e9 nu = %g /\n"                                      \
   "&body lattice = 'c' shape = 'sphere' centre = 0, 0, 0 radius = 0.025 /\n"                       \
   "&output frames = 0 fields = 'force' /\n"
 #define PLANE_DECK                                                                                 \
   "&simulation end_time = %g step_safety = %g /\n"                                                 \
   "&lattice name = 'c' kind = 'square' thickness = 0.1 spacing = 0.01 rotation = %g /\n"           \
-  "&material lattice = 'c' model = 'elastic_micropolar' nu = %g /\n"                               \
+  "&material lattice = 'c' model = '%s' E = 30e9 nu = %g /\n"                                      \
   "&body lattice = 'c' shape = 'disc' centre = 0, 0 radius = 0.055 /\n"                            \
   "&output frames = 0 fields = 'force' /\n"
 
 static const double spacing = 0.01, E = 30e9; /* m, Pa */
 
-static void open_body(deck_case *c, int dimensions, double end, double safety, double turn,
-                      double nu) {
+static void open_law_body(deck_case *c, int dimensions, const char *name, double end, double safety,
+                          double turn, double nu) {
   char text[1024];
-  snprintf(text, sizeof text, dimensions == 3 ? SPACE_DECK : PLANE_DECK, end, safety, turn, nu);
+  snprintf(text, sizeof text, dimensions == 3 ? SPACE_DECK : PLANE_DECK, end, safety, turn, name,
+           nu);
   assert_true(deck_case_text(c, text));
   assert_int_equal(c->law.law->dof, dimensions == 3 ? 6 : 3);
+}
+
+static void open_body(deck_case *c, int dimensions, double end, double safety, double turn,
+                      double nu) {
+  open_law_body(c, dimensions, dimensions == 3 ? "mplm_space" : "elastic_micropolar", end, safety,
+                turn, nu);
 }
 
 /* --- elastic constants ------------------------------------------------------------------------ */
@@ -59,15 +66,14 @@ static double error_of_D(const pl_law *of, const double *parameters, const rows 
 
 /* All 36 elastic constants and with them E, nu and G in every direction, of the lattice in three
    orientations, as compiled and as interpreted. */
-static void the_lattice_in_space_is_isotropic(void **state) {
-  (void)state;
+static void is_isotropic(const char *name) {
   static const double ratios[] = {0, 0.1, 0.2, 0.25}, turns[] = {0, 17, 63};
   double worst = 0, moduli = 0;
   for (int k = 0; k < 12; k++) {
     const double nu = ratios[k % 4];
     deck_case c;
     implied_elasticity e;
-    open_body(&c, 3, 1e-4, 0.5, turns[k / 4], nu);
+    open_law_body(&c, 3, name, 1e-4, 0.5, turns[k / 4], nu);
     const rows *g = simulation_rows(c.simulation, 0);
     pl_law *interpreted = plan_interpreted(c.model.plan);
     worst = fmax(worst, error_of_D(c.law.law, c.law.parameters, g, nu));
@@ -79,8 +85,38 @@ static void the_lattice_in_space_is_isotropic(void **state) {
     plan_interpreted_free(interpreted);
     deck_case_close(&c);
   }
-  print_message("mplm_space: D to %.1e of E, E, nu and G to %.1e\n", worst, moduli);
+  print_message("%s: D to %.1e of E, E, nu and G to %.1e\n", name, worst, moduli);
   assert_true(worst < 1e-10 && moduli < 1e-10);
+}
+
+static void the_lattice_in_space_is_isotropic(void **state) {
+  (void)state;
+  is_isotropic("mplm_space");
+  is_isotropic("mplm_concrete_space");
+}
+
+/* Eq 18 of Gerstle et al. (2013) asks for the largest frequency: m omega_n^2 = max(9 k_n + 6 k_s,
+   50 k_s) is that of all waves without dampers; with them, dt = 2/omega_n (root(1 + xi^2) - xi). */
+static void the_fastest_wave_is_that_of_the_damper(void **state) {
+  (void)state;
+  static const double ratios[] = {0, 0.05, 0.1, 0.15, 0.17, 0.18, 0.2, 0.22, 0.25};
+  for (int k = 0; k < 9; k++) {
+    const double nu = ratios[k], lambda = E * nu / ((1 + nu) * (1 - 2 * nu)),
+                 mu = E / (2 * (1 + nu));
+    const double k_s = 2 * sqrt(2) / 5 * spacing * (mu - lambda),
+                 k_n = k_s + sqrt(2) * spacing * lambda,
+                 m = 2323 * spacing * spacing * spacing / sqrt(2);
+    const double expected = sqrt(fmax(9 * k_n + 6 * k_s, 50 * k_s) / m);
+    deck_case c;
+    step_limit limit;
+    open_law_body(&c, 3, "mplm_concrete_space", 1e-4, 0.5, 17, nu);
+    for (int p = 0; p < c.law.law->parameter_count; p++)
+      if (strcmp(c.law.law->parameters[p].name, "zeta") == 0) c.law.parameters[p] = 0;
+    stability_limit(c.law.law, c.law.parameters, NULL, simulation_rows(c.simulation, 0), &limit);
+    print_message("nu = %g: %.9g rad/s, %.9g by the lattice\n", nu, expected, limit.omega_max);
+    assert_true(fabs(limit.omega_max / expected - 1) < 1e-6);
+    deck_case_close(&c);
+  }
 }
 
 /* --- bodies that turn ------------------------------------------------------------------------- */
@@ -336,6 +372,7 @@ static void cantilevers_converge_to_theory(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_lattice_in_space_is_isotropic),
+      cmocka_unit_test(the_fastest_wave_is_that_of_the_damper),
       cmocka_unit_test(a_rigid_motion_leaves_no_force),
       cmocka_unit_test(a_spinning_body_conserves),
       cmocka_unit_test(neither_threads_nor_a_stop_change_bits),
