@@ -261,10 +261,11 @@ static void particle_table(run *r, result_header *h) {
   h->resolved = irregular ? all.resolved : NULL;
 }
 
-/* A particle in the result; first[lattice]: the first one of each. */
+/* A particle in the result; first[lattice]: the first one of each. For a place between several
+   stands the nearest. */
 static int32_t number_of(const rows *w, int32_t particle, int lattice, const int32_t *first) {
-  const rows_copy own = {lattice, particle}, *at = w->copies ? &w->copies[particle] : &own;
-  return first[at->lattice] + at->particle;
+  const rows_copy *copy = w->copies ? &w->copies[particle] : NULL;
+  return copy ? first[copy->lattice] + copy->particle[0] : first[lattice] + particle;
 }
 
 static const int32_t *pairs_of(run *r, int interaction, const int32_t *first) {

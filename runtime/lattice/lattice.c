@@ -14,5 +14,5 @@ rows *lattice_build(const deck *k, int lattice, diagnostics *d) {
 
 rows *lattice_build_next(const deck *k, int lattice, rows *const *built, diagnostics *d) {
   return deck_lattice_is_link(&k->lattices[lattice]) ? linked_build(k, lattice, built, d)
-                                   : lattice_build(k, lattice, d);
+                                                     : lattice_build(k, lattice, d);
 }

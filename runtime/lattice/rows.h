@@ -54,7 +54,7 @@ typedef struct neighbour_list {
 enum { ROWS_CLASSES = 2, ROWS_MAX_NEIGHBOURS = 2 * PL_MAX_DIRECTIONS };
 
 /* Of a link: whose particle stands there, too; or a place of a lattice between several particles,
-   which moves as their weighted mean. */
+   which moves as their weighted mean, the heaviest first. */
 enum { ROWS_MOST_COPIED = 4 };
 typedef struct rows_copy {
   int32_t lattice, count;

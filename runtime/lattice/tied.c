@@ -120,8 +120,18 @@ static void search_cells(cell_search *s, int corners, int from) {
   }
 }
 
+/* The heaviest first. */
 static void make_weights_whole(rows_copy *c) {
   double sum = 0;
+  for (int k = 1; k < c->count; k++) {
+    if (!(c->weight[k] > c->weight[0])) continue;
+    const double weight = c->weight[0];
+    const int32_t particle = c->particle[0];
+    c->weight[0] = c->weight[k];
+    c->particle[0] = c->particle[k];
+    c->weight[k] = weight;
+    c->particle[k] = particle;
+  }
   for (int k = 0; k < c->count; k++)
     sum += c->weight[k];
   for (int k = 0; k < c->count; k++)
