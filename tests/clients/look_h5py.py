@@ -25,7 +25,7 @@ def check_ending(file, specimen):
 
 def check_bodies(file, specimen):
     body = file["particles/body"][:]
-    bars = 36 + 23 if specimen == "bars" else 0
+    bars = {"bars": 36 + 23, "linked": 19}.get(specimen, 0)
     assert (body < 0).sum() == bars and (body[:len(body) - bars] == 0).all(), specimen
     assert ("resolved" in file["particles"]) == (specimen == "irregular"), specimen
 
