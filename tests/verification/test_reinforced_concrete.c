@@ -1,5 +1,5 @@
-/* The prisms and the beam without bars of examples/reinforced_concrete (Gerstle et al. 2013,
-   sections 5.1 to 5.3): largest load that each bears, what its twin by displacement carries, what
+/* The prisms and the beams without stirrups of examples/reinforced_concrete (Gerstle et al. 2013,
+   sections 5.1 to 5.4): largest load that each bears, what its twin by displacement carries, what
    the pages say. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,65 +8,9 @@
 
 #include <cmocka.h>
 
-#include "tests/verification/case.h"
+#include "tests/verification/held_load.h"
 
-#define FOLDER "examples/reinforced_concrete/"
 static const double section = 0.10 * 0.127; /* m^2: of a prism */
-
-/* A line of the page's table holds both texts. */
-static void page_says(const char *beginning, const char *figure) {
-  char error[512], line[512];
-  size_t length;
-  char *page =
-      read_text_file(SOURCE_DIR "/" FOLDER "README.md", 1 << 20, &length, error, sizeof error);
-  assert_non_null(page);
-  const char *row = strstr(page, beginning);
-  assert_non_null(row);
-  snprintf(line, sizeof line, "%.*s", (int)strcspn(row, "\n"), row);
-  if (!strstr(line, figure)) fail_msg("%s\nshould say %s", line, figure);
-  free(page);
-}
-
-/* A deck until its end, with one more override or NULL. */
-static void run(deck_case *c, const char *deck_name, const char *more) {
-  char path[256];
-  const char *overrides[2] = {"simulation.threads=1", more};
-  snprintf(path, sizeof path, FOLDER "%s.nml", deck_name);
-  assert_true(deck_case_run(c, path, overrides, 1 + (more != NULL)));
-  const step_status status = deck_case_go(c);
-  assert_true(status == STEP_END || status == STEP_STOPPED);
-  const long samples = simulation_history(c->simulation, NULL);
-  const double imbalance = deck_case_series(c, "energy/imbalance")[samples - 1],
-               external = deck_case_series(c, "energy/external")[samples - 1];
-  if (!(fabs(imbalance) < 1e-2 * external)) fail_msg("%s: imbalance %g J", deck_name, imbalance);
-}
-
-static double largest_in(const double *values, const double *time, long samples, double from,
-                         double until) {
-  double most = 0;
-  for (long k = 0; k < samples; k++)
-    if (time[k] >= from && time[k] <= until) most = fmax(most, fabs(values[k]));
-  return most;
-}
-
-/* Under the force `kN` held from `held`, s, on: the deflection of the second half of the hold is
-   that of the first, within 5 %. */
-static bool bears(const char *deck_name, double kN, double held) {
-  deck_case c;
-  char total[64];
-  snprintf(total, sizeof total, "force.total=%.9g kN", kN);
-  run(&c, deck_name, total);
-  const double *time, *deflection = deck_case_series(&c, "deflection"),
-                      *load = deck_case_series(&c, "load");
-  const long samples = simulation_history(c.simulation, &time);
-  const double end = time[samples - 1], middle = (held + end) / 2;
-  const double first = largest_in(deflection, time, samples, held, middle),
-               second = largest_in(deflection, time, samples, middle, end);
-  assert_true(fabs(fabs(load[samples - 1]) - 1e3 * fabs(kN)) < 1e-6);
-  print_message("%s, %g kN: deflection %.4g, then %.4g m\n", deck_name, kN, first, second);
-  deck_case_close(&c);
-  return second <= 1.05 * first;
-}
 
 /* The prism bears one stress, MPa, and does not bear the other; the page says so. */
 static void strength(const char *deck_name, const char *row, double borne, double not_borne) {
@@ -97,6 +41,14 @@ static void plain_beam(void **state) {
   assert_true(bears("plain_beam", -42 * 1.2, 10.85e-3));
   assert_false(bears("plain_beam", -43 * 1.2, 10.85e-3));
   page_says("| 5.3 plain beam", "| 42, 43 kN/m |");
+}
+
+/* On sites of the lattice. Reference: 82 to 85. */
+static void one_bar(void **state) {
+  (void)state;
+  assert_true(bears("one_bar", -84 * 1.2, 10.85e-3));
+  assert_false(bears("one_bar", -86 * 1.2, 10.85e-3));
+  page_says("| 5.4 one bar", "| 84, 86 kN/m |");
 }
 
 /* --- by displacement -------------------------------------------------------------------------- */
@@ -131,6 +83,7 @@ int main(void) {
       cmocka_unit_test(prisms_in_tension),
       cmocka_unit_test(prisms_in_compression),
       cmocka_unit_test(plain_beam),
+      cmocka_unit_test(one_bar),
       cmocka_unit_test(twins_by_displacement),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

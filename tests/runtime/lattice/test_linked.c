@@ -179,7 +179,7 @@ static void must_say(const char *head, const char *bar, const char *link, const 
   build_linked(&b, head, bar, link);
   if (count_of(&b, words) != 1) diag_print(&b.text.said, stderr);
   assert_int_equal(count_of(&b, words), 1);
-  const int of_bar = count_of(&b, "the bar `b` crosses a notch");
+  const long of_bar = count_of(&b, "the bar `b` crosses a notch");
   assert_int_equal(b.text.said.count, 1 + of_bar);
   assert_int_equal(b.text.said.errors, refused);
   assert_int_equal(b.built[LINK] == NULL, refused);

@@ -1,0 +1,64 @@
+/* Decks of examples/reinforced_concrete: a load that grows and is held is borne or not; what the
+   page says of it. */
+#ifndef PERILAT_TESTS_HELD_LOAD_H
+#define PERILAT_TESTS_HELD_LOAD_H
+
+#include "tests/verification/case.h"
+
+#define FOLDER "examples/reinforced_concrete/"
+/* A line of the page's table holds both texts. */
+static inline void page_says(const char *beginning, const char *figure) {
+  char error[512], line[512];
+  size_t length;
+  char *page =
+      read_text_file(SOURCE_DIR "/" FOLDER "README.md", 1 << 20, &length, error, sizeof error);
+  assert_non_null(page);
+  const char *row = strstr(page, beginning);
+  assert_non_null(row);
+  snprintf(line, sizeof line, "%.*s", (int)strcspn(row, "\n"), row);
+  if (!strstr(line, figure)) fail_msg("%s\nshould say %s", line, figure);
+  free(page);
+}
+
+/* A deck until its end, with one more override or NULL. */
+static inline void run(deck_case *c, const char *deck_name, const char *more) {
+  char path[256];
+  const char *overrides[2] = {"simulation.threads=1", more};
+  snprintf(path, sizeof path, FOLDER "%s.nml", deck_name);
+  assert_true(deck_case_run(c, path, overrides, 1 + (more != NULL)));
+  const step_status status = deck_case_go(c);
+  assert_true(status == STEP_END || status == STEP_STOPPED);
+  const long samples = simulation_history(c->simulation, NULL);
+  const double imbalance = deck_case_series(c, "energy/imbalance")[samples - 1],
+               external = deck_case_series(c, "energy/external")[samples - 1];
+  if (!(fabs(imbalance) < 1e-2 * external)) fail_msg("%s: imbalance %g J", deck_name, imbalance);
+}
+
+static inline double largest_in(const double *values, const double *time, long samples, double from,
+                                double until) {
+  double most = 0;
+  for (long k = 0; k < samples; k++)
+    if (time[k] >= from && time[k] <= until) most = fmax(most, fabs(values[k]));
+  return most;
+}
+
+/* Under the force `kN` held from `held`, s, on: the deflection of the second half of the hold is
+   that of the first, within 5 %. */
+static inline bool bears(const char *deck_name, double kN, double held) {
+  deck_case c;
+  char total[64];
+  snprintf(total, sizeof total, "force.total=%.9g kN", kN);
+  run(&c, deck_name, total);
+  const double *time, *deflection = deck_case_series(&c, "deflection"),
+                      *load = deck_case_series(&c, "load");
+  const long samples = simulation_history(c.simulation, &time);
+  const double end = time[samples - 1], middle = (held + end) / 2;
+  const double first = largest_in(deflection, time, samples, held, middle),
+               second = largest_in(deflection, time, samples, middle, end);
+  assert_true(fabs(fabs(load[samples - 1]) - 1e3 * fabs(kN)) < 1e-6);
+  print_message("%s, %g kN: deflection %.4g, then %.4g m\n", deck_name, kN, first, second);
+  deck_case_close(&c);
+  return second <= 1.05 * first;
+}
+
+#endif
