@@ -177,7 +177,8 @@ typedef struct pl_family {
   long neighbours;       /* of a full family; even */
   /* doubles between planes of a field, or of what lists know of bonds */
   long plane;
-  long new_plane, link_plane; /* the same of new fields and what is observed; of links of bonds */
+  /* the same of new fields, force states and what is observed; of links of bonds */
+  long new_plane, link_plane;
   const long *offset, *link_offset; /* [neighbours] sites; of rows only */
   /* [count] bit k: the bond to neighbour k < neighbours/2 exists; that to its opposite is a bit
      there. */
@@ -252,6 +253,9 @@ typedef struct pl_family {
   /* Of `ledger`: [count] J, added to: what the particle's halves of its bonds lose in this step.
      Where there is no particle, or one without bonds, it means nothing. */
   double *lost[PL_LOSSES];
+  /* Of `force_state`: [dof] N, then N m; planes one for each neighbour, `new_plane` apart, written:
+     what the particle's own side of the bond does to it. 0 where the bond is absent. */
+  double *const *force_state;
 } pl_family;
 
 /* uniforms: rows: [neighbours][uniform_count], as `prepare` wrote them for the bond class of each
@@ -346,6 +350,27 @@ typedef struct pl_law {
      fields, to the bit, and pl_family.lost. No passes: it has neither states nor rate terms, or
      what they take is not known. A body is run with one of the two. */
   pl_program ledger;
+
+  /* Of laws of families, where it was asked for (`perilat build law.plm` does): the law alone,
+     family by family, as `states` of laws of bonds. It gives the new fields of `step` (on lists to
+     the bit, on rows to rounding) and pl_family.force_state; nothing is added up or left to other
+     ends. With T_k, M_k the planes toward neighbour k, and T_k' the neighbour's plane back, those of
+     `step` are
+
+         force on the particle = sum_k (T_k - T_k'),   moment on it = sum_k M_k
+
+     and sum_k T_k x_k / V over the reference chords x_k is the particle's stress (first
+     Piola-Kirchhoff; V is its volume). Of a law of bonds in this form T_k is half of the bond's
+     force, M_k all of its moment.
+
+     It reads, of the particle: displacements, velocities, old fields, parameters, volume, mass,
+     share, shape, held; of the neighbours the same but the shape, and of their old fields toward
+     neighbours, if there are such (PL_ON_NEIGHBOUR), those toward the particle, under the opposite
+     number. With one pass that is all: a particle with its neighbours is complete by itself, and
+     neighbours of which no pass is run need no bonds on lists, on rows the bits of those to the
+     particle. With more passes the law reads what neighbours find of their own families, which
+     earlier passes leave in links: these must have been run for the neighbours, too. */
+  pl_program force_state;
 } pl_law;
 
 /* The one symbol that a compiled kernel exports. */

@@ -75,6 +75,7 @@ void physics_draw_parameters(const law *l, uint64_t *seed, double *values) {
 }
 
 deck_lattice physics_usual_lattice(const law *l) {
-  if (law_reads(l, QUANTITY_AREA)) return lattice_default_chain(0.01, 1e-4);
-  return lattice_default(law_setting_name(l->setting), 0.01, 0.1);
+  const char *setting = law_setting_name(l->setting);
+  return law_reads(l, QUANTITY_AREA) ? lattice_default_bars(setting, 0.01, 1e-4)
+                                     : lattice_default(setting, 0.01, 0.1);
 }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/semantics/law_variant.h"
 #include "generator/check/physics.h"
 #include "generator/command/commands.h"
 #include "generator/drive/drive_grammar.h"
@@ -11,6 +12,7 @@
 #include "generator/kernel/material_law.h"
 #include "generator/kernel/model.h"
 #include "generator/kernel/toolchain_compiler.h"
+#include "generator/lower/lowered.h"
 #include "generator/run/run.h"
 #include "generator/target/c_text.h"
 #include "runtime/deck/deck_read.h"
@@ -25,12 +27,57 @@ static bool spares_input(const char *output, const char *input) {
   return false;
 }
 
+static bool names(const model *m, const char *word, size_t length) {
+  for (int k = 0; k < m->tree->setting_count; k++)
+    if (strncmp(m->tree->settings[k], word, length) == 0 && !m->tree->settings[k][length])
+      return true;
+  return false;
+}
+
+static bool refuse_use(const model *m, const char *word, size_t length) {
+  c_text named = {NULL, 0, 0};
+  for (int k = 0; k < m->tree->setting_count; k++)
+    c_text_add(&named, "%s%s", k ? ", " : " names ", m->tree->settings[k]);
+  say_error("the law `%s` is not for `%.*s`: %s%s", m->law->tree->name, (int)length, word,
+            named.text ? "its line `for`" : "it has no line `for`", named.text ? named.text : "");
+  free(named.text);
+  return false;
+}
+
+/* What the kernel is for, words of the law's line `for`: the setting of the lattices, or `irregular`
+   particles. NULL: its first setting. */
+static bool take_uses(model *m, const char *words) {
+  law_setting setting = m->law->setting;
+  bool irregular = false;
+  int settings = 0;
+  while (words) {
+    const size_t length = strcspn(words, ",");
+    if (!names(m, words, length)) return refuse_use(m, words, length);
+    irregular = irregular || strncmp(LAW_IRREGULAR, words, length) == 0;
+    for (int k = SETTING_PLANE_STRESS; k <= SETTING_SPACE; k++)
+      if (strncmp(law_setting_name((law_setting)k), words, length) == 0)
+        setting = (law_setting)k, settings++;
+    words = words[length] ? words + length + 1 : NULL;
+  }
+  if (settings > 1) say_error("`--for` takes one setting: each has a kernel of its own");
+  m->law = law_on_lattice(m->law, setting, irregular, 0);
+  return settings <= 1;
+}
+
+/* With all that a host of its own may ask for. */
+static bool plan_law(model *m, bool no_physics) {
+  const law_variation v = {.alone = true};
+  const law *regular = law_on_lattice(m->law, m->law->setting, false, 0);
+  const bool planned =
+      m->law->irregular ? model_plan_of_families(m, &v) : model_plan_varying(m, &v);
+  return planned && (no_physics || physics_check(regular, NULL, &m->said, NULL));
+}
+
 /* 0, or an exit status. */
-static int build_law(const char *path, const char *output, bool no_physics) {
+static int build_law(const char *path, const char *output, const char *uses, bool no_physics) {
   model m;
   char error[ERROR_LENGTH], chosen[512];
-  bool good = model_open(&m, path, NULL, 0) && model_plan(&m) &&
-              (no_physics || physics_check(m.law, NULL, &m.said, NULL));
+  bool good = model_open(&m, path, NULL, 0) && take_uses(&m, uses) && plan_law(&m, no_physics);
   diag_print(&m.said, stderr);
   if (good) {
     snprintf(chosen, sizeof chosen, "%s.so", m.law->tree->name);
@@ -243,11 +290,13 @@ static int build_solver(const char *path, const char *output, bool no_physics) {
 
 int command_build(int argc, char **argv) {
   bool no_physics = false;
-  const char *path = NULL, *output = NULL, *value;
+  const char *path = NULL, *output = NULL, *uses = NULL, *value;
   int bad = 0;
   for (int at = 0; at < argc && !bad;) {
     if ((value = option_value(argc, argv, &at, "-o", &bad)))
       output = value;
+    else if ((value = option_value(argc, argv, &at, "--for", &bad)))
+      uses = value;
     else if (option_flag(argv, &at, "--no-physics"))
       no_physics = true;
     else if (argv[at][0] == '-')
@@ -266,9 +315,13 @@ int command_build(int argc, char **argv) {
   const file_kind kind = kind_of_file(path);
   if (!file_suits(path, FILES(LAW) | FILES(DECK), "perilat build", "a law or a deck")) return 1;
   if (kind == FILE_DECK && drive_refuse_path("build", path)) return 1;
+  if (kind == FILE_DECK && uses) {
+    say_error("`--for` says what the kernel of a law is for; a deck says that by its lattices");
+    return 1;
+  }
   if (kind == FILE_DECK) return build_solver(path, output, no_physics);
   char *found = model_find(path, NULL);
-  int status = build_law(found ? found : path, output, no_physics);
+  int status = build_law(found ? found : path, output, uses, no_physics);
   free(found);
   return status;
 }

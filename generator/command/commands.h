@@ -69,6 +69,9 @@
     "several times")                                                                               \
   X(build, "-o", "FILE",                                                                           \
     "name of the kernel (of a law, otherwise NAME.so) or of the solver (of a deck)")               \
+  X(build, "--for", "WORDS",                                                                       \
+    "what the kernel of a law is for, words of its line `for`: a setting, irregular, or both "     \
+    "(space,irregular); its first setting if not given")                                           \
   X(build, "--no-physics", "", "leave out the checks of mechanics")                                \
   OPTIONS_OF_SOLVERS(X, run)                                                                       \
   X(run, "--check-kernel", "", "compare the compiled kernel with the interpreter first")           \

@@ -105,7 +105,7 @@ const char *family_root_array(const emitter *e, const segment_root *r, const fam
                [TO_SUM] = {.toward = SAY_SLOT},
                [TO_LARGEST] = {.toward = SAY_SLOT},
                [TO_SMALLEST] = {.toward = SAY_SLOT},
-               [TO_FORCE] = {.own = SAY_FORCE},
+               [TO_FORCE] = {SAY_FORCE, SAY_FORCE_STATE},
                [TO_DISSIPATED_STATE] = {.own = SAY_LOST},
                [TO_DISSIPATED_RATE] = {.own = SAY_LOST},
                [TO_LINK] = {SAY_LINK, SAY_BOND_LINK},

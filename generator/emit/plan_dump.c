@@ -167,7 +167,7 @@ static void dump_segment(const kernel_plan *p, const segment *a, FILE *out) {
 
 /* Of families passes are numbered; over strips, and of what knows no body, they stand alone. */
 static bool is_numbered(const kernel_plan *p, int task) {
-  return p->form != FORM_STRIPS && task <= PROGRAM_OBSERVE;
+  return p->form != FORM_STRIPS && task <= PROGRAM_FORCE_STATE;
 }
 
 static void dump_name(const kernel_plan *p, int task, int number, FILE *out) {

@@ -125,11 +125,13 @@ void programs_functions(emitter *e) {
   family_pairs_functions(e);
   const kernel_program *step = &e->plan->programs[PROGRAM_STEP],
                        *losses = &e->plan->programs[PROGRAM_LEDGER],
-                       *observe = &e->plan->programs[PROGRAM_OBSERVE];
+                       *observe = &e->plan->programs[PROGRAM_OBSERVE],
+                       *alone = &e->plan->programs[PROGRAM_FORCE_STATE];
   write_program(e, step->name, step, NULL);
   if (losses->pass_count) {
     write_changes(e);
     write_program(e, "ledger", losses, step);
   }
   write_program(e, observe->name, observe, NULL);
+  if (alone->pass_count) write_program(e, alone->name, alone, NULL);
 }

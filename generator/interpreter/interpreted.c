@@ -103,13 +103,15 @@ static void run_family(const pl_law *kernel, const double *uniforms, const pl_fa
     run_family(k, u, f, task, n);                                                                  \
   }
 #define X(n)                                                                                       \
-  RUN(step, PROGRAM_STEP, n) RUN(losses, PROGRAM_LEDGER, n) RUN(observe, PROGRAM_OBSERVE, n)
+  RUN(step, PROGRAM_STEP, n)                                                                       \
+  RUN(losses, PROGRAM_LEDGER, n)                                                                   \
+  RUN(observe, PROGRAM_OBSERVE, n) RUN(force_state, PROGRAM_FORCE_STATE, n)
 PASS_NUMBERS(X)
 #undef X
 static const pl_family_function passes_of[PROGRAM_COUNT][PLAN_MOST_PASSES] = {
 #define X(n)                                                                                       \
   [PROGRAM_STEP][n] = run_step_##n, [PROGRAM_LEDGER][n] = run_losses_##n,                          \
-  [PROGRAM_OBSERVE][n] = run_observe_##n,
+  [PROGRAM_OBSERVE][n] = run_observe_##n, [PROGRAM_FORCE_STATE][n] = run_force_state_##n,
     PASS_NUMBERS(X)
 #undef X
 };
@@ -212,6 +214,9 @@ static void describe_families(interpreted *p) {
   p->law.observe =
       program_facts(p->memory, plan->graph, &programs[PROGRAM_OBSERVE], passes_of[PROGRAM_OBSERVE]);
   if (programs[PROGRAM_LEDGER].pass_count) p->law.ledger = ledger_facts(p->memory, plan);
+  if (programs[PROGRAM_FORCE_STATE].pass_count)
+    p->law.force_state = program_facts(p->memory, plan->graph, &programs[PROGRAM_FORCE_STATE],
+                                       passes_of[PROGRAM_FORCE_STATE]);
 }
 
 static void describe(interpreted *p) {

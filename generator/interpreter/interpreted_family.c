@@ -165,7 +165,8 @@ static double *target_of(runner *r, const segment_root *root, const pl_family *f
   case TO_FIELD:
     return f->new_field[root->index] + first + (own ? 0 : k * f->new_plane);
   case TO_FORCE:
-    return f->force[root->index] + first;
+    return own ? f->force[root->index] + first
+               : f->force_state[root->index] + first + k * f->new_plane;
   case TO_DISSIPATED_STATE:
   case TO_DISSIPATED_RATE:
     return f->lost[root->index] + first;

@@ -146,7 +146,8 @@ static void check_bonds(kernel_check *c, const law *of, const law_readers *l, lo
 
 static void check_families(kernel_check *c, const law_readers *l, long states, uint64_t *seed) {
   const pl_law *of = l->law[0];
-  c->passes = kernel_check_step(of)->pass_count + of->observe.pass_count;
+  c->passes =
+      kernel_check_step(of)->pass_count + of->observe.pass_count + of->force_state.pass_count;
   c->bonds += kernel_check_families(l, states / STATES_PER_BOND, seed, &c->outputs);
 }
 

@@ -27,6 +27,7 @@ typedef struct body {
   double *share;      /* [SIZE] */
   double **before;    /* [fields] */
   double **after[2], **link[2], **bond_link[2], **force[2], **observed[2], **lost[2], **sum[2];
+  double **force_state[2];                     /* [dof][neighbours * SIZE] */
   uint64_t **marks[MARKS];                     /* [fields][SIZE] as in pl_family */
   uint64_t *bonds, *incoming, *held, *unusual; /* [SIZE] */
   long offset[2 * PL_MAX_DIRECTIONS];          /* rows */
@@ -89,6 +90,7 @@ static body body_new(const pl_law *law, int neighbours) {
     b.link[side] = planes_new(law->link_count, SIZE);
     b.bond_link[side] = planes_new(law->bond_link_count, (long)neighbours * SIZE);
     b.force[side] = planes_new(law->dof, SIZE);
+    b.force_state[side] = planes_new(law->dof, (long)neighbours * SIZE);
     b.observed[side] = observed_new(&b);
     b.lost[side] = planes_new(PL_LOSSES, SIZE);
     b.sum[side] = planes_new(law->sum_count, SIZE);
@@ -117,6 +119,7 @@ static void body_free(body *b) {
     planes_free(b->link[side], b->law->link_count);
     planes_free(b->bond_link[side], b->law->bond_link_count);
     planes_free(b->force[side], b->law->dof);
+    planes_free(b->force_state[side], b->law->dof);
     planes_free(b->observed[side], 1 + b->law->output_count);
     planes_free(b->lost[side], PL_LOSSES);
     planes_free(b->sum[side], b->law->sum_count);
@@ -348,12 +351,13 @@ static void poison(const body *b, int side) {
   poison_values(b->after[side], b, b->law->fields, b->law->field_count);
   settle_pieces(b, side);
   planes_poison(b->force[side], b->law->dof, SIZE);
+  planes_poison(b->force_state[side], b->law->dof, (long)b->neighbours * SIZE);
   planes_clear(b->lost[side], PL_LOSSES);
   planes_poison(b->observed[side], 1, SIZE);
   poison_values(b->observed[side] + 1, b, b->law->outputs, b->law->output_count);
 }
 
-enum { MOST_ARRAYS = 12 };
+enum { MOST_ARRAYS = 13 };
 
 /* Arrays that begin at a site. */
 typedef struct site_arrays {
@@ -416,6 +420,7 @@ static void run_part(const law_readers *l, const body *b, int side, pl_family_fu
                  .link = from_site(&s, b->link[side], law->link_count, site),
                  .bond_link = from_site(&s, b->bond_link[side], law->bond_link_count, site),
                  .force = from_site(&s, b->force[side], law->dof, site),
+                 .force_state = from_site(&s, b->force_state[side], law->dof, site),
                  .observed = from_site(&s, b->observed[side], 1 + law->output_count, site),
                  .sum = from_site(&s, b->sum[side], law->sum_count, site),
                  .ahead_only = ahead_only,
@@ -457,11 +462,11 @@ const pl_program *kernel_check_step(const pl_law *law) {
   return law->ledger.pass_count ? &law->ledger : &law->step;
 }
 
-static void run_program(const law_readers *l, const body *b, int side, bool observe) {
-  const pl_program *p = observe ? &l->law[side]->observe : kernel_check_step(l->law[side]);
+static void run_program(const law_readers *l, const body *b, int side, const pl_program *p,
+                        bool adds) {
   poison(b, side);
   for (int k = 0; k < p->pass_count; k++) {
-    if (b->law->sum_count && !observe) run_before(l, b, side, p->pass[k]);
+    if (adds) run_before(l, b, side, p->pass[k]);
     if (side == 0) {
       run_part(l, b, side, p->pass[k], 0, CUT, false);
       run_part(l, b, side, p->pass[k], CUT, SITES - CUT, false);
@@ -503,11 +508,15 @@ static void compare_losses(comparison *c, const body *b) {
   }
 }
 
+static void compare_fields(comparison *c, const body *b, const char *program) {
+  for (int f = 0; f < b->law->field_count; f++)
+    compare_values(c, b, program, &b->law->fields[f], b->after[0][f], b->after[1][f]);
+}
+
 static void compare_step(comparison *c, const body *b) {
   const pl_law *law = b->law;
   compare_links(c, b, "step");
-  for (int f = 0; f < law->field_count; f++)
-    compare_values(c, b, "step", &law->fields[f], b->after[0][f], b->after[1][f]);
+  compare_fields(c, b, "step");
   for (int d = 0; d < law->dof; d++)
     comparison_add(c, "step", "force", d, b->force[0][d] + MARGIN, b->force[1][d] + MARGIN, SITES);
   compare_losses(c, b);
@@ -520,6 +529,15 @@ static void compare_observe(comparison *c, const body *b) {
   for (int k = 0; k <= law->output_count; k++)
     compare_values(c, b, "observe", k ? &law->outputs[k - 1] : &energy, b->observed[0][k],
                    b->observed[1][k]);
+}
+
+static const pl_field force_state = {.name = "toward the neighbour", .place = PL_ON_NEIGHBOUR};
+
+static void compare_force_state(comparison *c, const body *b) {
+  compare_links(c, b, "force_state");
+  compare_fields(c, b, "force_state");
+  for (int d = 0; d < b->law->dof; d++)
+    compare_values(c, b, "force_state", &force_state, b->force_state[0][d], b->force_state[1][d]);
 }
 
 /* Both readers share one graph, so what it means to be absent or held is checked on its own. */
@@ -565,16 +583,28 @@ static long loaded_without_bonds(const body *b) {
   return count;
 }
 
-static void find_misplaced_step(comparison *c, const body *b) {
+static void find_misplaced_fields(comparison *c, const body *b) {
   for (int f = 0; f < b->law->field_count; f++)
     c->misplaced +=
         written_for_absent(b, &b->law->fields[f], b->after[0][f]) + changed_where_held(b, f);
-  c->misplaced += loaded_without_bonds(b);
+}
+
+static void find_misplaced_forces(comparison *c, const body *b) {
+  for (int d = 0; d < b->law->dof; d++)
+    c->misplaced += written_for_absent(b, &force_state, b->force_state[0][d]);
 }
 
 static void find_misplaced_observe(comparison *c, const body *b) {
   for (int k = 0; k < b->law->output_count; k++)
     c->misplaced += written_for_absent(b, &b->law->outputs[k], b->observed[0][1 + k]);
+}
+
+static void check_force_state(const law_readers *l, const body *b, comparison *c) {
+  for (int side = 0; side < 2; side++)
+    run_program(l, b, side, &l->law[side]->force_state, false);
+  compare_force_state(c, b);
+  find_misplaced_fields(c, b);
+  find_misplaced_forces(c, b);
 }
 
 long kernel_check_families(const law_readers *l, long wanted, uint64_t *seed, comparison *c) {
@@ -583,13 +613,15 @@ long kernel_check_families(const law_readers *l, long wanted, uint64_t *seed, co
   for (; done < wanted; done += (long)SITES * l->classes) {
     draw_body(&b, l->bonds, l->parameters, seed);
     for (int side = 0; side < 2; side++)
-      run_program(l, &b, side, false);
+      run_program(l, &b, side, kernel_check_step(l->law[side]), b.law->sum_count > 0);
     compare_step(c, &b);
-    find_misplaced_step(c, &b);
+    find_misplaced_fields(c, &b);
+    c->misplaced += loaded_without_bonds(&b);
     for (int side = 0; side < 2; side++)
-      run_program(l, &b, side, true);
+      run_program(l, &b, side, &l->law[side]->observe, false);
     compare_observe(c, &b);
     find_misplaced_observe(c, &b);
+    if (b.law->force_state.pass_count) check_force_state(l, &b, c);
   }
   body_free(&b);
   return done;

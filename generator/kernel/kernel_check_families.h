@@ -6,7 +6,7 @@
 
 #include "generator/kernel/kernel_check_strips.h"
 
-/* Runs all passes of both programs over at least `wanted` bonds (absent ones count); returns how
+/* Runs all passes of its programs over at least `wanted` bonds (absent ones count); returns how
    many. The kernel's run is cut in two, the interpreter's is not: neither is a multiple of what
    they take at a time. */
 long kernel_check_families(const law_readers *l, long wanted, uint64_t *seed, comparison *c);

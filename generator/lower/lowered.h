@@ -12,13 +12,15 @@ typedef enum lower_mode {
   LOWER_FROZEN /* fields keep the value at hand everywhere: the elastic law of a given state */
 } lower_mode;
 
-/* What is not the same for all particles of a body beside their state. Of laws of families. */
+/* What is not the same for all particles of a body beside their state, and what else is asked of
+   the kernel. Of laws of families. */
 typedef struct law_variation {
   const int *varying; /* [varying_count] ascending: law->parameters that differ in space: from bond
                          to bond of laws of bonds, else from particle to particle */
   int varying_count;
   bool masses; /* particles have masses of their own */
   bool shares; /* force state and energy are those of a particle's share (pl_family) */
+  bool alone;  /* hosts take single families (pl_law.force_state) */
 } law_variation;
 
 /* What became of the law's text (LOWER_STEP only), for checks that speak about it. */

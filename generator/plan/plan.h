@@ -19,10 +19,11 @@ typedef enum program_task {
   /* The same, and the energies that are lost; of families the latter: passes that follow those of a
      step. */
   PROGRAM_LEDGER,
-  PROGRAM_OBSERVE, /* stored energy and outputs */
-  PROGRAM_STATES,  /* a bond alone, state by state (pl_states) */
-  PROGRAM_TANGENT, /* its derivatives */
-  PROGRAM_BOUNDS,  /* of parameters */
+  PROGRAM_OBSERVE,     /* stored energy and outputs */
+  PROGRAM_FORCE_STATE, /* of families: new fields and force states, family by family */
+  PROGRAM_STATES,      /* a bond alone, state by state (pl_states) */
+  PROGRAM_TANGENT,     /* its derivatives */
+  PROGRAM_BOUNDS,      /* of parameters */
   PROGRAM_COUNT
 } program_task;
 

@@ -339,19 +339,20 @@ static bool fuses_late(const kernel_plan *plan) {
 }
 
 /* All at once: what several passes compute they compute in the same way. */
-static void rewrite_last(const kernel_plan *plan, segment *step, segment *observe) {
+static void rewrite_last(const kernel_plan *plan, segment *const *of, int segments) {
   ir *g = plan->graph;
-  const int count = step->root_count + observe->root_count;
+  int count = 0, at = 0;
+  for (int n = 0; n < segments; n++)
+    count += of[n]->root_count;
   ir_node *all = must_alloc(((size_t)count + 1) * sizeof *all);
-  for (int k = 0; k < step->root_count; k++)
-    all[k] = step->roots[k].node;
-  for (int k = 0; k < observe->root_count; k++)
-    all[step->root_count + k] = observe->roots[k].node;
+  for (int n = 0; n < segments; n++)
+    for (int k = 0; k < of[n]->root_count; k++)
+      all[at++] = of[n]->roots[k].node;
   rewrite_choices(g, all, count, all);
   rewrite_factors(g, all, count, all);
   if (!fuses_late(plan)) rewrite_fused(g, all, count, all);
-  segment_replace(step, all);
-  segment_replace(observe, all + step->root_count);
+  for (int n = 0, from = 0; n < segments; from += of[n++]->root_count)
+    segment_replace(of[n], all + from);
   free(all);
 }
 
@@ -360,6 +361,47 @@ static void fuse_motion(const kernel_plan *plan, program_motion *motion) {
   ir_node *to = arena_alloc(plan->memory, MOST_MOTION * sizeof *to);
   rewrite_fused(plan->graph, motion->to, motion->count, to);
   motion->to = to;
+}
+
+/* A component toward the neighbour. It has a name, and so a line: clang does not vectorise choices
+   between long expressions. */
+static void want_component(const kernel_plan *plan, segment *wanted, ir_node node, int index) {
+  static const char *const names[] = {"T_x", "T_y", "T_z", "M_x", "M_y", "M_z"};
+  const bool about_z = plan->dimensions == 2 && index == 2;
+  ir_set_name(plan->graph, node, about_z ? "M_z" : names[index], (span){0, 0, 0});
+  plan_want(plan, wanted, node, TO_FORCE, OVER_NEIGHBOURS, index);
+}
+
+/* What the particle's own side of a bond does to it: half of the force that it says, since the bond
+   carries the mean of both sides; of moments its own end's. */
+static segment force_state_roots(const kernel_plan *plan, const lowered_law *of) {
+  ir *g = plan->graph;
+  bond_actions a = {.moment = {IR_NONE}};
+  segment r = {.root_count = 0};
+  if (plan->rotations) a = actions_of(plan, of);
+  for (int d = 0; d < plan->dimensions; d++) {
+    const ir_node along = plan->law->tree->law == LAW_STATE ? of->F : of->N;
+    if (!plan->rotations) a.force[d] = ir_mul(g, along, present(g, DIRECTION + d));
+    const ir_node own = ir_mul(g, ir_constant(g, 0.5), a.force[d]);
+    want_component(plan, &r, own, d);
+  }
+  for (int k = 0; k < plan->rotations; k++)
+    want_component(plan, &r, ir_neg(g, a.moment[k]), plan->dimensions + k);
+  return r;
+}
+
+/* Behind the new fields of the step. */
+static segment alone_roots(family_planner *p, const segment *step) {
+  const kernel_plan *plan = p->plan;
+  segment r = {.root_count = 0}, forces;
+  if (!plan->variation.alone) return r;
+  forces = force_state_roots(plan, &p->step);
+  rewrite_last(plan, (segment *[]){&forces}, 1);
+  for (int k = 0; k < plan->law->fields.count; k++)
+    segment_add(plan->memory, &r, step->roots[k]);
+  for (int k = 0; k < forces.root_count; k++)
+    segment_add(plan->memory, &r, forces.roots[k]);
+  return r;
 }
 
 typedef struct input_search {
@@ -452,6 +494,13 @@ void plan_axes(kernel_plan *plan) {
   if (plan->rotations == 3) plan->law = law_bending_in_space(plan->law);
 }
 
+static bool has_few_passes(const kernel_plan *plan) {
+  bool few = true;
+  for (int task = PROGRAM_STEP; task <= PROGRAM_FORCE_STATE; task++)
+    few = few && plan->programs[task].pass_count <= PLAN_MOST_PASSES;
+  return few;
+}
+
 bool plan_programs(kernel_plan *plan, diagnostics *d) {
   family_planner p = {.plan = plan, .g = plan->graph};
   plan_axes(plan);
@@ -476,7 +525,8 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   segment step = step_roots(&p), observe = observe_roots(&p);
   plan->reads_rates = plan_reads_rates(plan, &p.step);
   share_reciprocals_of_roots(p.g, &observe);
-  rewrite_last(plan, &step, &observe);
+  rewrite_last(plan, (segment *[]){&step, &observe}, 2);
+  segment alone = alone_roots(&p, &step);
   segment losses = loss_roots(&p, &energy, &step);
   program_motion motion = plan_motion(plan, p.step.along_reference);
   fuse_motion(plan, &motion);
@@ -485,6 +535,7 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
     read_of_each(plan, &each, &step);
     read_of_each(plan, &each, &observe);
     read_of_each(plan, &each, &losses);
+    read_of_each(plan, &each, &alone);
     motion_of_each(plan, &each, &motion);
   }
   kernel_program *programs = plan->programs;
@@ -493,9 +544,10 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   if (losses.root_count) build_losses(&p, &losses, &motion);
   program_build(&programs[PROGRAM_OBSERVE], "observe", p.g, plan->memory, &observe, &motion,
                 SHARE_NOTHING, &plan->links);
-  if (programs[PROGRAM_STEP].pass_count > PLAN_MOST_PASSES ||
-      programs[PROGRAM_LEDGER].pass_count > PLAN_MOST_PASSES ||
-      programs[PROGRAM_OBSERVE].pass_count > PLAN_MOST_PASSES) {
+  if (alone.root_count)
+    program_build(&programs[PROGRAM_FORCE_STATE], "force_state", p.g, plan->memory, &alone, &motion,
+                  SHARE_LEAST, &plan->links);
+  if (!has_few_passes(plan)) {
     diag_report(d, DIAG_NOT_SUPPORTED, l->tree->law_where,
                 "values of neighbours of neighbours are needed more than %d deep in one step",
                 PLAN_MOST_PASSES);

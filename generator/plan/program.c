@@ -113,6 +113,16 @@ static void want_links(builder *b, segment *wanted, int now, int links) {
                                  .index = b->first_shared + k});
 }
 
+/* What asks whether the bond is there behind what does not: clang vectorises no loop in which they
+   take turns. */
+static void put_askers_last(builder *b, segment *a) {
+  segment ordered = {.kind = a->kind};
+  for (int asks = 0; asks < 2; asks++)
+    for (int k = 0; k < a->root_count; k++)
+      if (segment_asks(&a->roots[k]) == asks) segment_add(b->memory, &ordered, a->roots[k]);
+  *a = ordered;
+}
+
 static void build_pass(builder *b, program_pass *pass, int now, const segment *roots) {
   const bool pairs = b->sharing == SHARE_PAIRS;
   const int links = b->link_count;
@@ -133,6 +143,8 @@ static void build_pass(builder *b, program_pass *pass, int now, const segment *r
     if (!of_link) r->node = seen_in_pass(&v, r->node);
   }
   program_schedule(b->g, b->memory, pass, &wanted, &v.ends, pairs);
+  for (int s = 0; s < pass->segment_count && b->sharing == SHARE_LEAST; s++)
+    put_askers_last(b, &pass->segments[s]);
   map_clear(&v.seen);
   map_clear(&v.ends.parity);
   map_clear(&v.ends.far);
@@ -153,8 +165,8 @@ void program_build(kernel_program *out, const char *name, ir *g, arena *memory,
     own.roots[k].node = program_resolve(&b, wanted->roots[k].node);
   }
   program_substitute(&b, &own, motion->from, motion->to, motion->count);
-  program_leave_ends(&b, &own);
-  if (sharing != SHARE_NOTHING && sharing != SHARE_PAIRS) program_share(&b, &own);
+  if (sharing != SHARE_LEAST) program_leave_ends(&b, &own);
+  if (sharing > SHARE_NOTHING && sharing != SHARE_PAIRS) program_share(&b, &own);
   for (int k = 0; k < own.root_count; k++) {
     int level = level_of(&b, own.roots[k].node);
     last = level > last ? level : last;

@@ -225,7 +225,8 @@ ir_node program_resolve(builder *b, ir_node n) {
   ir_node image = n;
   if (ir_operation(b->g, n) == IR_NEIGHBOUR) {
     ir_node theirs = program_resolve(b, ir_operand(b->g, n, 0));
-    image = is_dear(b, theirs) ? program_neighbour_link(b, theirs) : program_mirror(b, theirs);
+    const bool left = b->sharing != SHARE_LEAST && is_dear(b, theirs);
+    image = left ? program_neighbour_link(b, theirs) : program_mirror(b, theirs);
   } else if (!is_leaf(b->g, n))
     image = with_images(b, n, program_resolve);
   map_set(&b->resolved, n, image);

@@ -28,7 +28,7 @@ static inline segment_kind segment_kind_at(placement on) {
    loss, gets nothing; a field of a strip stays; fields toward neighbours, forces and what is
    observed are 0. */
 typedef enum segment_target {
-  TO_FORCE,            /* force[index] = node */
+  TO_FORCE,            /* force[index] = node, or force_state[index][neighbour] */
   TO_FIELD,            /* field[index] = node, of families new_field */
   TO_DISSIPATED_STATE, /* dissipated_state += node; of families lost[index] */
   TO_DISSIPATED_RATE,  /* dissipated_rate += node; the same */
@@ -89,6 +89,7 @@ typedef struct kernel_program {
 
 /* What both ends of a bond share. */
 typedef enum program_sharing {
+  SHARE_LEAST, /* nor do particles leave what their neighbours can compute: families alone */
   SHARE_NOTHING,
   SHARE_DEAR, /* what costs much more to compute than to leave and find */
   /* Also what costs less, and forces of bonds: of few neighbours in space, whose values stay in

@@ -70,7 +70,7 @@ static double nearest_distance(const rows *w) {
    particles are as far from each other, with the neighbours that the law counts on there. */
 static deck_lattice lattice_like(const deck_lattice *d, const rows *w) {
   deck_lattice like = *d;
-  if (deck_lattice_is_bar(d)) return lattice_default_chain(w->spacing, d->area);
+  if (deck_lattice_is_bar(d)) return lattice_default_bars(d->setting, w->spacing, d->area);
   if (deck_lattice_is_link(d)) return lattice_default(d->setting, d->spacing, d->thickness);
   if (!deck_lattice_is_irregular(d)) return like;
   const deck_lattice usual = lattice_default(d->setting, 0, 0);

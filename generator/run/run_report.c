@@ -12,6 +12,7 @@
 #include "runtime/analysis/uniform_strain.h"
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/geometry/polyline.h"
+#include "runtime/lattice/bar_placing.h"
 #include "runtime/lattice/notch_depth.h"
 #include "runtime/lattice/parameter_planes.h"
 #include "runtime/result/checkpoint.h"
@@ -227,6 +228,24 @@ static void announce_particles(const run *r, int lattice) {
          2 * (double)w->bond_count / (double)w->particle_count, w->bond_count);
 }
 
+/* "placing    of 61 particles of bottom 59 lie in concrete, 0 to 5.8 mm from the nearest site, in
+   the mean 2.7 mm" */
+static void announce_placing(const run *r, int lattice) {
+  const deck *k = r->deck;
+  const rows *bar = simulation_rows(r->simulation, lattice);
+  for (int n = 0; n < k->lattice_count; n++) {
+    const rows *w = simulation_rows(r->simulation, n);
+    if (deck_lattice_is_bar(&k->lattices[n]) || w->dimensions != bar->dimensions) continue;
+    const bar_placing p = bar_placing_in(bar, w);
+    printf("  placing    of %ld particles of %s %ld lie in %s", bar->particle_count,
+           k->lattices[lattice].name, p.inside, k->lattices[n].name);
+    if (p.inside)
+      printf(", %.3g to %.3g mm from the nearest %s, in the mean %.3g mm", 1e3 * p.least,
+             1e3 * p.most, w->list ? "particle" : "site", 1e3 * p.mean);
+    putchar('\n');
+  }
+}
+
 /* "bar        bottom: 58 particles, 57 bonds, 1.14 m long, spacing 20 mm, area 126.68 mm^2" */
 static void announce_bar(const run *r, int lattice) {
   const rows *w = simulation_rows(r->simulation, lattice);
@@ -248,6 +267,7 @@ static void announce_bar(const run *r, int lattice) {
   if (pl_fmax(longest - k->spacing, k->spacing - shortest) > POLYLINE_ROUNDING * k->spacing)
     printf(": legs are no multiples of %.6g mm", 1e3 * k->spacing);
   putchar('\n');
+  announce_placing(r, lattice);
 }
 
 /* "link       bond: 116 bonds of 2.5 to 20 mm join 29 particles of bottom to 60 of concrete" */

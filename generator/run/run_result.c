@@ -14,6 +14,7 @@
 #include "generator/kernel/version.h"
 #include "generator/run/run_report.h"
 #include "runtime/base/whole_file.h"
+#include "runtime/deck/lattice_kind.h"
 #include "runtime/lattice/parameter_planes.h"
 #include "runtime/lattice/rows_select.h"
 #include "runtime/lattice/shape_matrix.h"
@@ -218,7 +219,10 @@ static void put_particles(const run *r, int lattice, particle_arrays at) {
     at.volume[p] = w->site_volume ? w->site_volume[w->particle_site[p]] : w->volume;
     at.resolved[p] = 1;
   }
-  rows_bodies(w, r->deck, lattice, at.body);
+  if (deck_lattice_is_bar(&r->deck->lattices[lattice]))
+    memset(at.body, -1, n * sizeof *at.body); /* of none */
+  else
+    rows_bodies(w, r->deck, lattice, at.body);
   if (w->list) shape_unresolved(w, at.resolved);
 }
 
@@ -234,7 +238,8 @@ static void particle_table(run *r, result_header *h) {
   h->dimensions = simulation_rows(r->simulation, 0)->dimensions;
   for (int b = 0; b < bodies; b++) {
     h->particle_count += (long)own_particles(r, b);
-    irregular = irregular || simulation_rows(r->simulation, b)->list;
+    irregular = irregular || (own_particles(r, b) > 0 && simulation_rows(r->simulation, b)->list &&
+                              !deck_lattice_is_bar(&r->deck->lattices[b]));
   }
   const size_t n = (size_t)h->particle_count, dimensions = (size_t)h->dimensions;
   const particle_arrays all = {arena_alloc(r->memory, dimensions * n * sizeof(double)),

@@ -159,6 +159,7 @@
   X(NEW_FIELD, "family->new_field[$1]$2")                                                          \
   X(NEW_FIELD_TOWARD, "family->new_field[$1]$2 + $3*family->new_plane")                            \
   X(FORCE, "family->force[$1]$2")                                                                  \
+  X(FORCE_STATE, "family->force_state[$1]$2 + $3*family->new_plane")                               \
   X(OBSERVED, "family->observed[$1]$2")                                                            \
   X(LOST, "family->lost[$1]$2")                                                                    \
   X(FAMILY_TIME_STEP, "family->time_step")                                                         \

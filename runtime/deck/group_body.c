@@ -290,7 +290,7 @@ static void check_can_be_filled(deck_reader *r, const deck_item *item, const dec
   if (deck_lattice_is_bar(&r->k->lattices[l])) {
     diag_report(r->d, DIAG_CONFLICT, deck_where(item, "lattice"),
                 is_body ? "`%s` is a bar: its `points` say where it is"
-                        : "`%s` is a bar, which has no notches",
+                        : "`%s` is a bar: notches do not cut it",
                 deck_shown(r->memory, lattice));
     return;
   }

@@ -65,6 +65,14 @@ deck_lattice lattice_default(const char *setting, double spacing, double thickne
                         .setting = setting};
 }
 
+deck_lattice lattice_default_bars(const char *setting, double spacing, double area) {
+  if (!is_space(setting)) return lattice_default_chain(spacing, area);
+  deck_lattice l = lattice_default(setting, spacing, 0);
+  l.shells = 0;
+  l.area = area;
+  return l;
+}
+
 deck_lattice lattice_default_chain(double spacing, double area) {
   return (deck_lattice){.name = "lattice",
                         .kind = lattice_kinds[LATTICE_KIND_chain].name,

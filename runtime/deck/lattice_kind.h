@@ -86,6 +86,8 @@ int deck_lattice_dimensions(const deck_lattice *l);
 deck_lattice lattice_default(const char *setting, double spacing, double thickness);
 /* The one that is meant for laws of bars. */
 deck_lattice lattice_default_chain(double spacing, double area);
+/* The same, in space the face-centred lattice: there are no chains, each of its bonds is a bar. */
+deck_lattice lattice_default_bars(const char *setting, double spacing, double area);
 
 C_LINKAGE_END
 

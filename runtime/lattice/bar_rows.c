@@ -5,6 +5,7 @@
 #include "dsl/base/arena.h"
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/geometry/polyline.h"
+#include "runtime/geometry/shape.h"
 #include "runtime/lattice/scattered.h"
 #include "runtime/particles/site_marks.h"
 
@@ -88,9 +89,24 @@ static rows *rows_of(const chain *c, double area) {
   return w;
 }
 
-rows *bar_rows(const deck_lattice *l, diagnostics *d) {
+/* Legs are whole: a notch, or a crack drawn as one, may be what the bar is to hold together. */
+static void warn_of_notches(const deck *k, const deck_bar *bar, const polyline *p, diagnostics *d) {
+  for (int n = 0; n < k->notch_count; n++)
+    for (int leg = 0; leg < polyline_legs(p) && k->notchs[n].cut_bonds; leg++) {
+      const double *from, *to, length = polyline_leg(p, leg, &from, &to);
+      if (!shape_crossed(&k->notchs[n].shape, from, to, 1e-9 * length)) continue;
+      diag_report(d, DIAG_DECK_WARNING, deck_where(&bar->item, "points"),
+                  "the bar `%s` crosses a notch, which does not cut it", bar->name);
+      diag_note(d, k->notchs[n].item.where, "the notch");
+      break;
+    }
+}
+
+rows *bar_rows(const deck *k, int lattice, diagnostics *d) {
+  const deck_bar *l = &k->lattices[lattice];
   const int dimensions = deck_lattice_dimensions(l);
   const polyline p = {dimensions, l->value_count / dimensions, l->points, l->closed};
+  warn_of_notches(k, l, &p, d);
   if (site_too_many(l, polyline_length(&p) / l->spacing, d)) return NULL;
   chain c = chain_along(&p, l->spacing);
   rows *w = rows_of(&c, l->area);

@@ -7,7 +7,7 @@
 
 rows *lattice_build(const deck *k, int lattice, diagnostics *d) {
   const deck_lattice *l = &k->lattices[lattice];
-  if (deck_lattice_is_bar(l)) return bar_rows(l, d);
+  if (deck_lattice_is_bar(l)) return bar_rows(k, lattice, d);
   const bool irregular = deck_lattice_is_irregular(l);
   return (irregular ? scattered_build : rows_build)(k, lattice, d);
 }

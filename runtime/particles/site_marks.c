@@ -124,11 +124,14 @@ bool site_too_many(const deck_lattice *l, double sites, diagnostics *d) {
   const double wider = deck_lattice_is_chain(l)          ? part
                        : deck_lattice_dimensions(l) == 2 ? sqrt(part)
                                                          : pl_cbrt(part);
+  const bool bar = deck_lattice_is_bar(l);
   diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&l->item, "spacing"),
-              "the bodies of lattice '%s' span %.3g sites; the most that can be stored are %.0e",
+              bar ? "the bar '%s' has %.3g particles; the most that can be stored are %.0e"
+                  : "the bodies of lattice '%s' span %.3g sites; the most that can be stored are "
+                    "%.0e",
               l->name, sites, SITE_MOST);
-  diag_hint(d, "a spacing of %.3g mm would do, if the bodies lie close together",
-            1e3 * l->spacing * wider * 1.01);
+  diag_hint(d, "a spacing of %.3g mm would do%s", 1e3 * l->spacing * wider * 1.01,
+            bar ? "" : ", if the bodies lie close together");
   return true;
 }
 

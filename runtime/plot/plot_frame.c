@@ -33,16 +33,22 @@ static double bond_length(const plot_frame *m, long b) {
   return n == 2 ? plane : pl_hypot(plane, j[2] - i[2]);
 }
 
-/* Mean over the particles of the distance to the nearest bonded one: on a lattice its spacing. */
-static double spacing_of(const plot_frame *m) {
-  double *nearest = must_calloc((size_t)m->particles + 1, sizeof *nearest), sum = 0;
-  long count = 0;
+/* [particles] distance to the nearest bonded one, 0 without; to be freed. */
+static double *nearest_of(const plot_frame *m) {
+  double *nearest = must_calloc((size_t)m->particles + 1, sizeof *nearest);
   for (long b = 0; b < m->bonds; b++)
     for (int e = 0; e < 2; e++) {
       double *known = &nearest[m->pairs[2 * b + e]];
       const double length = bond_length(m, b);
       if (*known == 0 || length < *known) *known = length;
     }
+  return nearest;
+}
+
+/* Mean over the particles: on a lattice its spacing. */
+static double spacing_of(const plot_frame *m) {
+  double *nearest = nearest_of(m), sum = 0;
+  long count = 0;
   for (long p = 0; p < m->particles; p++) {
     count += nearest[p] > 0;
     sum += nearest[p];
@@ -383,20 +389,26 @@ static double *means_of_bonds(const plot_frame *m, const double *values, int com
   for (long b = 0; b < m->bonds; b++)
     for (int e = 0; e < 2; e++) {
       const int32_t p = m->pairs[2 * b + e];
-      means[p] += values ? values[b] : plot_frame_value(m, b, component);
+      const double value = values ? values[b] : plot_frame_value(m, b, component);
+      if (isnan(value)) continue; /* of a law without it */
+      means[p] += value;
       bonds[p]++;
     }
   for (long p = 0; p < m->particles; p++)
-    if (bonds[p]) means[p] /= bonds[p];
+    means[p] = bonds[p] ? means[p] / bonds[p] : values ? 0 : NAN;
   free(bonds);
   return means;
 }
 
 /* Bonds that reach past the nearest neighbours hide each other when all are drawn. */
 static bool has_crowded_bonds(const plot_frame *m) {
-  for (long b = 0; b < m->bonds; b++)
-    if (bond_length(m, b) > 1.5 * m->spacing) return true;
-  return false;
+  double *nearest = nearest_of(m);
+  bool crowded = false;
+  for (long b = 0; b < m->bonds && !crowded; b++)
+    crowded =
+        bond_length(m, b) > 1.5 * pl_fmax(nearest[m->pairs[2 * b]], nearest[m->pairs[2 * b + 1]]);
+  free(nearest);
+  return crowded;
 }
 
 /* What bonds have, as means on particles. */

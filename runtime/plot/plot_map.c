@@ -32,7 +32,10 @@ static const struct {
 } classes[] = {{0.0, {0.80, 0.82, 0.85}, "sound"},     {0.3, {0.95, 0.80, 0.10}, "0 - 0.3"},
                {0.6, {0.95, 0.50, 0.05}, "0.3 - 0.6"}, {0.8, {0.55, 0.30, 0.10}, "0.6 - 0.8"},
                {1.0, {0.85, 0.05, 0.05}, "0.8 - 1"},   {INFINITY, {0, 0, 0}, "separated"}};
-enum { CLASSES = sizeof classes / sizeof *classes, SEPARATED = CLASSES - 1 };
+enum { CLASSES = sizeof classes / sizeof *classes, SEPARATED = CLASSES - 1, NO_CLASS = -1 };
+
+/* Bonds of laws without damage, as of bars. */
+static const colour plain_ink = {0.45, 0.48, 0.52};
 
 static const colour mark_ink = {0.05, 0.25, 0.80};
 
@@ -132,7 +135,8 @@ static int class_of(double damage) {
 }
 
 static int class_of_bond(const map *m, long b) {
-  return m->frame.damage ? class_of(m->frame.damage[b]) : 0;
+  if (!m->frame.damage) return 0;
+  return isnan(m->frame.damage[b]) ? NO_CLASS : class_of(m->frame.damage[b]);
 }
 
 static void stroke_bond(canvas *c, const map *m, long b) {
@@ -152,22 +156,29 @@ static void stroke_crack(canvas *c, const map *m, long b) {
   cairo_line_to(c->cr, at_x(m, x + dy * half), at_y(m, y - dx * half));
 }
 
-static void draw_bonds(canvas *c, const map *m, bool coloured) {
-  double thin = pl_fmax(0.4, 0.12 * m->frame.spacing * m->scale);
-  for (int k = 0; k < CLASSES; k++) { /* the worse above the better */
-    if (!coloured && k != SEPARATED) continue;
-    canvas_colour(c, classes[k].ink);
-    cairo_set_line_width(c->cr, k == 0 ? 0.6 * thin : k == SEPARATED ? 1.6 * thin : 1.4 * thin);
-    cairo_set_line_cap(c->cr, CAIRO_LINE_CAP_ROUND);
-    for (long b = 0; b < m->frame.bonds; b++) {
-      if (class_of_bond(m, b) != k) continue;
-      if (k == SEPARATED)
-        stroke_crack(c, m, b);
-      else
-        stroke_bond(c, m, b);
-    }
-    cairo_stroke(c->cr);
+static void draw_class(canvas *c, const map *m, int k) {
+  const double thin = pl_fmax(0.4, 0.12 * m->frame.spacing * m->scale);
+  canvas_colour(c, k == NO_CLASS ? plain_ink : classes[k].ink);
+  cairo_set_line_width(c->cr, k == 0 ? 0.6 * thin : k == SEPARATED ? 1.6 * thin : 1.4 * thin);
+  cairo_set_line_cap(c->cr, CAIRO_LINE_CAP_ROUND);
+  for (long b = 0; b < m->frame.bonds; b++) {
+    if (class_of_bond(m, b) != k) continue;
+    if (k == SEPARATED)
+      stroke_crack(c, m, b);
+    else
+      stroke_bond(c, m, b);
   }
+  cairo_stroke(c->cr);
+}
+
+/* The worse above the better, what has no damage between. */
+static void draw_bonds(canvas *c, const map *m, bool coloured) {
+  if (coloured) {
+    draw_class(c, m, 0);
+    draw_class(c, m, NO_CLASS);
+  }
+  for (int k = coloured ? 1 : SEPARATED; k < CLASSES; k++)
+    draw_class(c, m, k);
 }
 
 /* Dark blue - green - yellow; equal steps look equal, also in grey. */
@@ -218,12 +229,11 @@ static void draw_particles(canvas *c, const map *m, int component, double low, d
   const bool coloured = m->frame.values && !m->frame.of_bonds;
   const bool by_class = coloured && m->frame.of_damage && !m->frame.surface;
   const double radius = pl_fmax(0.7, (coloured ? 0.5 : 0.1) * m->frame.spacing * m->scale);
-  const colour plain = {0.45, 0.48, 0.52};
   cairo_new_path(c->cr);
   for (int k = 0; k < (by_class ? CLASSES : 1); k++)
     for (long p = 0; p < m->frame.particles; p++)
       if (!by_class || class_of(m->frame.values[p]) == k)
-        draw_particle(c, m, p, coloured ? particle_colour(m, p, component, low, high) : plain,
+        draw_particle(c, m, p, coloured ? particle_colour(m, p, component, low, high) : plain_ink,
                       radius);
 }
 
@@ -367,7 +377,7 @@ static void draw_scale_bar(canvas *c, const sheet *s) {
 /* The classes that occur. */
 static void find_classes(const map *m, bool occurs[CLASSES]) {
   for (long b = 0; b < m->frame.bonds; b++)
-    occurs[class_of_bond(m, b)] = true;
+    if (class_of_bond(m, b) != NO_CLASS) occurs[class_of_bond(m, b)] = true;
   for (long p = 0; m->frame.of_damage && m->frame.values && p < m->frame.value_count; p++)
     occurs[class_of(m->frame.values[p])] = true;
 }

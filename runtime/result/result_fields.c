@@ -192,8 +192,6 @@ double *result_read_damage(result_file *f, long frame, long *bonds, char *error,
     *bonds = count;
     good = most != NULL;
   }
-  for (long b = 0; most && b < *bonds; b++) /* of interactions whose law has no damage */
-    if (isnan(most[b])) most[b] = 0;
   return most;
 }
 

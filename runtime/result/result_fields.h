@@ -15,8 +15,8 @@ double *result_read_frame(result_file *f, const char *field, long frame, long *c
                           int *components, char *unit, size_t unit_size, char *error, size_t size);
 int32_t *result_read_bonds(result_file *f, const char *interaction,
                            long *bonds); /* [M][2]; NULL name: of all, one after the other */
-/* Largest of the damages of each bond (of all interactions); NULL when the frame cannot be read or
-   holds none (error ""). */
+/* Largest of the damages of each bond (of all interactions), NaN where its law has none; NULL when
+   the frame cannot be read or holds none (error ""). */
 double *result_read_damage(result_file *f, long frame, long *bonds, char *error, size_t size);
 
 C_LINKAGE_END

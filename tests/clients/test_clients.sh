@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Results as programs of others see them: four small specimens are torn, and a script looks at what has been written. Skipped
+# Results as programs of others see them: five small specimens are torn, and a script looks at what has been written. Skipped
 # where that program is not installed. Arguments: program, script, Debian packages that it needs, Python module to ask for.
 set -euo pipefail
 program=$1 script=$2 packages=$3 module=$4
@@ -23,7 +23,7 @@ export PYTHONDONTWRITEBYTECODE=1
 work=$(mktemp -d "${TMPDIR:-/tmp}/perilat_clients.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-for deck in plane space irregular linked; do
+for deck in plane space irregular bars linked; do
   "$program" run "$here/$deck.nml" >"$deck.said" 2>&1 || { cat "$deck.said"; exit 1; }
   for frame in 0 1 2 3; do
     "$program" export "$deck.h5" --frame $frame -o "${deck}_particles_$frame.csv" >/dev/null

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The program of runtime/HOST.md, as C and as C++: it prints what the page shows, and for each law what `perilat drive` says of
-# the same bond. Arguments: source folder, program, C compiler.
+# The programs of runtime/HOST.md, as C and as C++: they print what the page shows, and for each law what `perilat drive` says of
+# the same bond, or the same family. Arguments: source folder, program, C compiler.
 set -euo pipefail
 source=$1 program=$2 compiler=$3
 
@@ -15,25 +15,26 @@ cd "$work"
 ln -s "$source" FOLDER
 ln -s "$program" perilat
 export PATH=$work:$PATH
-page=$source/runtime/HOST.md
-block() { awk -v from="\`\`\`$1" '$0 == from { on = 1; next } /^```/ { on = 0 } on' "$page"; }
-
-# What the page does and shows
-block c >host.c
-block sh >commands.sh
-awk '/^```/ { code = !code } !code && sub(/^    /, "")' "$page" >shown
-[ "$(wc -l <host.c)" -gt 40 ] && [ "$(wc -l <shown)" = 5 ] || fail "the page has another program, or shows something else"
-bash -e commands.sh >said 2>&1 || { cat said; fail "the commands of the page"; }
-grep -v '^written ' said | diff shown - || fail "the program says something else than the page shows"
-
-strict="-Wall -Wextra -Werror -I $source host.c -lm"
-eval "\"$compiler\" -std=c11 $strict -o host_c" || fail "the program in C11"
+# The page's parts: bonds, a family alone.
+awk '{ part = /^## A family alone/ ? "family" : part ? part : "host"; print > (part ".md") }' "$source/runtime/HOST.md"
+block() { awk -v from="\`\`\`$1" '$0 == from { on = 1; next } /^```/ { on = 0 } on' "$2.md"; }
 cpp=${CXX:-c++}
-if command -v "$cpp" >/dev/null; then
-  eval "\"$cpp\" -x c++ -std=c++17 $strict -o host_cpp" || fail "the program in C++17"
-else
-  echo "no C++ compiler: the program was not tried in C++"
-fi
+command -v "$cpp" >/dev/null || echo "no C++ compiler: the programs were not tried in C++"
+
+# What a part does and shows, in so many lines; its program in both languages.
+try() {
+  block c "$1" >"$1.c"
+  block sh "$1" >commands.sh
+  awk '/^```/ { code = !code } !code && sub(/^    /, "")' "$1.md" >shown
+  [ "$(wc -l <"$1.c")" -gt 40 ] && [ "$(wc -l <shown)" = "$2" ] || fail "the page has another program, or shows something else"
+  bash -e commands.sh >said 2>&1 || { cat said; fail "the commands of the page"; }
+  grep -v '^written ' said | diff shown - || fail "the program says something else than the page shows"
+  strict="-Wall -Wextra -Werror -I $source $1.c -lm"
+  eval "\"$compiler\" -std=c11 $strict -o $1_c" || fail "the program in C11"
+  ! command -v "$cpp" >/dev/null || eval "\"$cpp\" -x c++ -std=c++17 $strict -o $1_cpp" || fail "the program in C++17"
+}
+try host 5
+try family 1
 
 # The columns of the host's lines in the table of the drive: stretch, N, and the law's fields. A difference counts by the largest value.
 cat >same.awk <<'END'
@@ -100,3 +101,47 @@ refused ./host_c ./law.so 1e-3 10 E=-1 && grep -q 'E = -1: out of bounds' log ||
 refused ./host_c ./law.so 1e-3 10 F=1 && grep -q 'no parameter' log || fail "$(cat log)"
 perilat build FOLDER/models/lps.plm -o families.so >log 2>&1 || { cat log; fail "building lps"; }
 refused ./host_c ./families.so 1e-3 10 && grep -q 'no law of bonds' log || fail "$(cat log)"
+
+# The family and the drive of the same strain, and the solid of lps: they differ by as much as the strain turns bonds.
+same_stress() {
+  cat >drive.nml <<END
+&simulation  steps = 1  /
+&particle    lattice = 'hexagonal'  spacing = '10 mm'  thickness = '100 mm'  /
+&material    model = '$1'  /
+&path        quantity = 'strain_xx'  times = 0, '1 s'  values = 0, 1$2  /
+&path        quantity = 'strain_yy'  times = 0, '1 s'  values = 0, '-0.5$2'  /
+&path        quantity = 'strain_xy'  times = 0, '1 s'  values = 0, '0.7$2'  /
+&output      csv = 'drive.csv'  /
+END
+  perilat drive drive.nml >log 2>&1 || { cat log; fail "the drive of $1"; }
+  for host in family_c family_cpp; do
+    [ -x "$host" ] || continue
+    "./$host" ./law.so "1$2" "-0.5$2" "0.7$2" | tr -d , >family.txt || fail "$host with $1"
+    awk -F, -v law="$1" -v strain="1$2" '
+      function off(what, is, should) {
+        gap = (is - should)/largest; if (gap < 0) gap = -gap
+        if (!(gap < 3*strain)) { print law ", " what ": " is ", not " should; bad = 1 }
+      }
+      FNR == NR { split($0, w, " "); host["xx"] = w[2]; host["yy"] = w[4]; host["xy"] = w[6]; next }
+      !header { header = 1; for (k = 1; k <= NF; k++) { sub(/ .*/, "", $k); place[$k] = k }; next }
+      { for (c in host) drive[c] = $place["stress_" c] }
+      END {
+        E = 25e9; nu = 0.2; stiff = E/(1 - nu^2)*strain
+        solid["xx"] = stiff*(1 - 0.5*nu); solid["yy"] = stiff*(-0.5 + nu); solid["xy"] = stiff*(1 - nu)*0.7
+        largest = drive["xx"]; if (!(largest > 0)) { print "no stress"; exit 1 }
+        for (c in host) { off("drive", host[c], drive[c]); if (law == "lps") off("solid", host[c], solid[c]) }
+        exit bad
+      }' family.txt drive.csv || fail "$host and the drive of $1"
+  done
+}
+for law in lps pmb; do
+  perilat build "FOLDER/models/$law.plm" --for irregular -o law.so >log 2>&1 || { cat log; fail "building $law"; }
+  for strain in e-4 e-6 e-9; do
+    same_stress "$law" "$strain"
+  done
+done
+
+refused ./family_c ./cohesive.so 0 0 0 && grep -q 'no law of single families' log || fail "$(cat log)"
+refused ./family_c ./families.so 0 0 0 && grep -q 'no law of single families' log || fail "$(cat log)"
+refused perilat build FOLDER/models/cohesive.plm --for irregular && grep -q 'is not for `irregular`: its line `for` names' log || fail "$(cat log)"
+refused perilat build FOLDER/models/lps.plm --for space,plane_stress && grep -q 'takes one setting' log || fail "$(cat log)"

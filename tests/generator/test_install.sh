@@ -181,9 +181,9 @@ export PKG_CONFIG_PATH=$pc
 [ -f "$(pkg-config --variable=modelsdir perilat | sed 's/\\//g')/elastic_central.plm" ] || fail "modelsdir of pkg-config"
 eval "\"$compiler\" -std=gnu11 use.c -o use $(pkg-config --cflags --libs perilat)"
 [ "$(./use elastic_central run.h5)" = "$expected" ] || fail "the program built by pkg-config"
-awk '$0 == "```c" { on = 1; next } /^```/ { on = 0 } on' "$prefix/share/doc/perilat/runtime/HOST.md" >page.c
-grep -q pl_law page.c || fail "the page of the host has no program"
-eval "\"$compiler\" -std=c11 -Wall -Wextra -Werror -fsyntax-only page.c $(pkg-config --cflags-only-I perilat)" || fail "the program of the page"
+awk '$0 == "```c" { on = 1; count++; next } /^```/ { on = 0 } on { print > ("page" count ".c") }' "$prefix/share/doc/perilat/runtime/HOST.md"
+grep -q pl_law page1.c && grep -q pl_law page2.c || fail "the page of hosts has no programs"
+eval "\"$compiler\" -std=c11 -Wall -Wextra -Werror -fsyntax-only page1.c page2.c $(pkg-config --cflags-only-I perilat)" || fail "the programs of the page"
 if [ -n "$cpp" ]; then
   ./cmake-build/host deck.nml 2>&1 | grep -q 'right, some steps' || fail "the C++ program built by CMake"
   eval "\"$cpp\" -std=c++17 -Wall -Wextra -Werror host.cpp -o host $(pkg-config --cflags --libs perilat)"

@@ -297,7 +297,7 @@ static void laws_have_the_section_that_they_read(void **state) {
          "reads `area`, the cross-section of a bar, which chains and bars alone have");
   expect(w, "info bar", 0, "On a chain of 2 neighbours, s = 10 mm, A = 100 mm^2:");
   expect(w, "info bar --area '2 cm^2'", 0, "E = 200 GPa along it, EA = 40 MN");
-  expect(w, "info bar --lattice square", 1, "which chains alone have");
+  expect(w, "info bar --lattice square", 1, "which chains and bars alone have");
   write_text(w, "path.nml",
              "&material model = 'bar' /\n&path quantity = 'stretch' value = 1e-4 rise "
              "= '1 s' /\n");

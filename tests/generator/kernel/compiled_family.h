@@ -49,7 +49,8 @@ static inline void assert_same_families(const kernel_plan *p, const pl_law *kern
     const int step =
         kernel->ledger.pass_count ? kernel->ledger.pass_count : kernel->step.pass_count;
     assert_true(step >= kernel->step.pass_count);
-    assert_int_equal(c.passes, step + kernel->observe.pass_count);
+    assert_true(kernel->force_state.pass_count > 0);
+    assert_int_equal(c.passes, step + kernel->observe.pass_count + kernel->force_state.pass_count);
     assert_true(c.bonds > 0);
     assert_true(kernel_check_agrees(&c));
   }

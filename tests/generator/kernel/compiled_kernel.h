@@ -17,6 +17,7 @@
 #include "generator/kernel/model.h"
 #include "generator/kernel/toolchain_cache.h"
 #include "generator/kernel/toolchain_compiler.h"
+#include "generator/lower/lowered.h"
 
 enum { PARAMETER_SETS = 4 };
 static const pl_bond_class bonds = {.size = sizeof(pl_bond_class),
@@ -39,7 +40,7 @@ static inline const pl_law *open_kernel_for(model *m, const char *path, const la
   bool good = model_open(m, path, choice, choice ? 1 : 0);
   if (good)
     m->law = law_on_lattice(m->law, setting ? *setting : m->law->setting, irregular, neighbours);
-  if (!good || !model_plan(m)) {
+  if (!good || !model_plan_varying(m, &(law_variation){.alone = true})) {
     diag_print(&m->said, stderr);
     fail_msg("%s cannot be compiled", path);
   }

@@ -29,7 +29,7 @@ static void laws_of_bonds_match_as_laws_of_families(void **state) {
       assert_true(model_open(&m, names[k], NULL, 0));
       const char *note;
       m.law = law_on_lattice(m.law, space ? SETTING_SPACE : SETTING_PLANE_STRESS, false, 0);
-      assert_true(model_plan_of_families(&m, &(law_variation){.varying_count = 0}));
+      assert_true(model_plan_of_families(&m, &(law_variation){.alone = true}));
       const pl_law *kernel = model_kernel(&m, false, &note, error, sizeof error);
       if (!kernel) fail_msg("%s", error);
       assert_same_families(m.plan, kernel, 60000);

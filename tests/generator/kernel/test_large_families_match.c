@@ -19,7 +19,7 @@ static int large(const char *path, const law_choice *choice, law_setting setting
   const char *note;
   assert_true(model_open(&m, path, NULL, 0));
   m.law = law_on_lattice(m.law, setting, false, LARGE);
-  assert_true(model_plan(&m));
+  assert_true(model_plan_varying(&m, &(law_variation){.alone = true}));
   const pl_law *kernel = model_kernel(&m, false, &note, error, sizeof error);
   if (!kernel) fail_msg("%s", error);
   assert_text_is_clean(&m);

@@ -22,7 +22,7 @@ static void check_law_with(const char *name, law_setting setting, int neighbours
   int which = 0;
   while (varying && strcmp(m.law->parameters.items[which]->name, varying) != 0)
     which++;
-  const law_variation v = {.varying = &which, .varying_count = varying != NULL};
+  const law_variation v = {.varying = &which, .varying_count = varying != NULL, .alone = true};
   if (!model_plan_of_families(&m, &v)) {
     diag_print(&m.said, stderr);
     fail_msg("%s cannot be planned", path);

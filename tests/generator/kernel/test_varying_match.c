@@ -23,7 +23,7 @@ typedef struct case_of {
 
 /* All parameters but the density, which belongs to the particles' masses. */
 static law_variation all_of(const law *l, int *varying) {
-  law_variation v = {.varying = varying, .shares = l->tree->law == LAW_STATE};
+  law_variation v = {.varying = varying, .shares = l->tree->law == LAW_STATE, .alone = true};
   for (int k = 0; k < l->parameters.count; k++)
     if (k != l->rho->index) varying[v.varying_count++] = k;
   return v;

@@ -1,0 +1,223 @@
+/* Decks with bars as a person runs them: what the report says, what results and pictures hold, bars
+   that know nothing of each other, the same bits whatever the threads and after a resume. */
+#define _GNU_SOURCE /* nftw */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "runtime/plot/plot_frame.h"
+#include "tests/generator/command_tools.h"
+#include "tests/runtime/hand_over.h"
+#include "tests/verification/case.h"
+
+/* A plate that tears; a straight bar that yields, and a stirrup that is struck. */
+#define START "&simulation end_time = '0.2 ms' step = '0.3 us' threads = %d /\n"
+#define PLATE                                                                                      \
+  "&lattice name = 'plate' kind = 'hexagonal' spacing = '10 mm' thickness = '10 mm' /\n"           \
+  "&material lattice = 'plate' model = 'mplm_bilinear' /\n"                                        \
+  "&body lattice = 'plate' shape = 'rectangle' corner = 0, 0 size = '0.2 m', '0.1 m' /\n"          \
+  "&region name = 'left' lattice = 'plate' shape = 'rectangle' corner = -1, -1 size = '1.011 m', " \
+  "2 /\n"                                                                                          \
+  "&region name = 'right' lattice = 'plate' shape = 'rectangle' corner = '0.189 m', -1 size = 1, " \
+  "2 /\n"                                                                                          \
+  "&support region = 'left' fix = 'xy' /\n"                                                        \
+  "&drive region = 'right' component = 'x' velocity = '1 m/s' rise = '0.1 ms' /\n"
+#define BARS                                                                                       \
+  "&bar name = 'tie' points = '-10 mm', '20 mm', '210 mm', '20 mm' diameter = '8 mm' spacing = "   \
+  "'10 mm' /\n"                                                                                    \
+  "&material bar = 'tie' model = 'steel_bar' H = '2 GPa' /\n"                                      \
+  "&region name = 'start' lattice = 'tie' shape = 'point' at = '-10 mm', '20 mm' /\n"              \
+  "&region name = 'end' lattice = 'tie' shape = 'point' at = '210 mm', '20 mm' /\n"                \
+  "&support region = 'start' fix = 'xy' /\n"                                                       \
+  "&drive region = 'end' component = 'x' velocity = '10 m/s' rise = '0.02 ms' /\n"                 \
+  "&bar name = 'stirrup' closed = T points = '50 mm', '10 mm', '153 mm', '10 mm', '153 mm', "      \
+  "'90 mm', '50 mm', '90 mm' area = '30 mm^2' spacing = '10 mm' /\n"                               \
+  "&material bar = 'stirrup' model = 'steel_bar' /\n"                                              \
+  "&region name = 'corner' lattice = 'stirrup' shape = 'point' at = '50 mm', '90 mm' /\n"          \
+  "&initial_velocity region = 'corner' component = 'y' value = '40 m/s' /\n"                       \
+  "&monitor name = 'load' kind = 'reaction' region = 'end' component = 'x' /\n"
+
+static void open_deck(deck_case *c, const char *text, int threads) {
+  char whole[4000];
+  snprintf(whole, sizeof whole, text, threads);
+  if (!deck_case_text(c, whole)) diag_print(&c->model.said, stderr);
+  assert_non_null(c->simulation);
+}
+
+/* Places, velocities and fields of two bodies, to the last bit. */
+static void same_bodies(const deck_case *a, int i, const deck_case *b, int j) {
+  const sweep *x = simulation_state(a->simulation, i), *y = simulation_state(b->simulation, j);
+  const rows *w = x->body->lattice;
+  const size_t sites = (size_t)w->size * sizeof(double);
+  assert_int_equal(w->size, y->body->lattice->size);
+  for (int d = 0; d < x->body->dof; d++) {
+    assert_memory_equal(x->body->displacement[d], y->body->displacement[d], sites);
+    assert_memory_equal(x->body->velocity[d], y->body->velocity[d], sites);
+  }
+  for (int f = 0; f < x->law->field_count; f++)
+    for (long p = 0; p < w->particle_count; p++)
+      for (int k = 0; k < w->directions; k++) {
+        const long slot = k * w->size + w->particle_site[p];
+        assert_true(x->field[f][slot] == y->field[f][slot]);
+      }
+}
+
+/* The largest value of the law's first field. */
+static double most_of_field(const deck_case *c, int number) {
+  const sweep *w = simulation_state(c->simulation, number);
+  const rows *g = w->body->lattice;
+  double most = 0;
+  for (long p = 0; p < g->particle_count; p++)
+    for (int k = 0; k < g->directions; k++)
+      if (rows_has_bond(g, g->particle_site[p], k))
+        most = fmax(most, fabs(w->field[0][k * g->size + g->particle_site[p]]));
+  return most;
+}
+
+static void threads_and_a_resume_give_the_same_bits(void **state) {
+  (void)state;
+  deck_case one, more, first, second;
+  open_deck(&one, START PLATE BARS, 1);
+  assert_int_equal(simulation_bodies(one.simulation), 3);
+  assert_int_equal(deck_case_go(&one), STEP_END);
+  for (int b = 1; b < 3; b++) /* both bars have yielded */
+    assert_true(most_of_field(&one, b) > 1e-3);
+  open_deck(&more, START PLATE BARS, 3);
+  assert_int_equal(deck_case_go(&more), STEP_END);
+  open_deck(&first, START PLATE BARS, 1);
+  open_deck(&second, START PLATE BARS, 2);
+  hand_over(first.simulation, simulation_step_count(one.simulation) / 3, second.simulation);
+  assert_int_equal(deck_case_go(&second), STEP_END);
+  for (int b = 0; b < 3; b++) {
+    same_bodies(&one, b, &more, b);
+    same_bodies(&one, b, &second, b);
+  }
+  deck_case_close(&one);
+  deck_case_close(&more);
+  deck_case_close(&first);
+  deck_case_close(&second);
+}
+
+/* They lie over the plate and over each other. */
+static void bars_do_not_act_on_what_they_touch(void **state) {
+  (void)state;
+  deck_case all, plate, bars;
+  open_deck(&all, START PLATE BARS, 1);
+  open_deck(&plate, START PLATE, 1);
+  open_deck(&bars, START BARS, 1);
+  assert_int_equal(deck_case_go(&all), STEP_END);
+  assert_int_equal(deck_case_go(&plate), STEP_END);
+  assert_int_equal(deck_case_go(&bars), STEP_END);
+  same_bodies(&all, 0, &plate, 0);
+  same_bodies(&all, 1, &bars, 0);
+  same_bodies(&all, 2, &bars, 1);
+  deck_case_close(&all);
+  deck_case_close(&plate);
+  deck_case_close(&bars);
+}
+
+static void write_deck(workplace *w) {
+  char text[4000];
+  snprintf(text, sizeof text,
+           START PLATE BARS
+           "&output result = 'bars.h5' frames = 2 losses = .true. fields = 'displacement', "
+           "'damage', 'stress', 'sigma', 'yielded' /\n",
+           1);
+  write_text(w, "bars.nml", text);
+}
+
+static void the_report_says_what_bars_are(void **state) {
+  workplace *w = *state;
+  write_deck(w);
+  expect(w, "check bars.nml", 0,
+         "  bar        tie: 23 particles, 22 bonds, 220 mm long, area 50.2655 mm^2, spacing 10 mm\n"
+         "  placing    of 23 particles of tie 21 lie in plate, 2.68 to 2.68 mm from the nearest "
+         "site, in the mean 2.68 mm\n"
+         "  law        steel_bar (");
+  assert_non_null(strstr(w->said, "): along this bar E = 200 GPa, E A = 10.05 MN\n"));
+  assert_non_null(strstr(w->said,
+                         "  bar        stirrup: closed, 36 particles, 36 bonds, 366 mm long, area "
+                         "30 mm^2, spacing 10 to 10.3 mm: legs are no multiples of 10 mm\n"));
+  assert_non_null(strstr(w->said, "): along this bar E = 200 GPa, E A = 6 MN\n"));
+  expect(w, "check bars.nml --set bar[tie].diameter='10 mm' --set material[tie].E='100 GPa'", 0,
+         "along this bar E = 100 GPa, E A = 7.854 MN\n");
+  expect(w, "check bars.nml --set material[tie].model=mplm_linear", 1,
+         "the law `mplm_linear` reads the thickness `t`, which a bar does not have");
+  expect(w, "check bars.nml --set material[tie].model=lps", 1,
+         "the law `lps` reads whole families, but a bar has bonds along one line alone");
+  expect(w, "check bars.nml --set bar[tie].spacing='1 nm'", 1,
+         "the bar 'tie' has 2.2e+08 particles");
+}
+
+static double last_of(const workplace *w, const char *name) {
+  result_file *f = open_result_of(w, "bars.h5");
+  char unit_text[64], error[1000];
+  long count;
+  double *values =
+      result_read_series(f, name, &count, unit_text, sizeof unit_text, error, sizeof error);
+  assert_non_null(values);
+  const double last = values[count - 1];
+  free(values);
+  result_read_close(f);
+  return last;
+}
+
+/* Bonds with a number in a map, of those that are drawn. */
+static long numbers_in(const workplace *w, const char *field, long *bonds) {
+  const plot_map_options o = {.field = field, .frame = -1, .component = -1, .slice_axis = -1};
+  plot_frame m;
+  char error[1000];
+  long count = 0;
+  if (!plot_frame_read(&m, in_workplace(w, "bars.h5"), &o, error, sizeof error))
+    fail_msg("%s", error);
+  for (long b = 0; b < m.bonds; b++)
+    count += !isnan(m.values ? m.values[b] : m.damage[b]);
+  *bonds = m.bonds;
+  plot_frame_free(&m);
+  return count;
+}
+
+/* All bonds are drawn, those of bars in colours where these have the field; where the plate has it in
+   a colour of their own. */
+static void results_and_pictures_hold_bars(void **state) {
+  workplace *w = *state;
+  write_deck(w);
+  expect(w, "run bars.nml", 0, "written");
+  const double external = last_of(w, "energy/external");
+  print_message("imbalance %.1e of the work, yield took %.2f of it\n",
+                last_of(w, "energy/imbalance") / external,
+                last_of(w, "energy/dissipated_damage") / external);
+  assert_true(fabs(last_of(w, "energy/imbalance")) < 1e-2 * external);
+  assert_true(last_of(w, "tie/dissipated_damage") > 0.1 * external);
+  expect(w, "info bars.h5", 0, "305 particles, 732 bonds, 3 frames");
+  assert_non_null(strstr(w->said, "stirrup/sigma"));
+  expect(w, "export bars.h5 --frame 2 --bonds --field tie/yielded", 0, "tie/yielded");
+  expect(w, "compare bars.h5 bars.h5", 0, "");
+  expect(w, "plot bars.h5 --map sigma -o sigma.svg", 0, "written sigma.svg");
+  expect(w, "plot bars.h5 --map damage -o damage.png", 0, "written damage.png");
+  expect(w, "plot bars.h5 --map displacement --mark yielded -o displacement.pdf", 0, "written");
+  long bonds;
+  assert_int_equal(numbers_in(w, "sigma", &bonds), 22 + 36);
+  assert_int_equal(bonds, 674 + 22 + 36);
+  assert_int_equal(numbers_in(w, "tie/yielded", &bonds), 22);
+  assert_int_equal(numbers_in(w, "damage", &bonds), 674);
+  assert_int_equal(bonds, 674 + 22 + 36);
+  expect(w, "run bars.nml --set bar[tie].spacing='20 mm' --set bar[stirrup].spacing='5 mm'", 0, "");
+  assert_int_equal(numbers_in(w, "damage", &bonds), 674); /* and not hidden by longer ones */
+  assert_int_equal(bonds, 674 + 11 + 74);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(threads_and_a_resume_give_the_same_bits),
+      cmocka_unit_test(bars_do_not_act_on_what_they_touch),
+      cmocka_unit_test_setup_teardown(the_report_says_what_bars_are, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(results_and_pictures_hold_bars, set_up_workplace,
+                                      tear_down_workplace),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
