@@ -257,12 +257,13 @@ rows *linked_build(const deck *k, int lattice, rows *const *built, diagnostics *
 }
 
 /* Rotations: a particle of a list turns as rows_radius_square says. */
-void linked_take_masses(rows *link, rows *const *built) {
+bool linked_take_masses(rows *link, rows *const *built) {
   const double half = link->spacing / 2;
   double sum = 0;
   for (long p = 0; p < link->particle_count; p++) {
     const rows_copy *c = &link->copies[p];
     const rows *g = built[c->lattice];
+    if (!(g->mass > 0)) return false;
     const long site = g->particle_site[c->particle], here = link->particle_site[p];
     const double mass = g->site_mass ? g->site_mass[site] : g->mass,
                  inertia = mass * (g->inertia / g->mass) * rows_radius_square(g, site);
@@ -275,4 +276,5 @@ void linked_take_masses(rows *link, rows *const *built) {
   link->inertia = 0.4 * link->mass * half * half;
   for (long q = 0; q < link->size; q++)
     if (!link->present[q]) link->site_mass[q] = link->mass;
+  return true;
 }
