@@ -235,7 +235,8 @@ static void announce_placing(const run *r, int lattice) {
   const rows *bar = simulation_rows(r->simulation, lattice);
   for (int n = 0; n < k->lattice_count; n++) {
     const rows *w = simulation_rows(r->simulation, n);
-    if (deck_lattice_is_bar(&k->lattices[n]) || w->dimensions != bar->dimensions) continue;
+    if (deck_lattice_is_bar(&k->lattices[n]) || w->copies || w->dimensions != bar->dimensions)
+      continue;
     const bar_placing p = bar_placing_in(bar, w);
     printf("  placing    of %ld particles of %s %ld lie in %s", bar->particle_count,
            k->lattices[lattice].name, p.inside, k->lattices[n].name);

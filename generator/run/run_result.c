@@ -237,10 +237,9 @@ static void particle_table(run *r, result_header *h) {
   bool irregular = false;
   h->dimensions = simulation_rows(r->simulation, 0)->dimensions;
   for (int b = 0; b < bodies; b++) {
-    const deck_lattice *l = &r->deck->lattices[b];
     h->particle_count += (long)own_particles(r, b);
-    irregular = irregular || (simulation_rows(r->simulation, b)->list && !deck_lattice_is_bar(l) &&
-                              !deck_lattice_is_link(l));
+    irregular = irregular || (own_particles(r, b) > 0 && simulation_rows(r->simulation, b)->list &&
+                              !deck_lattice_is_bar(&r->deck->lattices[b]));
   }
   const size_t n = (size_t)h->particle_count, dimensions = (size_t)h->dimensions;
   const particle_arrays all = {arena_alloc(r->memory, dimensions * n * sizeof(double)),

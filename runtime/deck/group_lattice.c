@@ -512,7 +512,7 @@ static const deck_key_info material_keys[] = {
     {.name = "lattice",
      .type = DECK_NAME,
      DECK_AT(material, lattice),
-     .fallback = "= required, but for a bar or a link",
+     .fallback = "= none; required but for a bar or a link",
      .doc = "name of the lattice"},
     {.name = "bar", .type = DECK_NAME, DECK_AT(material, bar), .doc = "instead: name of the bar"},
     {.name = "link",

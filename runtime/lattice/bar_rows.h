@@ -8,8 +8,9 @@
 #include "runtime/deck/deck.h"
 #include "runtime/lattice/rows.h"
 
-/* Of a deck's lattice that deck_lattice_is_bar. The rows' spacing is the mean length that a particle
-   stands for. Notches leave it whole, with a warning where it crosses one. NULL after a message. */
+/* Of a deck's lattice that deck_lattice_is_bar. The rows' spacing is the mean length that a
+   particle stands for. Notches leave it whole, with a warning where it crosses one. NULL after a
+   message. */
 rows *bar_rows(const deck *k, int lattice, diagnostics *d);
 
 /* A straight bar along x of so many particles, else as `like`; NULL without memory. */

@@ -295,13 +295,18 @@ static double inertia_of(const rows_copy *c, const rows *g, double mass) {
 }
 
 /* A particle of a list turns as rows_radius_square says. */
-void linked_take_masses(rows *link, rows *const *built) {
+bool linked_take_masses(rows *link, rows *const *built) {
   const double half = link->spacing / 2;
   const int bar = link->copies[0].lattice; /* they begin with one of the bar */
   double sum = 0, *of_bar = weights_of(link, bar, built[bar]), *of_body = NULL;
   for (long p = 0; p < link->particle_count; p++) {
     const rows_copy *c = &link->copies[p];
     const rows *g = built[c->lattice];
+    if (!(g->mass > 0)) {
+      free(of_bar);
+      free(of_body);
+      return false;
+    }
     const long here = link->particle_site[p];
     if (c->lattice != bar && !of_body) of_body = weights_of(link, c->lattice, g);
     const double mass = mass_of(c, g, c->lattice == bar ? of_bar : of_body),
@@ -317,4 +322,5 @@ void linked_take_masses(rows *link, rows *const *built) {
   link->inertia = 0.4 * link->mass * half * half;
   for (long q = 0; q < link->size; q++)
     if (!link->present[q]) link->site_mass[q] = link->mass;
+  return true;
 }

@@ -18,8 +18,8 @@
    as they are built. NULL after messages at the deck's line. */
 rows *linked_build(const deck *k, int lattice, rows *const *built, diagnostics *d);
 
-/* Masses and moments of inertia of the copies become those of their particles, whose masses are
-   known. */
-void linked_take_masses(rows *link, rows *const *built);
+/* Masses and moments of inertia of the copies become those of their particles; false where these
+   are not known. */
+bool linked_take_masses(rows *link, rows *const *built);
 
 #endif

@@ -161,20 +161,19 @@ static bool density_is_one(const run_body *b) {
   return same;
 }
 
-static void set_masses(run_body *b, rows *const *built) {
-  if (run_body_is_link(b)) {
-    linked_take_masses(b->lattice_rows, built);
-    return;
-  }
+/* False where what is wrong with others has been said. */
+static bool set_masses(run_body *b, rows *const *built) {
+  if (run_body_is_link(b)) return linked_take_masses(b->lattice_rows, built);
   if (density_is_one(b)) {
     rows_set_density(b->lattice_rows, material_density(b->law, b->laws[0].parameters));
-    return;
+    return true;
   }
   double *rho = must_calloc((size_t)b->lattice_rows->size, sizeof *rho);
   for (int n = 0; n < b->law_count; n++)
     take_densities(b, &b->laws[n], rho);
   rows_set_densities(b->lattice_rows, rho);
   free(rho);
+  return true;
 }
 
 /* Bonds between regions have no mass. */
@@ -195,7 +194,7 @@ static bool open_materials(run_body *b, const deck *k, rows *const *built, diagn
     mass = (run_body_is_link(b) || law_fits_motion(b->laws[n].law, k, b->lattice, d)) && mass;
     warn_of_mass(&b->laws[n], d);
   }
-  if (mass) set_masses(b, built);
+  mass = mass && set_masses(b, built);
   if (mass) law_parts_take_masses(b->parts, b->law_count, b->lattice_rows);
   if (deck_lacks(k, "simulation") || deck_lacks(k, "relaxation")) return false;
   return planes && mass && find_limit(b, k, d);

@@ -1,10 +1,15 @@
 """What `perilat export` says of the frames of the specimens: the numbers that other programs must show."""
 import csv
-from math import isnan, nan
+import math
 
 SPECIMENS = ("plane", "space", "irregular", "bars", "linked")
 FRAMES = 4
 END = 0.3e-3  # s, and not a step more than a hundredth of it
+
+
+def comparable(values):
+    """What has no number (bonds of a bar have no damage) is None, which is equal to itself."""
+    return [None if math.isnan(value) else value for value in values]
 
 
 class Columns:
@@ -31,11 +36,6 @@ class Frame:
         self.displacement = particles.vectors("displacement_x", "displacement_y", "displacement_z")
         self.damage = particles.columns["damage"]
         self.ends = [(int(i), int(j)) for i, j in zip(bonds.columns["i"], bonds.columns["j"])]
-        # of the law of each bond; laws stand in the order of their names, here that of the deck, too
+        # laws stand in the order of their names, in these decks that of the lattices, too
         omegas = [column for name, column in bonds.columns.items() if name.endswith("/omega")]
-        self.omega = [next((value for value in bond if not isnan(value)), nan) for bond in zip(*omegas)]
-
-
-def same(values, others):
-    """Numbers are equal, and what is none, as of bonds without the field, is none."""
-    return len(values) == len(others) and all(v == w or (isnan(v) and isnan(w)) for v, w in zip(values, others))
+        self.omega = comparable([next((w for w in bond if not math.isnan(w)), math.nan) for bond in zip(*omegas)])

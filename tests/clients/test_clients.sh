@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Results as programs of others see them: four small specimens are torn, and a script looks at what has been written. Skipped
+# Results as programs of others see them: five small specimens are torn, and a script looks at what has been written. Skipped
 # where that program is not installed. Arguments: program, script, Debian packages that it needs, Python module to ask for.
 set -euo pipefail
 program=$1 script=$2 packages=$3 module=$4

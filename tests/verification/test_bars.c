@@ -1,5 +1,6 @@
-/* Bars along polylines against closed forms: modulus and stable step, cantilevers turned anywhere in the
-   plane and in space, a bent one that twists, a closed ring, and a bar that is pulled until it yields. */
+/* Bars along polylines against closed forms: modulus and stable step, cantilevers turned anywhere
+   in the plane and in space, a bent one that twists, a closed ring, and a bar that is pulled until
+   it yields. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -28,8 +29,8 @@ static void open_bars(deck_case *c, const char *rest, const char *of_law, const 
 
 /* --- what follows from the law ---------------------------------------------------------------- */
 
-/* A free row of n equal masses: omega = 2 c/s cos(pi/(2 n)), the ends too. The modulus is the law's,
-   of bars that are bent or closed, too, whatever their spacing. */
+/* A free row of n equal masses: omega = 2 c/s cos(pi/(2 n)), the ends too. The modulus is the
+   law's, of bars that are bent or closed, too, whatever their spacing. */
 static void a_bar_has_its_modulus_and_step(void **state) {
   (void)state;
   static const struct {
@@ -104,9 +105,9 @@ static void a_turned_cantilever_bends_as_theory_says(void **state) {
   }
 }
 
-/* A bar in space from x = 0 along x for a, then along y for b, loaded at its end along z: bending of
-   both legs, and the first one twists: w = P a^3/(3 EI) + P b^3/(3 EI) + P b^2 a/GJ, GJ = EI. The
-   steel bar's law says EI by its area. */
+/* A bar in space from x = 0 along x for a, then along y for b, loaded at its end along z: bending
+   of both legs, and the first one twists: w = P a^3/(3 EI) + P b^3/(3 EI) + P b^2 a/GJ, GJ = EI.
+   The steel bar's law says EI by its area. */
 static void a_bent_bar_bends_and_twists(void **state) {
   (void)state;
   const double a = 0.12, b = 0.08, EI = E * area * area / (4 * PI), P = 1e-5 * EI / (a * a);

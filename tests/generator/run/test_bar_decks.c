@@ -180,8 +180,8 @@ static long numbers_in(const workplace *w, const char *field, long *bonds) {
   return count;
 }
 
-/* All bonds are drawn, those of bars in colours where these have the field; where the plate has it in
-   a colour of their own. */
+/* All bonds are drawn, those of bars in colours where these have the field; where the plate has it
+   in a colour of their own. */
 static void results_and_pictures_hold_bars(void **state) {
   workplace *w = *state;
   write_deck(w);

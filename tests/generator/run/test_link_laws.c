@@ -205,11 +205,81 @@ static void threads_and_stops_do_not_change_a_bit(void **state) {
   deck_case_close(&straight);
 }
 
+/* --- as a person sees them -------------------------------------------------------------------- */
+
+static const char linked_deck[] =
+    "&simulation  end_time = '0.05 ms' /\n"
+    "&lattice     name = 'c'  kind = 'hexagonal'  spacing = '20 mm'  thickness = '120 mm' /\n"
+    "&body        lattice = 'c'  shape = 'rectangle'  corner = 0, 0  size = '200 mm', '80 mm' /\n"
+    "&material    lattice = 'c'  model = 'mplm_bilinear' /\n"
+    "&bar         name = 'b'  points = '11 mm', '23 mm', '191 mm', '23 mm'  spacing = '20 mm'\n"
+    "             diameter = '12 mm' /\n"
+    "&material    bar = 'b'  model = 'steel_bar' /\n"
+    "&link        name = 'l'  bar = 'b'  lattice = 'c'  every = 3 /\n"
+    "&material    link = 'l'  model = 'bar_bond' /\n"
+    "&region      name = 'tip'  lattice = 'b'  shape = 'point'  at = '191 mm', '23 mm' /\n"
+    "&force       region = 'tip'  component = 'x'  total = '10 kN' /\n"
+    "&output      result = 'linked.h5'  frames = 1 /\n";
+
+static void laws_that_do_not_suit_are_named(void **state) {
+  workplace *w = *state;
+  write_text(w, "linked.nml", linked_deck);
+  expect(w, "check linked.nml", 0,
+         "link       l: 15 bonds of 5.767 to 19.83 mm join 4 particles of b to 15 of c");
+  expect(w, "check linked.nml --set material[l].model=lps", 1,
+         "the law `lps` reads whole families, but a link has bonds between two bodies alone");
+  expect(w, "check linked.nml --set material[l].model=beam", 1,
+         "take another law, such as `bar_bond`");
+  expect(w, "check linked.nml --set material[b].model=bar", 1,
+         "the law `bar_bond` of the link `l` bends bonds, but the particles of `b` do not rotate");
+  expect(w, "check linked.nml --set material[c].model=elastic_central", 1,
+         "the law `bar_bond` of the link `l` bends bonds, but the particles of `c` do not rotate");
+  expect(w, "check linked.nml --set material[l].model=elastic_central", 0, "");
+}
+
+/* What is wrong with a lattice is not said of its links, too. */
+static void a_link_waits_for_what_it_joins(void **state) {
+  workplace *w = *state;
+  write_text(w, "linked.nml", linked_deck);
+  expect(w, "check linked.nml --set lattice.kind=blue_noise", 1, "is meant for lattices");
+  assert_null(strstr(w->said, "unstable-step"));
+}
+
+/* In a result each particle stands once: 53 and 10, and bonds of the link join them. */
+static void a_particle_stands_once_in_results(void **state) {
+  workplace *w = *state;
+  char *rest;
+  double ends[2];
+  long links = 0;
+  write_text(w, "linked.nml", linked_deck);
+  expect(w, "run linked.nml", 0, "written");
+  assert_null(strstr(w->said, "lie in l"));
+  expect(w, "info linked.h5", 0, "63 particles");
+  expect(w, "export linked.h5 --frame 1 --bonds -o bonds.csv", 0, "written bonds.csv");
+  size_t size;
+  char *text = read_bytes(w, "bonds.csv", &size);
+  for (char *line = strchr(text, '\n'); line && line[1]; line = strchr(line + 1, '\n')) {
+    strtol(line + 1, &rest, 10);
+    for (int end = 0; end < 2; end++)
+      ends[end] = strtod(rest + 1, &rest);
+    assert_true(fmax(ends[0], ends[1]) < 63);
+    links += (ends[0] < 53) != (ends[1] < 53);
+  }
+  free(text);
+  assert_int_equal(links, 15);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(an_elastic_link_is_as_stiff_as_a_bond_of_the_lattice),
       cmocka_unit_test(what_links_lose_is_booked),
       cmocka_unit_test(threads_and_stops_do_not_change_a_bit),
+      cmocka_unit_test_setup_teardown(laws_that_do_not_suit_are_named, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(a_link_waits_for_what_it_joins, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(a_particle_stands_once_in_results, set_up_workplace,
+                                      tear_down_workplace),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

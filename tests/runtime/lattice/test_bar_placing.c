@@ -64,7 +64,8 @@ static void is_placed(const char *text, long inside, double least, double most) 
   built_end(&b);
 }
 
-/* On the second row of sites, 17.32 mm up, and 2.68 mm above it; a leg that comes in from outside. */
+/* On the second row of sites, 17.32 mm up, and 2.68 mm above it; a leg that comes in from outside.
+   */
 static void bars_lie_on_sites_or_off(void **state) {
   (void)state;
   const double row = sqrt(3) / 100, above = 0.02 - row;

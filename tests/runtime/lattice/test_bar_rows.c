@@ -1,5 +1,5 @@
-/* Particles of bars: where they stand, what is joined to what, masses and inertias; in the plane and
-   in space, open and closed, with legs that the spacing divides and others. */
+/* Particles of bars: where they stand, what is joined to what, masses and inertias; in the plane
+   and in space, open and closed, with legs that the spacing divides and others. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -78,7 +78,8 @@ static void a_straight_bar(void **state) {
   built_end(&b);
 }
 
-/* A leg of 104 mm has parts of 10.4 mm beside those of 10 mm; a corner particle has half of each. */
+/* A leg of 104 mm has parts of 10.4 mm beside those of 10 mm; a corner particle has half of each.
+   */
 static void legs_are_divided_evenly(void **state) {
   (void)state;
   built_rows b;
