@@ -421,7 +421,7 @@ static void laws_of_bonds_in_this_form_say_half(void **state) {
   } of[] = {{"models/cohesive", SETTING_PLANE_STRESS},
             {"models/elastic_central", SETTING_PLANE_STRESS},
             {"models/mplm_bilinear", SETTING_PLANE_STRESS},
-            {"models/mplm_linear", SETTING_PLANE_STRESS},
+            {"models/mplm_concrete", SETTING_PLANE_STRESS},
             {"models/mplm_space", SETTING_SPACE},
             {"tests/generator/laws/frame", SETTING_SPACE}};
   for (size_t k = 0; k < sizeof of / sizeof *of; k++) {
