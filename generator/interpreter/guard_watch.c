@@ -24,6 +24,11 @@ static bool is_limit(const ir *g, ir_node choice) {
   return (yes == a && no == b) || (yes == b && no == a);
 }
 
+/* x == x: is it a number? No condition of the law. */
+static bool asks_for_number(const ir *g, ir_node guard) {
+  return ir_operation(g, guard) == IR_EQ && ir_operand(g, guard, 0) == ir_operand(g, guard, 1);
+}
+
 static int find_guards(const kernel_plan *p, ir_node *guards) {
   const ir *g = p->graph;
   const int nodes = ir_count(g);
@@ -31,7 +36,7 @@ static int find_guards(const kernel_plan *p, ir_node *guards) {
   unsigned char *marks = segment_needed(g, plan_segment(p, PROGRAM_STATES));
   for (ir_node n = 0; n < nodes; n++)
     if (marks[n] && ir_operation(g, n) == IR_SELECT && !is_limit(g, n) &&
-        !ir_is_uniform(g, ir_operand(g, n, 0)))
+        !ir_is_uniform(g, ir_operand(g, n, 0)) && !asks_for_number(g, ir_operand(g, n, 0)))
       marks[ir_operand(g, n, 0)] = GUARD;
   int count = 0;
   for (ir_node n = 0; n < nodes; n++)

@@ -247,10 +247,10 @@ static void wander(FILE *out, const char *quantity, double middle, double size, 
    what is lost never comes back. */
 static void friction_takes_energy_on_any_path(void **state) {
   (void)state;
-  for (unsigned seed = 1; seed <= 8; seed++) {
+  for (unsigned seed = 1; seed <= 6; seed++) {
     unsigned drawn = seed;
     FILE *out = deck();
-    fprintf(out, "&simulation steps = 60000 /\n&bond spacing = '20 mm' thickness = '127 mm' /\n"
+    fprintf(out, "&simulation steps = 24000 /\n&bond spacing = '20 mm' thickness = '127 mm' /\n"
                  "&material model = 'mplm_concrete' friction = 'stick_slip' crushing = 'text' "
                  "zeta = 0 /\n&output hdf5 = 'mplm_concrete.h5' /\n");
     wander(out, "stretch", -2e-3, 2.5e-3, &drawn);
@@ -341,7 +341,7 @@ static void curvatures_in_space_are_the_larger_ends(void **state) {
 /* Half a crystal lifted off the other along a cube face, without bending: four first neighbours on
    each spacing squared cost G_F/5 each, and two second ones half as much. */
 static const char lifted[] =
-    "&simulation end_time = '14 ms' step_safety = 0.7 /\n"
+    "&simulation end_time = '4.5 ms' step_safety = 0.7 /\n"
     "&lattice name = 'c' kind = 'fcc' shells = 2 spacing = '20 mm' /\n"
     "&material lattice = 'c' model = 'mplm_concrete_space' tension = 'energy' %s nu = 0.25 beta = "
     "0 "
@@ -354,7 +354,7 @@ static const char lifted[] =
     "/\n"
     "&support region = 'low' fix = 'xyz', 'rotation' /\n"
     "&support region = 'top' fix = 'x', 'y', 'rotation' /\n"
-    "&drive region = 'top' component = 'z' velocity = '5 mm/s' rise = '1 ms' /\n"
+    "&drive region = 'top' component = 'z' velocity = '20 mm/s' rise = '1 ms' /\n"
     "&output result = 'mplm_concrete.h5' frames = 1 sample = '0.05 ms' fields = 'displacement', "
     "'damage', 'omega_t' /\n";
 
