@@ -111,10 +111,11 @@ static void add_motion(const body *w, relaxed_body *last, double *work, double *
     for (long p = 0; p < w->lattice->particle_count; p++) {
       const long q = w->lattice->particle_site[p];
       const double way = w->displacement[d][q] - last->displacement[d][q];
-      *work -= way * (w->force[d][q] - last->force[d][q]);
+      const double force = w->force[d][q] + body_outer(w, d, q);
+      *work -= way * (force - last->force[d][q]);
       *motion += body_mass(w, d, q) * way * way;
       last->displacement[d][q] = w->displacement[d][q];
-      last->force[d][q] = w->force[d][q];
+      last->force[d][q] = force;
     }
 }
 
@@ -160,9 +161,9 @@ static void add_component(const relaxation *r, const run_body *of, int d, square
   const double gravity = d < w->dimensions ? w->gravity[d] : 0;
   for (long p = 0; p < w->lattice->particle_count; p++) {
     const long q = w->lattice->particle_site[p];
-    const double weight = gravity * body_mass(w, d, q);
-    r->total[q] = w->force[d][q] + weight;
-    sum->applied += weight * weight;
+    const double load = gravity * body_mass(w, d, q) + body_outer(w, d, q);
+    r->total[q] = w->force[d][q] + load;
+    sum->applied += load * load;
   }
   for (long i = 0; i < l->force_count; i++) {
     if (l->forces[i].component != d) continue;

@@ -33,10 +33,11 @@ static void end_badly(simulation *s, const char *what) {
 
 static void add_up(const simulation *s) {
   double *sum = history_energies(&s->history);
-  if (s->body_count == 1) return;
+  const int parts = s->body_count + s->contacts.count;
+  if (parts == 1) return;
   for (int term = 0; term < LEDGER_COUNT; term++) {
     sum[term] = 0;
-    for (int b = 0; b < s->body_count; b++)
+    for (int b = 0; b < parts; b++)
       sum[term] += history_energies_of(&s->history, b)[term];
   }
 }
@@ -48,6 +49,11 @@ static void sample_energies(simulation *s) {
     run_body *of = s->links[k].own;
     ledger_sample_link(&of->ledger, &of->energies, of->body, s->links[k].work,
                        history_energies_of(&s->history, (int)(of - s->bodies)));
+  }
+  for (int k = 0; k < s->contacts.count; k++) {
+    run_contact *of = &s->contacts.items[k];
+    ledger_sample_contact(&of->ledger, contact_stored(of->found), of->work,
+                          history_energies_of(&s->history, s->body_count + k));
   }
   for (int b = 0; b < s->body_count; b++) {
     run_body *of = &s->bodies[b];
@@ -90,10 +96,11 @@ static bool some_body_is_bad(const simulation *s) {
   return false;
 }
 
-/* At the present places. */
+/* At the present places: links and contacts. */
 static void find_links(simulation *s) {
   for (int k = 0; k < s->link_count; k++)
     run_link_find(&s->links[k], s->clock.at.step);
+  if (s->contacts.count > 0) run_contacts_find(&s->contacts, s->clock.at.step);
 }
 
 /* What one thread does after all have moved their rows and what is loaded in them. */
