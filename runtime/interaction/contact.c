@@ -37,6 +37,7 @@ struct contact {
   contact_side *sides; /* [count] */
   int count, dimensions;
   bool selves;
+  bool late;          /* bonds were lost nobody knows where */
   double skin, reach; /* m: reach of the list for the largest spacing */
   /* Of each particle, all bodies counted through: */
   long particles;
@@ -293,7 +294,7 @@ static void lose_bond(contact *c, contact_side *s, const rows_bond *bond) {
   double chord[3];
   near_pair pair;
   if (s->lost[bond->slot] > 0 || !is_gone(s, bond)) return;
-  s->lost[bond->slot] = pl_fmax(chord_of(c, i, j, chord), DBL_MIN);
+  s->lost[bond->slot] = c->late ? INFINITY : pl_fmax(chord_of(c, i, j, chord), DBL_MIN);
   if (!may_touch(c, i, j, &pair)) return;
   make_room((void **)&c->fresh, &c->fresh_room, c->fresh_count + 1, sizeof *c->fresh);
   c->fresh[c->fresh_count++] = pair;
@@ -409,6 +410,28 @@ double contact_power(const contact *c, double *power) {
     }
   }
   return sum;
+}
+
+contact_overlap contact_overlaps(contact *c, double part) {
+  contact_overlap o = {.nearest = INFINITY};
+  double chord[3];
+  c->late = true;
+  find_losses(c);
+  list_pairs(c);
+  for (long n = 0; n < c->pair_count; n++) {
+    const near_pair *pair = &c->pairs[n];
+    const double r = chord_of(c, pair->i, pair->j, chord);
+    if (!(r < part * pair->d)) continue;
+    o.pairs++;
+    if (!(r < o.nearest * pair->d)) continue;
+    o.nearest = r / pair->d;
+    const int32_t ends[2] = {pair->i, pair->j};
+    for (int e = 0; e < 2; e++) {
+      o.body[e] = c->side[ends[e]];
+      o.site[e] = c->site[ends[e]];
+    }
+  }
+  return o;
 }
 
 double *contact_lost(contact *c, int number, size_t *count) {

@@ -252,6 +252,47 @@ void run_contacts_find(run_contacts *c, int64_t step) {
   c->step = step;
 }
 
+/* --- without contact -------------------------------------------------------------------------- */
+
+static bool has_lost_bonds(const run_body *b) {
+  for (int n = 0; n < b->law_count; n++) {
+    const run_law *l = &b->laws[n];
+    for (long m = 0; damage_on_bonds(l->law) && m < l->rows->bond_count; m++)
+      if (damage_of_bond_in(l->state, l->state->field, &l->bonds[m]) >= 1) return true;
+  }
+  return false;
+}
+
+contact_overlap run_contacts_overlap(const deck *k, const run_body *bodies) {
+  static const deck_contact all = {.lattice_count = 0};
+  run_contact c = {.from = &all};
+  contact_overlap o = {.pairs = 0};
+  bool lost = false;
+  take_bodies(&c, k);
+  contact_body *of = must_calloc((size_t)c.count + 1, sizeof *of);
+  for (int n = 0; n < c.count; n++) {
+    const run_body *b = &bodies[c.of[n]];
+    of[n].of = b->body;
+    if (!has_lost_bonds(b)) continue;
+    of[n].laws = laws_of(b, &of[n].law_count);
+    lost = lost || of[n].law_count > 0;
+  }
+  if (lost || c.count > 1) {
+    c.found = contact_new(of, c.count, true);
+    o = contact_overlaps(c.found, 0.5);
+    for (int e = 0; e < 2; e++)
+      o.body[e] = c.of[o.body[e]];
+    contact_free(c.found);
+  } else {
+    for (int n = 0; n < c.count; n++)
+      free(of[n].laws);
+  }
+  free(of);
+  free(c.of);
+  free(c.stiffness);
+  return o;
+}
+
 double run_contacts_memory(const run_contacts *c) {
   double bytes = 0;
   for (int n = 0; n < c->count; n++)

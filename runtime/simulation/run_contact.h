@@ -48,6 +48,10 @@ void run_contacts_free(run_contacts *c);
 
 /* Forces at the present places, after `step` steps. */
 void run_contacts_find(run_contacts *c, int64_t step);
+/* Of a deck without contact: particles that lie over each other, nearer than half of what contact
+   would keep them at. Of lattices, by their numbers in `body`; none of a single one whose bonds all
+   hold. The state observed last is to be observed again. */
+contact_overlap run_contacts_overlap(const deck *k, const run_body *bodies);
 double run_contacts_memory(const run_contacts *c); /* bytes */
 
 #endif

@@ -236,6 +236,21 @@ bad_state simulation_bad(const simulation *s) {
   return *bad_search_found(s->bad);
 }
 
+overlap_found simulation_overlap(simulation *s) {
+  overlap_found found = {.pairs = 0};
+  if (s->deck->contact_count > 0 || s->clock.at.status == STEP_BAD) return found;
+  const unsigned environment = subnormals_off();
+  const contact_overlap o = run_contacts_overlap(s->deck, s->bodies);
+  s->observed_step = -1;
+  subnormals_restore(environment);
+  found.pairs = o.pairs;
+  for (int e = 0; e < 2 && o.pairs > 0; e++) {
+    found.body[e] = o.body[e];
+    found.particle[e] = s->bodies[o.body[e]].lattice_rows->site_particle[o.site[e]];
+  }
+  return found;
+}
+
 long simulation_history(const simulation *s, const double **time) {
   if (time) *time = s->history.time;
   return (long)s->clock.at.samples;
