@@ -385,6 +385,14 @@ static const deck_item *other_of_name(const deck_reader *r, const char *name) {
   return NULL;
 }
 
+/* Of lattices that both let touch. */
+static bool have_a_pair(const deck_contact *a, const deck_contact *b) {
+  bool same = a->lattice_count == b->lattice_count;
+  for (int n = 0; same && n < a->lattice_count; n++)
+    same = deck_is_one_of(a->lattices[n], b->lattices, b->lattice_count);
+  return same || a->lattice_count == 0 || b->lattice_count == 0;
+}
+
 static void check_contact(deck_reader *r, const namelist_group *from, void *into) {
   deck_contact *item = into;
   const span where = deck_where(&item->item, "lattices");
@@ -403,10 +411,11 @@ static void check_contact(deck_reader *r, const namelist_group *from, void *into
       diag_report(r->d, DIAG_BAD_VALUE, where, "`%s` is a %s: only lattices touch",
                   deck_shown(r->memory, name), deck_lattice_word(of));
   }
-  if (item->lattice_count == 2 && deck_same_name(item->lattices[0], item->lattices[1])) {
-    diag_report(r->d, DIAG_CONFLICT, where, "`%s` is named twice",
-                deck_shown(r->memory, item->lattices[0]));
-    diag_hint(r->d, "one name alone lets a lattice touch itself");
+  for (int k = 0; k < r->k->contact_count; k++) {
+    if (r->k->contacts[k].item.faulty || !have_a_pair(&r->k->contacts[k], item)) continue;
+    diag_report(r->d, DIAG_CONFLICT, where, "lattices of this contact touch already");
+    diag_note(r->d, deck_where(&r->k->contacts[k].item, "lattices"), "they touch by this one");
+    return;
   }
 }
 
