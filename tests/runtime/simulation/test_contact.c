@@ -9,10 +9,10 @@
 
 #include <cmocka.h>
 
+#include "runtime/simulation/run_contact.h"
 #include "runtime/simulation/simulation_save.h"
-#include "tests/runtime/simulation/same_runs.h"
+#include "tests/runtime/small_bodies.h"
 
-enum { MOST_BODIES = 3 };
 #define SPACING   0.01
 #define THICKNESS 0.1
 
@@ -23,28 +23,6 @@ static double mass(void) {
 /* Of a bond, and so of a contact. */
 static double stiffness(void) {
   return 30e9 * THICKNESS / (sqrt(3) * (1 - 0.2));
-}
-
-typedef struct blocks {
-  small_run run;
-  simulation_law law[MOST_BODIES];
-  double parameters[MOST_BODIES][ELASTIC_PARAMETERS];
-} blocks;
-
-static void open_blocks(blocks *b, const pl_law *law, const char *text) {
-  small_run *r = &b->run;
-  memset(b, 0, sizeof *b);
-  r->memory = arena_new();
-  diag_begin(&r->said, &r->sources);
-  const int file = source_add(&r->sources, "deck.nml", text, strlen(text));
-  r->deck = deck_read(r->memory, &r->sources, file, NULL, 0, &r->said);
-  for (int n = 0; r->deck && n < r->deck->lattice_count; n++) {
-    assert_true(material_parameters(&r->deck->materials[n], law, b->parameters[n], &r->said));
-    b->law[n] = (simulation_law){.law = law, .parameters = b->parameters[n]};
-  }
-  if (r->deck) r->simulation = simulation_new(r->deck, b->law, &r->said);
-  if (!r->simulation) small_print(r);
-  assert_non_null(r->simulation);
 }
 
 #define LATTICE(name, x)                                                                           \
@@ -96,8 +74,8 @@ static double bounce_error(int steps, double *rebound) {
                 "&monitor name = 'v' kind = 'velocity' region = 'all a' component = 'x' /\n"
                 "&output frames = 0 sample = %.17g /\n",
       end, end / steps, end / steps);
-  blocks b;
-  open_blocks(&b, &elastic_bar, text);
+  small_bodies b;
+  small_bodies_open(&b, &elastic_bar, text);
   assert_int_equal(small_go(&b.run), STEP_END);
   const double *time, *u;
   double most = 0;
@@ -106,7 +84,7 @@ static double bounce_error(int steps, double *rebound) {
   for (long k = 0; k < samples; k++)
     most = fmax(most, fabs(u[k] - pushed_way(time[k])));
   *rebound = small_last(&b.run, "v");
-  small_close(&b.run);
+  small_bodies_close(&b);
   return most / GAP;
 }
 
@@ -122,11 +100,7 @@ static void two_particles_bounce(void **state) {
 
 /* --- blocks ----------------------------------------------------------------------------------- */
 
-static void close_blocks(blocks *b) {
-  small_close(&b->run);
-}
-
-static double momentum(const blocks *b, int component) {
+static double momentum(const small_bodies *b, int component) {
   double sum = 0;
   for (int n = 0; n < simulation_bodies(b->run.simulation); n++) {
     const body *w = simulation_state(b->run.simulation, n)->body;
@@ -138,7 +112,7 @@ static double momentum(const blocks *b, int component) {
 }
 
 /* The right one comes from the right and a little from above: faces slide. */
-static void open_collision(blocks *b, double step, int threads, const char *more) {
+static void open_collision(small_bodies *b, double step, int threads, const char *more) {
   char text[8192];
   snprintf(text, sizeof text,
            "&simulation end_time = 2e-4 step = %.17g threads = %d /\n" BLOCK("a", "0")
@@ -146,7 +120,7 @@ static void open_collision(blocks *b, double step, int threads, const char *more
                    "b", "-10") "&initial_velocity region = 'all b' component = 'y' value = -1 /\n"
                                "&output frames = 0 sample = 2e-6 /\n%s",
            step, threads, more);
-  open_blocks(b, &elastic_beam, text);
+  small_bodies_open(b, &elastic_beam, text);
 }
 
 /* Momentum to rounding; the imbalance of energies falls with the square of the step. */
@@ -155,7 +129,7 @@ static void blocks_collide(void **state) {
   const double steps[2] = {4e-7, 2.5e-8};
   double imbalance[2], of_contact[2];
   for (int k = 0; k < 2; k++) {
-    blocks b;
+    small_bodies b;
     open_collision(&b, steps[k], 1, "&contact /\n");
     const double before[2] = {momentum(&b, 0), momentum(&b, 1)};
     simulation_advance(b.run.simulation, 1, NULL);
@@ -169,7 +143,7 @@ static void blocks_collide(void **state) {
     assert_true(small_last(&b.run, "a/kinetic") > 0.5 * kinetic); /* they have parted */
     imbalance[k] = small_largest(&b.run, "energy/imbalance") / kinetic;
     of_contact[k] = small_largest(&b.run, "contact/imbalance") / kinetic;
-    close_blocks(&b);
+    small_bodies_close(&b);
   }
   print_message("imbalance %.1e, %.1e; of the contact %.1e, %.1e\n", imbalance[0], imbalance[1],
                 of_contact[0], of_contact[1]);
@@ -180,8 +154,8 @@ static void blocks_collide(void **state) {
 /* Three alike in a row: the last one goes on, the one in the middle stays. */
 static void a_middle_block_hands_the_blow_on(void **state) {
   (void)state;
-  blocks b;
-  open_blocks(
+  small_bodies b;
+  small_bodies_open(
       &b, &elastic_bar,
       "&simulation end_time = 2.2e-4 step = 2e-8 /\n" COLUMN("a", "0") COLUMN("b", "0.011")
           COLUMN("c", "0.0215") SPEED(
@@ -197,10 +171,10 @@ static void a_middle_block_hands_the_blow_on(void **state) {
   assert_true(fabs(small_last(&b.run, "v_b")) < 1e-2 && fabs(small_last(&b.run, "v_a")) < 1e-2);
   assert_true(small_largest(&b.run, "left/stored") > 0 &&
               small_largest(&b.run, "right/stored") > 0);
-  close_blocks(&b);
+  small_bodies_close(&b);
 }
 
-static void same_bodies(const blocks *a, const blocks *b) {
+static void same_bodies(const small_bodies *a, const small_bodies *b) {
   const double *p, *q;
   for (int n = 0; n < simulation_bodies(a->run.simulation); n++) {
     const body *x = simulation_state(a->run.simulation, n)->body,
@@ -223,7 +197,7 @@ static void same_bodies(const blocks *a, const blocks *b) {
 static void threads_and_stops_change_no_bit(void **state) {
   (void)state;
   static const char path[] = "test_contact.state";
-  blocks straight, other;
+  small_bodies straight, other;
   char error[200];
   open_collision(&straight, 4e-7, 1, "&contact /\n");
   assert_int_equal(small_go(&straight.run), STEP_END);
@@ -231,20 +205,20 @@ static void threads_and_stops_change_no_bit(void **state) {
     open_collision(&other, 4e-7, threads, "&contact /\n");
     assert_int_equal(small_go(&other.run), STEP_END);
     same_bodies(&straight, &other);
-    close_blocks(&other);
+    small_bodies_close(&other);
   }
   open_collision(&other, 4e-7, 2, "&contact /\n");
   simulation_advance(other.run.simulation, 300, NULL); /* they are in touch */
   assert_true(small_last(&other.run, "contact/stored") > 0);
   assert_true(
       simulation_save(other.run.simulation, path, "x", &(frame_mark){0}, error, sizeof error));
-  close_blocks(&other);
+  small_bodies_close(&other);
   open_collision(&other, 4e-7, 1, "&contact /\n");
   assert_true(simulation_restore(other.run.simulation, path, "x", NULL, error, sizeof error));
   assert_int_equal(small_go(&other.run), STEP_END);
   same_bodies(&straight, &other);
-  close_blocks(&other);
-  close_blocks(&straight);
+  small_bodies_close(&other);
+  small_bodies_close(&straight);
   unlink(path);
 }
 
@@ -253,8 +227,8 @@ static void threads_and_stops_change_no_bit(void **state) {
 /* Three springs in a row: of each row of two particles, and of the contact, which is softer. */
 static void rows_pressed_together_are_springs(void **state) {
   (void)state;
-  blocks b;
-  open_blocks(
+  small_bodies b;
+  small_bodies_open(
       &b, &elastic_bar,
       "&simulation end_time = 1 /\n&relaxation increments = 4 tolerance = 1e-10 /\n" ROW("a", "0",
                                                                                          "0.01")
@@ -272,19 +246,19 @@ static void rows_pressed_together_are_springs(void **state) {
   assert_true(fabs(small_last(&b.run, "F") / expected - 1) < 1e-6);
   assert_true(fabs(small_last(&b.run, "contact/stored") / (0.5 * expected * expected * 1e-9) - 1) <
               1e-5);
-  close_blocks(&b);
+  small_bodies_close(&b);
 }
 
 /* Rows that begin nearer than a spacing push no one until they come nearer still. */
 static void what_begins_near_is_at_rest(void **state) {
   (void)state;
-  blocks b;
-  open_blocks(&b, &elastic_bar,
-              "&simulation end_time = 1e-5 step = 2e-7 /\n" ROW("a", "0", "0.01")
-                  ROW("b", "0.016", "0.01") "&contact /\n&output frames = 0 /\n");
+  small_bodies b;
+  small_bodies_open(&b, &elastic_bar,
+                    "&simulation end_time = 1e-5 step = 2e-7 /\n" ROW("a", "0", "0.01")
+                        ROW("b", "0.016", "0.01") "&contact /\n&output frames = 0 /\n");
   assert_int_equal(small_go(&b.run), STEP_END);
   assert_true(small_largest(&b.run, "energy/kinetic") == 0);
-  close_blocks(&b);
+  small_bodies_close(&b);
 }
 
 /* --- cracks ----------------------------------------------------------------------------------- */
@@ -302,10 +276,10 @@ static void what_begins_near_is_at_rest(void **state) {
               "&monitor name = 'F' kind = 'reaction' region = 'left' component = 'x' /\n"          \
               "&output frames = 0 /\n"
 
-static void open_torn(small_run *r, const char *contact) {
+static void open_torn(small_run *r, const pl_law *law, const char *more) {
   char text[4096];
-  snprintf(text, sizeof text, TORN "%s", contact);
-  small_open(r, &elastic_bar, text);
+  snprintf(text, sizeof text, TORN "%s", more);
+  small_open(r, law, text);
   if (!r->simulation) small_print(r);
   assert_non_null(r->simulation);
 }
@@ -316,7 +290,7 @@ static void faces_of_a_crack_close(void **state) {
   double force[2];
   for (int k = 0; k < 2; k++) {
     small_run r;
-    open_torn(&r, contacts[k]);
+    open_torn(&r, &elastic_bar, contacts[k]);
     sweep *w = simulation_state(r.simulation, 0);
     const rows *g = w->body->lattice;
     simulation_advance(r.simulation, 2500, NULL);
@@ -335,7 +309,7 @@ static void faces_of_a_crack_close(void **state) {
 static void a_bond_lost_under_pressure_leaves_no_jump(void **state) {
   (void)state;
   small_run r;
-  open_torn(&r, "&contact /\n");
+  open_torn(&r, &elastic_bar, "&contact /\n");
   sweep *w = simulation_state(r.simulation, 0);
   const rows *g = w->body->lattice;
   const long right = g->particle_site[1], left = g->particle_site[0];
@@ -352,6 +326,85 @@ static void a_bond_lost_under_pressure_leaves_no_jump(void **state) {
   small_close(&r);
 }
 
+/* As elastic_bar, but failed bonds bear what presses them together. */
+static void bearing_strip(const pl_law *law, const double *u, const pl_strip *s, int with_losses) {
+  elastic_strip(law, u, s, with_losses);
+  for (long q = 0; q < s->count; q++) {
+    if (!(s->flags[q] & PL_PRESENT(s->direction)) || s->field[0][q] < 1) continue;
+    const elastic_bond b = elastic_kinematics(law, u, s, q);
+    for (int c = 0; c < 2 && b.stretch < 0; c++)
+      s->force[c][q] = u[UNIFORM_EA] * b.stretch * b.e[c];
+  }
+}
+
+static void bearing_rows(const pl_law *law, const double *u, const pl_strip *s) {
+  bearing_strip(law, u, s, 0);
+}
+
+static void bearing_rows_ledger(const pl_law *law, const double *u, const pl_strip *s) {
+  bearing_strip(law, u, s, 1);
+}
+
+static void bonds_that_press_on_need_no_contact(void **state) {
+  (void)state;
+  pl_law law = elastic_bar;
+  law.rows = bearing_rows;
+  law.rows_ledger = bearing_rows_ledger;
+  law.stores = 0; /* it does not say what it stores then */
+  small_run r;
+  open_torn(&r, &law, "&contact /\n");
+  sweep *w = simulation_state(r.simulation, 0);
+  w->field[0][w->body->lattice->particle_site[0]] = 1;
+  assert_int_equal(small_go(&r), STEP_END);
+  assert_true(fabs(small_last(&r, "F") / (2e-5 * stiffness()) - 1) < 1e-9);
+  assert_true(small_largest(&r, "contact/stored") == 0);
+  small_close(&r);
+}
+
+/* --- without contact -------------------------------------------------------------------------- */
+
+/* The rows lie 4 mm apart in the end: two particles of either over each other's. */
+static void particles_over_each_other_are_named(void **state) {
+  (void)state;
+  static const char *const contacts[2] = {"", "&contact /\n"};
+  for (int k = 0; k < 2; k++) {
+    small_bodies b;
+    char text[4096];
+    snprintf(text, sizeof text,
+             "&simulation end_time = 1e-6 step = 1e-8 /\n" ROW("a", "0", "0.01")
+                 ROW("b", "0.02", "0.01") "&output frames = 0 /\n%s",
+             contacts[k]);
+    small_bodies_open(&b, &elastic_bar, text);
+    assert_int_equal(simulation_overlap(b.run.simulation).pairs, 0);
+    body *w = simulation_state(b.run.simulation, 1)->body;
+    for (long p = 0; p < 2; p++)
+      w->displacement[0][w->lattice->particle_site[p]] = -0.006;
+    const overlap_found o = simulation_overlap(b.run.simulation);
+    assert_int_equal(o.pairs, k == 0);
+    if (k == 0) {
+      assert_true(o.body[0] == 0 && o.particle[0] == 1);
+      assert_true(o.body[1] == 1 && o.particle[1] == 0);
+    }
+    small_bodies_close(&b);
+  }
+}
+
+/* Of one body only where bonds are lost. */
+static void so_are_faces_of_a_crack(void **state) {
+  (void)state;
+  small_run r;
+  open_torn(&r, &elastic_bar, "");
+  sweep *w = simulation_state(r.simulation, 0);
+  const rows *g = w->body->lattice;
+  w->body->displacement[0][g->particle_site[1]] = -0.006;
+  assert_int_equal(simulation_overlap(r.simulation).pairs, 0);
+  w->field[0][g->particle_site[0]] = 1;
+  assert_int_equal(simulation_overlap(r.simulation).pairs, 1);
+  assert_true(w->field[0][g->particle_site[0]] == 1 &&
+              w->body->displacement[0][g->particle_site[1]] == -0.006);
+  small_close(&r);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(two_particles_bounce),
@@ -362,6 +415,9 @@ int main(void) {
       cmocka_unit_test(what_begins_near_is_at_rest),
       cmocka_unit_test(faces_of_a_crack_close),
       cmocka_unit_test(a_bond_lost_under_pressure_leaves_no_jump),
+      cmocka_unit_test(bonds_that_press_on_need_no_contact),
+      cmocka_unit_test(particles_over_each_other_are_named),
+      cmocka_unit_test(so_are_faces_of_a_crack),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
