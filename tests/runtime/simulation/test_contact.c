@@ -249,6 +249,46 @@ static void rows_pressed_together_are_springs(void **state) {
   small_bodies_close(&b);
 }
 
+#define HELD                                                                                       \
+  "&support region = 'all a' fix = 'x', 'y' /\n"                                                   \
+  "&monitor name = 'F' kind = 'reaction' region = 'all a' component = 'x' /\n"                     \
+  "&output frames = 0 sample = 1e-7 /\n&contact /\n"
+
+/* Both particles of a column are held, and bear what two pairs press. */
+static void what_is_held_bears_the_contact(void **state) {
+  (void)state;
+  small_bodies b;
+  small_bodies_open(
+      &b, &elastic_bar,
+      "&simulation end_time = 1 /\n&relaxation increments = 2 /\n" COLUMN("a", "0") COLUMN(
+          "b", "0.01") "&drive region = 'all b' component = 'x' displacement = -1e-6 /\n" HELD);
+  assert_int_equal(small_go(&b.run), STEP_END);
+  assert_true(fabs(small_last(&b.run, "F") / (2e-6 * stiffness()) - 1) < 1e-6);
+  small_bodies_close(&b);
+}
+
+/* At every instant, of what comes flying: W = 2 k x^2/2, F = 2 k x. */
+static void a_wall_bears_a_blow(void **state) {
+  (void)state;
+  small_bodies b;
+  small_bodies_open(&b, &elastic_bar,
+                    "&simulation end_time = 6e-5 step = 1e-7 /\n" COLUMN("a", "0")
+                        COLUMN("b", "0.0101") SPEED("b", "-5") HELD);
+  assert_int_equal(small_go(&b.run), STEP_END);
+  const double *force, *stored;
+  double most = 0;
+  simulation_series(b.run.simulation, small_series(&b.run, "F"), NULL, &force);
+  simulation_series(b.run.simulation, small_series(&b.run, "contact/stored"), NULL, &stored);
+  for (long n = 0; n < simulation_history(b.run.simulation, NULL); n++) {
+    const double expected = 2 * sqrt(stiffness() * stored[n]);
+    assert_true(fabs(force[n] - expected) <= 1e-9 * small_largest(&b.run, "F"));
+    most = fmax(most, expected);
+  }
+  assert_true(most > 0 && small_last(&b.run, "contact/stored") == 0);
+  assert_true(small_largest(&b.run, "a/external") < 1e-12 * small_largest(&b.run, "b/external"));
+  small_bodies_close(&b);
+}
+
 /* Rows that begin nearer than a spacing push no one until they come nearer still. */
 static void what_begins_near_is_at_rest(void **state) {
   (void)state;
@@ -412,6 +452,8 @@ int main(void) {
       cmocka_unit_test(a_middle_block_hands_the_blow_on),
       cmocka_unit_test(threads_and_stops_change_no_bit),
       cmocka_unit_test(rows_pressed_together_are_springs),
+      cmocka_unit_test(what_is_held_bears_the_contact),
+      cmocka_unit_test(a_wall_bears_a_blow),
       cmocka_unit_test(what_begins_near_is_at_rest),
       cmocka_unit_test(faces_of_a_crack_close),
       cmocka_unit_test(a_bond_lost_under_pressure_leaves_no_jump),
