@@ -352,12 +352,13 @@ static void find_losses(contact *c) {
 static void merge_fresh(contact *c) {
   if (c->fresh_count == 0) return;
   qsort(c->fresh, (size_t)c->fresh_count, sizeof *c->fresh, by_particles);
-  long old = c->pair_count - 1, new = c->fresh_count - 1;
+  long listed = c->pair_count - 1, fresh = c->fresh_count - 1;
   c->pair_count += c->fresh_count;
   make_room((void **)&c->pairs, &c->pair_room, c->pair_count, sizeof *c->pairs);
-  for (long to = c->pair_count - 1; new >= 0; to--)
-    c->pairs[to] = old >= 0 && by_particles(&c->pairs[old], &c->fresh[new]) > 0 ? c->pairs[old--]
-                                                                                : c->fresh[new --];
+  for (long to = c->pair_count - 1; fresh >= 0; to--) {
+    const bool later = listed < 0 || by_particles(&c->pairs[listed], &c->fresh[fresh]) < 0;
+    c->pairs[to] = later ? c->fresh[fresh--] : c->pairs[listed--];
+  }
 }
 
 /* --- forces ----------------------------------------------------------------------------------- */

@@ -98,6 +98,38 @@ static void two_particles_bounce(void **state) {
   assert_true(fabs(v[1] / -APPROACH - 1) < 1e-3);
 }
 
+/* Begins pressed together by 1 um, at rest: the way of either until they part. */
+static double parting_error(int steps) {
+  const double omega = sqrt(2 * stiffness() / mass()), end = 0.8 * acos(-1) / (2 * omega);
+  char text[4096];
+  snprintf(
+      text, sizeof text,
+      "&simulation end_time = %.17g step = %.17g /\n" COLUMN("a", "0") COLUMN(
+          "b",
+          "0.01") "&contact lattices = 'a', 'b' /\n"
+                  "&initial_displacement region = 'all b' component = 'x' value = -1e-6 /\n"
+                  "&monitor name = 'u' kind = 'displacement' region = 'all a' component = 'x' /\n"
+                  "&output frames = 0 sample = %.17g /\n",
+      end, end / steps, end / steps);
+  small_bodies b;
+  small_bodies_open(&b, &elastic_bar, text);
+  assert_int_equal(small_go(&b.run), STEP_END);
+  const double *time, *u;
+  double most = 0;
+  simulation_series(b.run.simulation, small_series(&b.run, "u"), NULL, &u);
+  for (long k = 0; k < simulation_history(b.run.simulation, &time); k++)
+    most = fmax(most, fabs(u[k] + 0.5e-6 * (1 - cos(omega * time[k]))));
+  small_bodies_close(&b);
+  return most / 1e-6;
+}
+
+static void what_begins_pressed_together_parts(void **state) {
+  (void)state;
+  const double coarse = parting_error(20), fine = parting_error(80);
+  print_message("error %.1e, %.1e, order %.2f\n", coarse, fine, log2(coarse / fine) / 2);
+  assert_true(coarse < 1e-3 && fabs(log2(coarse / fine) / 2 - 2) < 0.1);
+}
+
 /* --- blocks ----------------------------------------------------------------------------------- */
 
 static double momentum(const small_bodies *b, int component) {
@@ -220,6 +252,32 @@ static void threads_and_stops_change_no_bit(void **state) {
   small_bodies_close(&other);
   small_bodies_close(&straight);
   unlink(path);
+}
+
+/* --- the step --------------------------------------------------------------------------------- */
+
+static double largest_step(const char *more) {
+  char text[4096];
+  snprintf(text, sizeof text,
+           "&simulation end_time = 1e-5 /\n" BLOCK("a", "0")
+               BLOCK("b", "0.061") "&output frames = 0 /\n%s",
+           more);
+  small_bodies b;
+  small_bodies_open(&b, &elastic_bar, text);
+  const double limit = simulation_step_limit(b.run.simulation)->limit;
+  small_bodies_close(&b);
+  return limit;
+}
+
+/* Central bonds of a hexagon: omega^2 = 6 k/m; contact adds 6 k/m of its own. */
+static void contact_makes_the_stable_step_shorter(void **state) {
+  (void)state;
+  const double k = stiffness(), m = mass();
+  assert_true(fabs(largest_step("") / (2 / sqrt(6 * k / m)) - 1) < 1e-8);
+  assert_true(fabs(largest_step("&contact /\n") / (2 / sqrt(12 * k / m)) - 1) < 1e-8);
+  assert_true(fabs(largest_step("&contact lattices = 'a' stiffness = 1e9 /\n") /
+                       (2 / sqrt(6 * (k + 1e9) / m)) -
+                   1) < 1e-8);
 }
 
 /* --- at rest ---------------------------------------------------------------------------------- */
@@ -448,9 +506,11 @@ static void so_are_faces_of_a_crack(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(two_particles_bounce),
+      cmocka_unit_test(what_begins_pressed_together_parts),
       cmocka_unit_test(blocks_collide),
       cmocka_unit_test(a_middle_block_hands_the_blow_on),
       cmocka_unit_test(threads_and_stops_change_no_bit),
+      cmocka_unit_test(contact_makes_the_stable_step_shorter),
       cmocka_unit_test(rows_pressed_together_are_springs),
       cmocka_unit_test(what_is_held_bears_the_contact),
       cmocka_unit_test(a_wall_bears_a_blow),
