@@ -103,7 +103,7 @@ bool run_contacts_open(run_contacts *c, const deck *k, run_body *bodies, int bod
   return true;
 }
 
-/* --- what failed bonds do --------------------------------------------------------------------- */
+/* --- what failed bonds bear --------------------------------------------------------------------- */
 
 static double *copy_of(const double *values, size_t count) {
   double *copy = must_alloc((count + 1) * sizeof *copy);
@@ -151,18 +151,20 @@ static void heal_all(const run_law *l, double **kept) {
   free(kept);
 }
 
-/* The body is pressed together a little, whole and with all bonds failed. */
-static bool press_on(const run_body *b) {
-  enum { WHOLE, FAILED };
+typedef struct kept_motion { /* of a body, while it is asked */
+  double *displacement[PL_MAX_DOF], *velocity[PL_MAX_DOF];
+} kept_motion;
+
+/* A little, evenly, from rest. */
+static kept_motion press_together(body *of) {
   const double strain = -1e-6;
-  body *of = b->body;
   const size_t size = (size_t)of->lattice->size;
-  double *u[PL_MAX_DOF], *v[PL_MAX_DOF], force[2], ***kept;
+  kept_motion kept;
   for (int d = 0; d < of->dof; d++) {
-    u[d] = copy_of(of->displacement[d], size);
-    v[d] = copy_of(of->velocity[d], size);
-    memset(of->velocity[d], 0, size * sizeof(double));
+    kept.displacement[d] = copy_of(of->displacement[d], size);
+    kept.velocity[d] = copy_of(of->velocity[d], size);
     memset(of->displacement[d], 0, size * sizeof(double));
+    memset(of->velocity[d], 0, size * sizeof(double));
   }
   for (long p = 0; p < of->lattice->particle_count; p++) {
     const long q = of->lattice->particle_site[p];
@@ -171,21 +173,31 @@ static bool press_on(const run_body *b) {
     for (int d = 0; d < of->dimensions; d++)
       of->displacement[d][q] = strain * at[d];
   }
-  force[WHOLE] = largest_force(b->state);
-  kept = must_calloc((size_t)b->law_count, sizeof *kept);
+  return kept;
+}
+
+static void let_go(body *of, kept_motion *kept) {
+  for (int d = 0; d < of->dof; d++) {
+    put_back(of->displacement[d], kept->displacement[d], (size_t)of->lattice->size);
+    put_back(of->velocity[d], kept->velocity[d], (size_t)of->lattice->size);
+  }
+}
+
+/* Bonds that have failed still bear what presses them together. */
+static bool failed_bonds_bear(const run_body *b) {
+  double ***kept = must_calloc((size_t)b->law_count, sizeof *kept);
+  kept_motion motion = press_together(b->body);
+  const double whole = largest_force(b->state);
   for (int n = 0; n < b->law_count; n++)
     kept[n] = fail_all(&b->laws[n]);
   sweep_fields_set(b->state);
-  force[FAILED] = largest_force(b->state);
+  const double failed = largest_force(b->state);
   for (int n = 0; n < b->law_count; n++)
     heal_all(&b->laws[n], kept[n]);
   sweep_fields_set(b->state);
+  let_go(b->body, &motion);
   free(kept);
-  for (int d = 0; d < of->dof; d++) {
-    put_back(of->displacement[d], u[d], size);
-    put_back(of->velocity[d], v[d], size);
-  }
-  return force[FAILED] > 1e-6 * force[WHOLE];
+  return failed > 1e-6 * whole;
 }
 
 /* Those that say when a bond has failed, where nothing is left of it then; else none. */
@@ -196,7 +208,7 @@ static contact_law *laws_of(const run_body *b, int *count) {
     laws[n] = (contact_law){b->laws[n].state, b->laws[n].rows, b->laws[n].bonds};
     damaged = damaged || damage_on_bonds(b->laws[n].law);
   }
-  *count = damaged && !press_on(b) ? b->law_count : 0;
+  *count = damaged && !failed_bonds_bear(b) ? b->law_count : 0;
   return laws;
 }
 
