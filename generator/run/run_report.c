@@ -555,8 +555,11 @@ static double unless_nothing(double energy, double external) {
   return fabs(energy) < 1e-7 * fabs(external) ? 0 : energy;
 }
 
+/* Work of contacts and links on bodies goes out in sum, but for rounding. */
 static void conclude_energy(const run *r) {
-  double external = last_value(r, "energy/external"), imbalance = last_value(r, "energy/imbalance");
+  const double external = unless_nothing(last_value(r, "energy/external"),
+                                         sample_of(r, "energy/kinetic", false)),
+               imbalance = last_value(r, "energy/imbalance");
   if (!isfinite(external)) return;
   printf("  energy     external work %.5g J: kinetic %.3g, stored %.3g, dissipated by damage %.5g, "
          "by damping %.3g; ",
@@ -592,6 +595,30 @@ static void warn_of_gain(const run *r) {
             k ? ""
               : "; a law that locks energy in its states should give W (`perilat help energy`)");
   }
+}
+
+/* "particle 12 of plate at (3, 4) mm" */
+static void print_particle(const run *r, int lattice, long particle) {
+  const rows *g = simulation_rows(r->simulation, lattice);
+  double at[3];
+  char text[ROWS_PLACE_TEXT];
+  rows_place(g, g->particle_site[particle], at);
+  fprintf(stderr, "particle %ld of %s, %s", particle, r->deck->lattices[lattice].name,
+          rows_place_text(g->dimensions, at, text));
+}
+
+/* Faces that have gone through each other. */
+static void warn_of_overlap(const run *r) {
+  const overlap_found o = simulation_overlap(r->simulation);
+  if (o.pairs == 0) return;
+  fprintf(stderr,
+          "perilat: warning: in the end %ld pair%s of particles that no bond joins lie%s over each "
+          "other,\n  nearer than half a spacing; the nearest are ",
+          o.pairs, o.pairs == 1 ? "" : "s", o.pairs == 1 ? "s" : "");
+  print_particle(r, o.body[0], o.particle[0]);
+  fputs(",\n  and ", stderr);
+  print_particle(r, o.body[1], o.particle[1]);
+  fputs(": a `&contact` keeps them apart\n", stderr);
 }
 
 static double largest_of(const run *r, const char *name) {
@@ -642,6 +669,7 @@ void conclude(const run *r, double seconds, long steps) {
   conclude_energy(r);
   fflush(stdout);
   warn_of_gain(r);
+  warn_of_overlap(r);
   long frames = (long)result_mark(r->result).count;
   printf("  written    %s (%ld frame%s) and its .xdmf for ParaView\n", r->result_path, frames,
          frames == 1 ? "" : "s");

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "dsl/base/arena.h"
 
@@ -117,9 +118,26 @@ void body_add_gravity(body *w) {
   w->row_gravity = body_doubles(w, w->lattice->row_count);
 }
 
+void body_add_outer(body *w) {
+  if (w->row_outer) return;
+  for (int d = 0; d < w->dimensions; d++)
+    w->outer[d] = body_doubles(w, w->lattice->size);
+  w->row_outer = must_calloc((size_t)w->lattice->row_count + 1, 1);
+}
+
+void body_clear_outer(body *w) {
+  for (int row = 0; row < w->lattice->row_count; row++) {
+    if (!w->row_outer[row]) continue;
+    for (int d = 0; d < w->dimensions; d++)
+      memset(w->outer[d] + body_start(w, row), 0, (size_t)w->count[row] * sizeof(double));
+    w->row_outer[row] = 0;
+  }
+}
+
 void body_free(body *w) {
   if (!w) return;
   free(w->row_stuck);
+  free(w->row_outer);
   free(w->observed);
   free(w->begin);
   free(w->count);
@@ -152,6 +170,7 @@ body_totals body_sum(const body *w) {
   const int n = w->lattice->row_count;
   body_totals t = {.internal = sum_of(w->row_internal, n), .dissipated = sum_of(w->row_mass, n)};
   if (w->weight) t.gravity = sum_of(w->row_gravity, n);
+  t.outer = w->outer_work;
   for (int row = 0; row < n; row++) {
     const body_row *r = &w->observed[row];
     t.kinetic += r->kinetic;

@@ -53,6 +53,7 @@ typedef struct body_totals { /* sums over all particles and bonds, J, up to the 
   double internal;   /* laws of families: work done against the forces of the bonds */
   double dissipated; /* by mass damping since the start */
   double gravity;    /* work of gravity since the start */
+  double outer;      /* the same of outer forces */
 } body_totals;
 
 typedef struct body {
@@ -80,7 +81,12 @@ typedef struct body {
                                 used) */
   double *row_mass, *row_internal; /* [row_count] J up to the middle of the last step */
   double *row_gravity; /* [row_count] J: work of gravity since the start; NULL without */
-  body_row *observed;  /* [row_count] */
+  /* [size] N: what acts on the particles from outside, beside loads, in the coming step (contact);
+     NULL without. The rows in which it is not 0 have a mark, [row_count]. */
+  double *outer[3];
+  unsigned char *row_outer;
+  double outer_work;  /* J: that it has done since the start */
+  body_row *observed; /* [row_count] */
   /* [row_count] site from which on a row has not moved, a velocity there was bad; 0: it has */
   long *row_stuck;
   /* [row_count] part of the row that holds sites: offset from its start, doubles */
@@ -99,6 +105,10 @@ body *body_new(const rows *lattice, int dof, double time_step, int threads, body
 void body_free(body *w);
 /* From now on `gravity` counts. */
 void body_add_gravity(body *w);
+/* From now on `outer` counts; it is 0. */
+void body_add_outer(body *w);
+/* It becomes 0 again. */
+void body_clear_outer(body *w);
 
 /* `count` zeros, aligned, counted in w->bytes; they go with the body. */
 double *body_doubles(body *w, long count);
@@ -119,6 +129,21 @@ static inline int body_turns(const body *w, int component) {
 static inline double body_mass(const body *w, int component, long site) {
   const double *relative = w->relative_mass[body_turns(w, component)];
   return relative ? w->mass[component] * relative[site] : w->mass[component];
+}
+
+/* Adds to the outer forces on a particle. */
+static inline void body_push(body *w, long site, const double force[3]) {
+  w->row_outer[rows_row(w->lattice, site)] = 1;
+  for (int d = 0; d < w->dimensions; d++)
+    w->outer[d][site] += force[d];
+}
+/* N; 0 without, and of rotations. */
+static inline double body_outer(const body *w, int component, long site) {
+  return w->row_outer && component < w->dimensions ? w->outer[component][site] : 0;
+}
+/* Not only bonds act on the particles (motion_push). */
+static inline bool body_is_pushed(const body *w) {
+  return w->weight || w->row_outer;
 }
 
 /* Nothing is bad as yet. */

@@ -6,7 +6,7 @@
 #include "runtime/base/lane_sum.h"
 #include "runtime/body/rotation_vector.h"
 
-/* Absent sites have no weight: they stay where they are. */
+/* Absent sites have no weight, and nothing acts on them: they stay where they are. */
 static int64_t add_push(long count, double push, double limit, const double *restrict weight,
                         double *restrict next) {
   int64_t bad = 0;
@@ -19,11 +19,32 @@ static int64_t add_push(long count, double push, double limit, const double *res
   return bad;
 }
 
+/* Each particle has a mass of its own. */
+static int64_t add_pushes(long count, double push, double limit, const double *restrict force,
+                          const double *restrict mobility, double *restrict next) {
+  int64_t bad = 0;
+  INDEPENDENT
+  for (long q = 0; q < count; q++) {
+    const double after = next[q] + push * mobility[q] * force[q];
+    next[q] = after;
+    bad |= __builtin_fabs(after) < limit ? INT64_C(0) : INT64_C(1);
+  }
+  return bad;
+}
+
 int64_t motion_push(const body *w, const row_part *at, int component, double *next) {
-  if (!w->weight || component >= w->dimensions) return 0;
-  const double push = w->time_step * motion_force_part(w) * w->gravity[component];
-  return add_push(at->end - at->first, push, w->limit[component],
-                  w->weight + body_start(w, at->row) + at->first, next + at->first);
+  const long start = body_start(w, at->row) + at->first, count = at->end - at->first;
+  const double step = w->time_step * motion_force_part(w), limit = w->limit[component];
+  int64_t bad = 0;
+  if (component >= w->dimensions) return 0;
+  next += at->first;
+  if (w->weight)
+    bad |= add_push(count, step * w->gravity[component], limit, w->weight + start, next);
+  if (!w->row_outer || !w->row_outer[at->row]) return bad;
+  const double *force = w->outer[component] + start, push = step / w->mass[component];
+  return bad | (w->mobility[0]
+                    ? add_pushes(count, push, limit, force, w->mobility[0] + start, next)
+                    : add_push(count, push, limit, force, next));
 }
 
 /* All components in one loop, with a literal number of them. */

@@ -211,6 +211,14 @@ typedef struct deck_gravity { /* force mass * acceleration on every particle */
   time_function factor;   /* 1: full */
 } deck_gravity;
 
+typedef struct deck_contact {
+  deck_item item;
+  const char *name;
+  const char **lattices; /* [lattice_count] one: with itself; none: all, and with themselves */
+  int lattice_count;
+  double stiffness; /* N/m, of two particles; 0: that of the softer lattice */
+} deck_contact;
+
 typedef struct deck_initial { /* of each particle of the region when the run begins */
   deck_item item;
   const char *region;
@@ -336,6 +344,7 @@ typedef struct deck_file { /* a table that a load was read from */
   LIST(protect)                                                                                    \
   LIST(damping)                                                                                    \
   LIST(gravity)                                                                                    \
+  LIST(contact)                                                                                    \
   LIST(initial_velocity)                                                                           \
   LIST(initial_displacement)                                                                       \
   LIST(monitor)                                                                                    \

@@ -43,6 +43,10 @@ bool deck_lattice_known(deck_reader *r, const deck_item *item, const char *name)
   return lattice_is_known(r, deck_where(item, "lattice"), name);
 }
 
+bool deck_lattice_known_at(deck_reader *r, span where, const char *name) {
+  return lattice_is_known(r, where, name);
+}
+
 bool deck_bar_known(deck_reader *r, const deck_item *item, const char *name) {
   return bar_is_known(r, deck_where(item, "bar"), name);
 }

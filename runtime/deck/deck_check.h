@@ -23,6 +23,7 @@ typedef struct deck_reader {
 /* The name that an item's key gives must be that of a lattice (bars and links are some), of a bar,
    of a link, or of a region. */
 bool deck_lattice_known(deck_reader *r, const deck_item *item, const char *name);
+bool deck_lattice_known_at(deck_reader *r, span where, const char *name);
 bool deck_bar_known(deck_reader *r, const deck_item *item, const char *name);
 bool deck_link_known(deck_reader *r, const deck_item *item, const char *name);
 bool deck_region_known(deck_reader *r, span where, const char *name);

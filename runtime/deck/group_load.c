@@ -6,6 +6,8 @@
 #include "runtime/deck/deck_check.h"
 #include "runtime/deck/deck_formula.h"
 #include "runtime/deck/deck_load.h"
+#include "runtime/deck/deck_value.h"
+#include "runtime/deck/lattice_kind.h"
 
 #define REGION_KEY(group, text)                                                                    \
   { .name = "region", .type = DECK_NAME, .required = true, DECK_AT(group, region), .doc = text }
@@ -349,6 +351,77 @@ static void check_gravity(deck_reader *r, const namelist_group *from, void *into
 
 DECK_LIST(gravity, .check = check_gravity,
           .doc = "Weight of every particle; several add up. Its work is in the energy ledger.");
+
+/* --- contact ---------------------------------------------------------------------------------- */
+
+static const deck_key_info contact_keys[] = {
+    {.name = "name",
+     .type = DECK_NAME,
+     .fallback = "'contact'",
+     DECK_AT(contact, name),
+     .doc = "its name, also of its energies in the history"},
+    {.name = "lattices",
+     .type = DECK_NAMES,
+     .fallback = "= all, each with itself and with all others",
+     DECK_AT(contact, lattices),
+     DECK_COUNT_AT(contact, lattice_count),
+     .doc = "names of two lattices, whose particles touch each other's; or of one, whose own "
+            "particles touch. Bars and links touch nothing"},
+    {.name = "stiffness",
+     .type = DECK_REAL,
+     .unit = "N/m",
+     .bound = BOUND_POSITIVE,
+     .fallback = "= E V/s^2 of the softer lattice",
+     DECK_AT(contact, stiffness),
+     .doc = "force between two particles over the way that they overlap"},
+};
+
+/* That of a lattice, or of a contact before this one. */
+static const deck_item *other_of_name(const deck_reader *r, const char *name) {
+  const int lattice = deck_find_lattice(r->k, name);
+  if (lattice >= 0) return &r->k->lattices[lattice].item;
+  for (int k = 0; k < r->k->contact_count; k++)
+    if (deck_same_name(r->k->contacts[k].name, name)) return &r->k->contacts[k].item;
+  return NULL;
+}
+
+/* Of lattices that both let touch. */
+static bool have_a_pair(const deck_contact *a, const deck_contact *b) {
+  bool same = a->lattice_count == b->lattice_count;
+  for (int n = 0; same && n < a->lattice_count; n++)
+    same = deck_is_one_of(a->lattices[n], b->lattices, b->lattice_count);
+  return same || a->lattice_count == 0 || b->lattice_count == 0;
+}
+
+static void check_contact(deck_reader *r, const namelist_group *from, void *into) {
+  deck_contact *item = into;
+  const span where = deck_where(&item->item, "lattices");
+  (void)from;
+  const deck_item *other = other_of_name(r, item->name);
+  deck_check_name(r, "lattice or contact", item->name, &item->item, other);
+  if (item->lattice_count > 2)
+    diag_report(r->d, DIAG_BAD_VALUE, where, "`lattices` takes one name or two, but %d are given",
+                item->lattice_count);
+  for (int n = 0; n < item->lattice_count; n++) {
+    const char *name = item->lattices[n];
+    if (!deck_lattice_known_at(r, where, name)) continue;
+    const int lattice = deck_find_lattice(r->k, name);
+    const deck_lattice *of = lattice < 0 ? NULL : &r->k->lattices[lattice];
+    if (of && (deck_lattice_is_bar(of) || deck_lattice_is_link(of)))
+      diag_report(r->d, DIAG_BAD_VALUE, where, "`%s` is a %s: only lattices touch",
+                  deck_shown(r->memory, name), deck_lattice_word(of));
+  }
+  for (int k = 0; k < r->k->contact_count; k++) {
+    if (r->k->contacts[k].item.faulty || !have_a_pair(&r->k->contacts[k], item)) continue;
+    diag_report(r->d, DIAG_CONFLICT, where, "lattices of this contact touch already");
+    diag_note(r->d, deck_where(&r->k->contacts[k].item, "lattices"), "they touch by this one");
+    return;
+  }
+}
+
+DECK_LIST(contact, .identity = "name", .check = check_contact,
+          .doc = "Particles that no bond joins push each other apart when they come nearer than a "
+                 "spacing, see [Contact](#contact).");
 
 /* --- motion at the start ---------------------------------------------------------------------- */
 

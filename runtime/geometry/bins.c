@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
@@ -102,12 +103,19 @@ static int64_t box_of_point(const boxes *b, const double *const at[3], long k) {
   return boxes_number(b, box);
 }
 
+static void make_room(int32_t **items, int64_t *room, int64_t count) {
+  if (count <= *room) return;
+  *items = must_realloc(*items, (size_t)count * sizeof **items);
+  *room = count;
+}
+
 /* Counted, then sorted in: while that is done first[n + 1] is where the next point of box n
    comes. */
 static void sort_points(bins *b, const double *const at[3], long points) {
   const int64_t all = boxes_all(&b->boxes);
-  b->first = must_calloc((size_t)all + 2, sizeof *b->first);
-  b->point = must_alloc(((size_t)points + 1) * sizeof *b->point);
+  make_room(&b->first, &b->first_room, all + 2);
+  make_room(&b->point, &b->point_room, points + 1);
+  memset(b->first, 0, (size_t)(all + 2) * sizeof *b->first);
   for (long k = 0; k < points; k++)
     b->first[box_of_point(&b->boxes, at, k) + 2]++;
   for (int64_t n = 2; n < all + 2; n++)
@@ -127,12 +135,17 @@ static void find_extent(boxes *b, const double *const at[3], long points, double
   }
 }
 
-void bins_of_size(bins *b, int dimensions, const double *const at[3], long points, double size) {
+void bins_renew(bins *b, int dimensions, const double *const at[3], long points, double size) {
   double extent[3];
-  *b = (bins){.boxes = {.dimensions = dimensions}};
+  b->boxes = (boxes){.dimensions = dimensions};
   find_extent(&b->boxes, at, points, extent);
   boxes_of_size(&b->boxes, extent, points, size);
   sort_points(b, at, points);
+}
+
+void bins_of_size(bins *b, int dimensions, const double *const at[3], long points, double size) {
+  *b = (bins){.first = NULL};
+  bins_renew(b, dimensions, at, points, size);
 }
 
 void bins_of_few(bins *b, int dimensions, const double *const at[3], long points, double few) {

@@ -32,11 +32,15 @@ typedef struct bins {
   boxes boxes;
   int32_t *first; /* [boxes + 1] places in `point` */
   int32_t *point; /* numbers of the points, box by box; ascending in each */
+  int64_t first_room, point_room;
 } bins;
 
 /* Boxes of about that size; larger ones where there would be many more boxes than points. at[2] is
    NULL in the plane. Points are finite; those out of all boxes are in the nearest. */
 void bins_of_size(bins *b, int dimensions, const double *const at[3], long points, double size);
+/* The same of points that have moved, into the memory of `b`, which grows where it must; all 0
+   before the first time. */
+void bins_renew(bins *b, int dimensions, const double *const at[3], long points, double size);
 /* Boxes with about so many points each; a box is as large along axes along which the points reach
    less far than it. */
 void bins_of_few(bins *b, int dimensions, const double *const at[3], long points, double few);

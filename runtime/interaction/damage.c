@@ -48,14 +48,18 @@ double damage_of_site(const sweep *w, long site) {
   return damage_of_site_in(w, w->new_field, site);
 }
 
-const double *damage_of_all_bonds(const sweep *w) {
+const double *damage_of_all_bonds_in(const sweep *w, double *const *field) {
   const double *only = NULL;
   for (int f = 0; f < w->law->field_count; f++) {
     if (!counts(&w->law->fields[f], false)) continue;
     if (only || w->law->fields[f].place != PL_ON_BOND) return NULL;
-    only = w->new_field[f];
+    only = field[f];
   }
   return only;
+}
+
+const double *damage_of_all_bonds(const sweep *w) {
+  return damage_of_all_bonds_in(w, w->new_field);
 }
 
 /* The particle is one of the law, where several are at work. */

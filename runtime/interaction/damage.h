@@ -17,6 +17,7 @@ double damage_of_bond_in(const sweep *w, double *const *field, const rows_bond *
 /* [directions][size] that of every bond, at its owner, where one damage is all and the same from
    either end; NULL otherwise. */
 const double *damage_of_all_bonds(const sweep *w);
+const double *damage_of_all_bonds_in(const sweep *w, double *const *field);
 /* Of those on particles; 0 without. */
 double damage_of_site(const sweep *w, long site);
 double damage_of_site_in(const sweep *w, double *const *field, long site);

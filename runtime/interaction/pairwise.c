@@ -303,7 +303,7 @@ typedef struct moved_row {
 static void move_part(body *w, body_block *b, moved_row *m, row_part at) {
   const double begun = w->timed ? monotonic_seconds() : 0;
   int64_t bad = kick_part(w, &m->from, at, b->next);
-  for (int d = 0; d < w->dimensions && w->weight; d++)
+  for (int d = 0; d < w->dimensions && body_is_pushed(w); d++)
     bad |= motion_push(w, &at, d, b->next + d * w->lattice->pitch);
   if (!bad && m->moved == at.first) {
     motion_drift(w, b, &at);

@@ -284,7 +284,8 @@ void load_steps_set_back(loads *l, body *w) {
     for (long p = 0; p < l->lattice->particle_count; p++) {
       const int64_t q = l->lattice->particle_site[p];
       double *v = &w->velocity[d][q];
-      *v = back * *v - half * (w->force[d][q] / body_mass(w, d, q) + weight);
+      *v = back * *v -
+           half * ((w->force[d][q] + body_outer(w, d, q)) / body_mass(w, d, q) + weight);
     }
   }
   for (long i = 0; i < l->force_count; i++) {
@@ -607,11 +608,13 @@ load_sums load_steps_total(const loads *l) {
   return total;
 }
 
-/* Velocity after the coming step if nothing but bonds, damping and gravity acted on a particle. */
+/* Velocity after the coming step if nothing but bonds, damping, gravity and outer forces acted on a
+   particle. */
 static double free_velocity(const body *w, int component, int64_t site) {
   const double weight = component < w->dimensions ? w->gravity[component] : 0;
   return w->decay * w->velocity[component][site] +
-         given_by(w, component, site, w->force[component][site]) +
+         given_by(w, component, site,
+                  w->force[component][site] + body_outer(w, component, site)) +
          w->time_step * motion_force_part(w) * weight;
 }
 
@@ -632,10 +635,12 @@ static double prescribed_velocity(const loads *l, const body *w, const constrain
   return (c->anchor + motion_at(l, w, c, step + 1) - c->held) / w->time_step;
 }
 
-/* In quasi-static runs inertia is but a means: a reaction is what balances bonds and weight. */
+/* In quasi-static runs inertia is but a means: a reaction is what balances bonds, outer
+   forces and weight. */
 static double force_at_rest(const body *w, const constraint *c) {
   const double weight = c->component < w->dimensions ? w->gravity[c->component] : 0;
-  return w->force[c->component][c->site] + body_mass(w, c->component, c->site) * weight;
+  return w->force[c->component][c->site] + body_outer(w, c->component, c->site) +
+         body_mass(w, c->component, c->site) * weight;
 }
 
 /* What a constraint adds that changes a velocity by `change` in the coming step; returns the

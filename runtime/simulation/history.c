@@ -12,16 +12,23 @@ static const char *const increment_words[] = {
     "steps of the increment",
     "unbalanced force at the end of the increment over reactions or loads"};
 
-/* Bodies of which energies are kept one by one. */
-static int bodies_apart(const monitors *m) {
-  return m->body_count > 1 ? m->body_count : 0;
+/* Bodies and contacts of which energies are kept one by one. */
+static int parts_apart(const history *h) {
+  const int parts = h->monitors->body_count + h->contacts->count;
+  return parts > 1 ? parts : 0;
+}
+
+static const char *part_name(const history *h, int number) {
+  const int bodies = h->monitors->body_count;
+  return number < bodies ? h->monitors->bodies[number].name
+                         : h->contacts->items[number - bodies].from->name;
 }
 
 /* "energy/kinetic" in sum, "plate/kinetic" of a body. */
-static char *energy_name(const monitors *m, int energy) {
+static char *energy_name(const history *h, int energy) {
   const int number = energy / LEDGER_COUNT - 1;
   const char *term = ledger_names[energy % LEDGER_COUNT];
-  const char *folder = number < 0 ? "energy" : m->bodies[number].name;
+  const char *folder = number < 0 ? "energy" : part_name(h, number);
   term = strchr(term, '/') + 1;
   const size_t size = strlen(folder) + strlen(term) + 2;
   char *name = must_alloc(size);
@@ -29,18 +36,17 @@ static char *energy_name(const monitors *m, int energy) {
   return name;
 }
 
-history history_new(const monitors *m, const relaxation *r, bool energies, int64_t capacity) {
-  history h = {.monitors = m,
-               .relaxation = r,
-               .energies = energies ? (1 + bodies_apart(m)) * LEDGER_COUNT : 0,
-               .capacity = capacity};
+history history_new(const monitors *m, const run_contacts *c, const relaxation *r, bool energies,
+                    int64_t capacity) {
+  history h = {.monitors = m, .contacts = c, .relaxation = r, .capacity = capacity};
+  h.energies = energies ? (1 + parts_apart(&h)) * LEDGER_COUNT : 0;
   h.series_count = m->count + h.energies + (r ? INCREMENT_SERIES : 0);
   h.time = must_calloc((size_t)capacity, sizeof *h.time);
   h.values = must_calloc((size_t)capacity * (size_t)h.series_count + 1, sizeof *h.values);
   h.sampled = must_calloc((size_t)h.series_count + 1, sizeof *h.sampled);
   h.names = must_calloc((size_t)h.energies + 1, sizeof *h.names);
   for (int k = 0; k < h.energies; k++)
-    h.names[k] = energy_name(m, k);
+    h.names[k] = energy_name(&h, k);
   return h;
 }
 
@@ -88,7 +94,7 @@ char *history_words(const history *h, int k, arena *a) {
   const char *words = ledger_words[energy % LEDGER_COUNT];
   const int number = energy / LEDGER_COUNT - 1;
   return number < 0 ? arena_printf(a, "%s", words)
-                    : arena_printf(a, "%s, of `%s`", words, h->monitors->bodies[number].name);
+                    : arena_printf(a, "%s, of `%s`", words, part_name(h, number));
 }
 
 int history_imbalance(const history *h, int number) {

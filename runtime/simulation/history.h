@@ -6,11 +6,13 @@
 #include "runtime/simulation/ledger.h"
 #include "runtime/simulation/monitor.h"
 #include "runtime/simulation/relaxation.h"
+#include "runtime/simulation/run_contact.h"
 
-/* Series: the deck's monitors; the energy terms, in sum, then, of several bodies, those of each;
-   what an increment took. */
+/* Series: the deck's monitors; the energy terms, in sum, then, of several bodies, those of each,
+   and of each contact; what an increment took. */
 typedef struct history {
   const monitors *monitors;
+  const run_contacts *contacts;
   const relaxation *relaxation; /* NULL: a dynamic run */
   int energies;                 /* series of energies, or 0 */
   char **names;                 /* [energies] */
@@ -20,10 +22,11 @@ typedef struct history {
   double *sampled;       /* [series] at the sample being taken */
 } history;
 
-history history_new(const monitors *m, const relaxation *r, bool energies, int64_t capacity);
+history history_new(const monitors *m, const run_contacts *c, const relaxation *r, bool energies,
+                    int64_t capacity);
 void history_free(history *h);
 /* Where the energies of a sample are to be put: those of all bodies, [LEDGER_COUNT], or of one;
-   NULL without. */
+   contacts are counted on behind the bodies. NULL without. */
 double *history_energies(const history *h);
 double *history_energies_of(const history *h, int body);
 /* Sample number `sample` is what stands in `sampled`, and of the increment that has ended. */

@@ -1,6 +1,7 @@
 #include "runtime/simulation/ledger.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "dsl/base/elementary.h"
 
@@ -67,6 +68,14 @@ void ledger_sample_link(ledger *g, const ledger_laws *of, const body *state, dou
   terms[LEDGER_IMBALANCE] = imbalance(g, of, terms);
 }
 
+void ledger_sample_contact(ledger *g, double stored, double work, double terms[LEDGER_COUNT]) {
+  if (!g->begun) *g = (ledger){.begun = 1, .initial = stored};
+  memset(terms, 0, LEDGER_COUNT * sizeof *terms);
+  terms[LEDGER_STORED] = stored;
+  terms[LEDGER_EXTERNAL] = work;
+  terms[LEDGER_IMBALANCE] = work - (stored - g->initial);
+}
+
 bool ledger_sample(ledger *g, const ledger_laws *of, const body *state, const loads *l,
                    const load_look *look, double omega, double terms[LEDGER_COUNT]) {
   const body_totals t = body_sum(state);
@@ -80,7 +89,7 @@ bool ledger_sample(ledger *g, const ledger_laws *of, const body *state, const lo
   }
   terms[LEDGER_KINETIC] = kinetic;
   terms[LEDGER_STORED] = t.stored;
-  terms[LEDGER_EXTERNAL] = s.work + look->work + t.gravity;
+  terms[LEDGER_EXTERNAL] = s.work + look->work + t.gravity + t.outer;
   terms[LEDGER_DISSIPATED_DAMPING] = damping - g->pending;
   terms[LEDGER_DISSIPATED_DAMAGE] = taken(g, of, &t, lost);
   terms[LEDGER_IMBALANCE] = imbalance(g, of, terms);

@@ -88,6 +88,9 @@ void ledger_add_law(ledger_laws *of, const pl_law *law, bool kept);
    Where the stored energy is not known nothing is said. */
 bool ledger_sample(ledger *g, const ledger_laws *of, const body *state, const loads *l,
                    const load_look *look, double omega, double terms[LEDGER_COUNT]);
+/* The same of a contact: it stores that much (J), and `work` is done on it by the ways of its
+   particles. */
+void ledger_sample_contact(ledger *g, double stored, double work, double terms[LEDGER_COUNT]);
 /* The same of a link (run_link.h), whose particles are copies: what moves is the bodies'. `work`
    (J) is done on it by their ways. */
 void ledger_sample_link(ledger *g, const ledger_laws *of, const body *state, double work,

@@ -105,10 +105,11 @@ bool relaxation_due(const relaxation *r, int64_t step) {
 
 /* --- a look ----------------------------------------------------------------------------------- */
 
-/* Of bonds and links, which give way as the body moves. */
+/* Of bonds, links and contacts, which give way as the body moves. */
 static void take_forces(const run_body *of, int d, double *force) {
   const loads *l = of->loads;
-  memcpy(force, of->body->force[d], (size_t)of->lattice_rows->size * sizeof *force);
+  for (long q = 0; q < of->lattice_rows->size; q++)
+    force[q] = of->body->force[d][q] + body_outer(of->body, d, q);
   for (long i = 0; i < l->force_count; i++)
     if (l->forces[i].link && l->forces[i].component == d)
       force[l->forces[i].site] += l->forces[i].now;
@@ -174,9 +175,9 @@ static void add_component(const relaxation *r, const run_body *of, int d, square
   const double gravity = d < w->dimensions ? w->gravity[d] : 0;
   for (long p = 0; p < w->lattice->particle_count; p++) {
     const long q = w->lattice->particle_site[p];
-    const double weight = gravity * body_mass(w, d, q);
-    r->total[q] = w->force[d][q] + weight;
-    sum->applied += weight * weight;
+    const double load = gravity * body_mass(w, d, q) + body_outer(w, d, q);
+    r->total[q] = w->force[d][q] + load;
+    sum->applied += load * load;
   }
   for (long i = 0; i < l->force_count; i++) {
     if (l->forces[i].component != d) continue;

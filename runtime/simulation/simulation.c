@@ -36,7 +36,12 @@ static bool choose_step(simulation *s, diagnostics *d) {
   for (int b = 1; b < s->body_count; b++)
     if (s->bodies[b].limit.limit < s->bodies[s->ruling].limit.limit) s->ruling = b;
   s->limit = s->bodies[s->ruling].limit;
-  link_limit(s->bodies, s->body_count, &s->limit, &s->ruling);
+  double *touching = must_calloc((size_t)s->body_count + 1, sizeof *touching);
+  const bool known =
+      run_contacts_open(&s->contacts, s->deck, s->bodies, s->body_count, touching, d);
+  link_limit(s->bodies, s->body_count, touching, &s->limit, &s->ruling);
+  free(touching);
+  if (!known) return false;
   const run_body *rules = &s->bodies[s->ruling];
   return step_choose(s->deck, rules->law, s->body_count > 1 ? rules->name : NULL, &s->limit, d) &&
          step_plan_make(s->deck, &s->limit, &s->plan, d);
@@ -66,6 +71,7 @@ static bool open_bodies(simulation *s, diagnostics *d) {
     s->bodies[b].first_block %= s->blocks;
   s->team = team_new(s->blocks);
   s->links = run_links_new(s->bodies, s->body_count, &s->link_count);
+  run_contacts_begin(&s->contacts);
   return good;
 }
 
@@ -83,7 +89,8 @@ static bool open_monitors(simulation *s, diagnostics *d) {
   s->monitors = monitors_new(k, s->bodies, s->body_count,
                              s->relaxation ? s->relaxation->interval : s->limit.step, d);
   if (!s->monitors) return false;
-  s->history = history_new(s->monitors, s->relaxation, k->output.energy, s->plan.history_capacity);
+  s->history = history_new(s->monitors, &s->contacts, s->relaxation, k->output.energy,
+                           s->plan.history_capacity);
   return true;
 }
 
@@ -143,6 +150,7 @@ void simulation_free(simulation *s) {
   history_free(&s->history);
   bad_search_free(s->bad);
   run_links_free(s->links, s->link_count);
+  run_contacts_free(&s->contacts);
   for (int b = 0; b < s->body_count; b++)
     run_body_free(&s->bodies[b]);
   team_free(s->team);
@@ -204,6 +212,7 @@ double simulation_memory(const simulation *s) {
   double sum =
       (double)sizeof(double) * ((double)s->history.capacity * (s->history.series_count + 1) +
                                 (double)s->monitors->ring_size);
+  sum += run_contacts_memory(&s->contacts);
   for (int b = 0; b < s->body_count; b++) {
     const run_body *of = &s->bodies[b];
     const double looks = s->relaxation ? (double)sizeof(double) * (2 * of->body->dof + 1) : 0;
@@ -225,6 +234,21 @@ step_status simulation_advance(simulation *s, long steps,
 
 bad_state simulation_bad(const simulation *s) {
   return *bad_search_found(s->bad);
+}
+
+overlap_found simulation_overlap(simulation *s) {
+  overlap_found found = {.pairs = 0};
+  if (s->deck->contact_count > 0 || s->clock.at.status == STEP_BAD) return found;
+  const unsigned environment = subnormals_off();
+  const contact_overlap o = run_contacts_overlap(s->deck, s->bodies);
+  s->observed_step = -1;
+  subnormals_restore(environment);
+  found.pairs = o.pairs;
+  for (int e = 0; e < 2 && o.pairs > 0; e++) {
+    found.body[e] = o.body[e];
+    found.particle[e] = s->bodies[o.body[e]].lattice_rows->site_particle[o.site[e]];
+  }
+  return found;
 }
 
 long simulation_history(const simulation *s, const double **time) {
@@ -259,6 +283,8 @@ bool simulation_judges(const simulation *s, int series, const char **unchecked) 
     if (series == history_imbalance(&s->history, b)) return true;
   }
   *unchecked = NULL;
+  for (int k = 0; k < s->contacts.count; k++)
+    if (series == history_imbalance(&s->history, s->body_count + k)) return true;
   return false;
 }
 

@@ -88,6 +88,16 @@ step_status simulation_advance(simulation *s, long steps, const volatile sig_ato
 
 bad_state simulation_bad(const simulation *s);
 
+/* Particles that lie over each other, nearer than half of what contact would keep them at: how many
+   pairs, and the nearest of them, by the numbers of their bodies. None where the deck has contact,
+   and of a run that has gone bad. */
+typedef struct overlap_found {
+  long pairs;
+  int body[2];
+  long particle[2];
+} overlap_found;
+overlap_found simulation_overlap(simulation *s);
+
 /* History so far. Series 0.. are the deck's monitors, then the energy terms, in sum and, of several
    bodies, of each; of quasi-static runs
    then the steps that the increment took and the unbalanced force at its end (relaxation.h). */

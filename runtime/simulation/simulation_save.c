@@ -43,6 +43,8 @@ static void add_state(part_list *l, const run_body *of) {
     add_part(l, "gravity", w->body->gravity, sizeof w->body->gravity);
     add_part(l, "gravity_work", w->body->gravity_work, sizeof w->body->gravity_work);
   }
+  if (w->body->row_outer)
+    add_part(l, "work of outer forces", &w->body->outer_work, sizeof(double));
   add_part(l, "dissipated_mass", w->body->row_mass, row);
   add_part(l, "internal", w->body->row_internal, row);
   add_part(l, "decay", &w->body->decay, sizeof(double));
@@ -66,6 +68,16 @@ static void add_relaxation(part_list *l, relaxation *r) {
   }
 }
 
+static void add_contact(part_list *l, run_contact *c) {
+  add_part(l, "work of a contact", &c->work, sizeof c->work);
+  add_part(l, "ledger", &c->ledger, sizeof c->ledger);
+  for (int b = 0; b < c->count; b++) {
+    size_t count;
+    double *lost = contact_lost(c->found, b, &count);
+    if (lost) add_part(l, "lost bonds", lost, count * sizeof *lost);
+  }
+}
+
 /* One list serves saving and restoring; `head` comes first. */
 static part_list parts_of(const simulation *s, run_progress *head) {
   part_list l = {NULL, 0};
@@ -78,6 +90,8 @@ static part_list parts_of(const simulation *s, run_progress *head) {
   }
   for (int k = 0; k < s->link_count; k++)
     add_part(&l, "work of a link", &s->links[k].work, sizeof s->links[k].work);
+  for (int k = 0; k < s->contacts.count; k++)
+    add_contact(&l, &s->contacts.items[k]);
   if (s->relaxation) add_relaxation(&l, s->relaxation);
   for (int m = 0; m < s->monitors->count; m++)
     add_part(&l, s->deck->monitors[m].name, &s->monitors->items[m].state, sizeof(monitor_state));

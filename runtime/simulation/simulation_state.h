@@ -10,6 +10,7 @@
 #include "runtime/simulation/relaxation.h"
 #include "runtime/simulation/run_body.h"
 #include "runtime/simulation/run_clock.h"
+#include "runtime/simulation/run_contact.h"
 #include "runtime/simulation/run_link.h"
 #include "runtime/simulation/simulation.h"
 #include "runtime/simulation/step_choice.h"
@@ -20,6 +21,7 @@ struct simulation {
   int body_count;
   run_link *links; /* [link_count] between bodies */
   int link_count;
+  run_contacts contacts;
   run_law *laws; /* [law_count] the deck's interactions, those of one body after the other */
   int law_count;
   team *team; /* of the threads */

@@ -33,10 +33,11 @@ static void end_badly(simulation *s, const char *what) {
 
 static void add_up(const simulation *s) {
   double *sum = history_energies(&s->history);
-  if (s->body_count == 1) return;
+  const int parts = s->body_count + s->contacts.count;
+  if (parts == 1) return;
   for (int term = 0; term < LEDGER_COUNT; term++) {
     sum[term] = 0;
-    for (int b = 0; b < s->body_count; b++)
+    for (int b = 0; b < parts; b++)
       sum[term] += history_energies_of(&s->history, b)[term];
   }
 }
@@ -48,6 +49,11 @@ static void sample_energies(simulation *s) {
     run_body *of = s->links[k].own;
     ledger_sample_link(&of->ledger, &of->energies, of->body, s->links[k].work,
                        history_energies_of(&s->history, (int)(of - s->bodies)));
+  }
+  for (int k = 0; k < s->contacts.count; k++) {
+    run_contact *of = &s->contacts.items[k];
+    ledger_sample_contact(&of->ledger, contact_stored(of->found), of->work,
+                          history_energies_of(&s->history, s->body_count + k));
   }
   for (int b = 0; b < s->body_count; b++) {
     run_body *of = &s->bodies[b];
@@ -106,6 +112,10 @@ static void step_links(simulation *s) {
     load_steps_take_links(s->bodies[b].loads, s->bodies[b].body);
 }
 
+static void find_contacts(simulation *s) {
+  if (s->contacts.count > 0) run_contacts_find(&s->contacts, s->clock.at.step);
+}
+
 /* What one thread does after all have moved their rows and what is loaded in them. */
 static void after_step(simulation *s) {
   if (some_body_is_bad(s)) {
@@ -120,6 +130,7 @@ static void after_step(simulation *s) {
   }
   s->clock.at.step++;
   if (s->link_count > 0) step_links(s);
+  find_contacts(s);
   s->go_on = s->clock.at.step < s->until && !(s->interrupted && *s->interrupted);
   if (s->relaxation) {
     s->observe = relaxation_due(s->relaxation, s->clock.at.step);
@@ -237,6 +248,7 @@ static void begin(simulation *s) {
   set_time(s);
   for (int k = 0; k < s->link_count; k++)
     run_link_begin(&s->links[k]);
+  find_contacts(s);
   if (s->clock.at.begun) return;
   s->clock.at.begun = 1;
   if (s->relaxation) relaxation_begin(s->relaxation);

@@ -22,7 +22,7 @@ typedef struct small_run {
 } small_run;
 
 /* simulation stays NULL on errors; they are in r->said. The format takes the deck. */
-static void small_open(small_run *r, const pl_law *law, const char *text) {
+static inline void small_open(small_run *r, const pl_law *law, const char *text) {
   memset(r, 0, sizeof *r);
   r->memory = arena_new();
   diag_begin(&r->said, &r->sources);
@@ -34,14 +34,14 @@ static void small_open(small_run *r, const pl_law *law, const char *text) {
   r->simulation = simulation_new(r->deck, &r->law, &r->said);
 }
 
-static void small_close(small_run *r) {
+static inline void small_close(small_run *r) {
   simulation_free(r->simulation);
   diag_clear(&r->said);
   source_clear(&r->sources);
   arena_free(r->memory);
 }
 
-static void small_print(const small_run *r) {
+static inline void small_print(const small_run *r) {
   diag_print(&r->said, stderr);
 }
 
