@@ -27,12 +27,12 @@ static void page_says(const char *beginning, const char *figure) {
   free(page);
 }
 
-/* A deck until its end, with one more override or NULL. */
-static void run(deck_case *c, const char *deck_name, const char *more) {
+/* A deck until its end, with two more overrides, or NULL. */
+static void run(deck_case *c, const char *deck_name, const char *more, const char *again) {
   char path[256];
-  const char *overrides[2] = {"simulation.threads=1", more};
+  const char *overrides[3] = {"simulation.threads=1", more, again};
   snprintf(path, sizeof path, FOLDER "%s.nml", deck_name);
-  assert_true(deck_case_run(c, path, overrides, 1 + (more != NULL)));
+  assert_true(deck_case_run(c, path, overrides, 1 + (more != NULL) + (again != NULL)));
   const step_status status = deck_case_go(c);
   assert_true(status == STEP_END || status == STEP_STOPPED);
   const long samples = simulation_history(c->simulation, NULL);
@@ -55,7 +55,7 @@ static bool bears(const char *deck_name, double kN, double held) {
   deck_case c;
   char total[64];
   snprintf(total, sizeof total, "force.total=%.9g kN", kN);
-  run(&c, deck_name, total);
+  run(&c, deck_name, total, NULL);
   const double *time, *deflection = deck_case_series(&c, "deflection"),
                       *load = deck_case_series(&c, "load");
   const long samples = simulation_history(c.simulation, &time);
@@ -104,7 +104,7 @@ static void plain_beam(void **state) {
 static void carries(const char *deck_name, const char *more, const char *row, const char *form) {
   deck_case c;
   char figure[64];
-  run(&c, deck_name, more);
+  run(&c, deck_name, more, NULL);
   const double *load = deck_case_series(&c, "load");
   const long samples = simulation_history(c.simulation, NULL);
   double most = 0;
@@ -126,12 +126,26 @@ static void twins_by_displacement(void **state) {
   carries("plain_beam_path", "simulation.step=1.808 us", "| 5.3 plain beam", "| %.2f kN,");
 }
 
+/* The halves of a broken beam rub; what moves apart costs nothing. */
+static void the_ledger_closes_with_friction(void **state) {
+  (void)state;
+  deck_case c;
+  run(&c, "plain_beam", "force.total=-55.2 kN", "material.friction=stick_slip");
+  const double *lost = deck_case_series(&c, "energy/dissipated_damage");
+  const long samples = simulation_history(c.simulation, NULL);
+  print_message("broken beam with friction: %.4g J lost, imbalance %.2g J\n", lost[samples - 1],
+                deck_case_series(&c, "energy/imbalance")[samples - 1]);
+  assert_true(lost[samples - 1] > 1);
+  deck_case_close(&c);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(prisms_in_tension),
       cmocka_unit_test(prisms_in_compression),
       cmocka_unit_test(plain_beam),
       cmocka_unit_test(twins_by_displacement),
+      cmocka_unit_test(the_ledger_closes_with_friction),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
