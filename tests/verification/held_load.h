@@ -20,12 +20,12 @@ static inline void page_says(const char *beginning, const char *figure) {
   free(page);
 }
 
-/* A deck until its end, with one more override or NULL. */
-static inline void run(deck_case *c, const char *deck_name, const char *more) {
+/* A deck until its end, with two more overrides, or NULL. */
+static inline void run(deck_case *c, const char *deck_name, const char *more, const char *again) {
   char path[256];
-  const char *overrides[2] = {"simulation.threads=1", more};
+  const char *overrides[3] = {"simulation.threads=1", more, again};
   snprintf(path, sizeof path, FOLDER "%s.nml", deck_name);
-  assert_true(deck_case_run(c, path, overrides, 1 + (more != NULL)));
+  assert_true(deck_case_run(c, path, overrides, 1 + (more != NULL) + (again != NULL)));
   const step_status status = deck_case_go(c);
   assert_true(status == STEP_END || status == STEP_STOPPED);
   const long samples = simulation_history(c->simulation, NULL);
@@ -48,7 +48,7 @@ static inline bool bears(const char *deck_name, double kN, double held) {
   deck_case c;
   char total[64];
   snprintf(total, sizeof total, "force.total=%.9g kN", kN);
-  run(&c, deck_name, total);
+  run(&c, deck_name, total, NULL);
   const double *time, *deflection = deck_case_series(&c, "deflection"),
                       *load = deck_case_series(&c, "load");
   const long samples = simulation_history(c.simulation, &time);

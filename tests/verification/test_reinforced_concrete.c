@@ -56,7 +56,7 @@ static void one_bar(void **state) {
 static void carries(const char *deck_name, const char *more, const char *row, const char *form) {
   deck_case c;
   char figure[64];
-  run(&c, deck_name, more);
+  run(&c, deck_name, more, NULL);
   const double *load = deck_case_series(&c, "load");
   const long samples = simulation_history(c.simulation, NULL);
   double most = 0;
@@ -78,6 +78,19 @@ static void twins_by_displacement(void **state) {
   carries("plain_beam_path", "simulation.step=1.808 us", "| 5.3 plain beam", "| %.2f kN,");
 }
 
+/* The halves of a broken beam move apart: open bonds do not rub, and the ledger knows. */
+static void open_bonds_do_not_rub(void **state) {
+  (void)state;
+  deck_case c;
+  run(&c, "plain_beam", "force.total=-55.2 kN", "material.friction=stick_slip");
+  const double *lost = deck_case_series(&c, "energy/dissipated_damage");
+  const long samples = simulation_history(c.simulation, NULL);
+  print_message("broken beam with friction: %.4g J lost, imbalance %.2g J\n", lost[samples - 1],
+                deck_case_series(&c, "energy/imbalance")[samples - 1]);
+  assert_true(lost[samples - 1] > 1);
+  deck_case_close(&c);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(prisms_in_tension),
@@ -85,6 +98,7 @@ int main(void) {
       cmocka_unit_test(plain_beam),
       cmocka_unit_test(one_bar),
       cmocka_unit_test(twins_by_displacement),
+      cmocka_unit_test(open_bonds_do_not_rub),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
