@@ -354,8 +354,8 @@ typedef struct pl_law {
   /* Of laws of families, where it was asked for (`perilat build law.plm` does): the law alone,
      family by family, as `states` of laws of bonds. It gives the new fields of `step` (on lists to
      the bit, on rows to rounding) and pl_family.force_state; nothing is added up or left to other
-     ends. With T_k, M_k the planes toward neighbour k, and T_k' the neighbour's plane back, those of
-     `step` are
+     ends. With T_k, M_k the planes toward neighbour k, and T_k' the neighbour's plane back, those
+     of `step` are
 
          force on the particle = sum_k (T_k - T_k'),   moment on it = sum_k M_k
 

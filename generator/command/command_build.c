@@ -44,8 +44,8 @@ static bool refuse_use(const model *m, const char *word, size_t length) {
   return false;
 }
 
-/* What the kernel is for, words of the law's line `for`: the setting of the lattices, or `irregular`
-   particles. NULL: its first setting. */
+/* What the kernel is for, words of the law's line `for`: the setting of the lattices, or
+   `irregular` particles. NULL: its first setting. */
 static bool take_uses(model *m, const char *words) {
   law_setting setting = m->law->setting;
   bool irregular = false;

@@ -42,9 +42,8 @@ int64_t motion_push(const body *w, const row_part *at, int component, double *ne
     bad |= add_push(count, step * w->gravity[component], limit, w->weight + start, next);
   if (!w->row_outer || !w->row_outer[at->row]) return bad;
   const double *force = w->outer[component] + start, push = step / w->mass[component];
-  return bad | (w->mobility[0]
-                    ? add_pushes(count, push, limit, force, w->mobility[0] + start, next)
-                    : add_push(count, push, limit, force, next));
+  return bad | (w->mobility[0] ? add_pushes(count, push, limit, force, w->mobility[0] + start, next)
+                               : add_push(count, push, limit, force, next));
 }
 
 /* All components in one loop, with a literal number of them. */

@@ -1,5 +1,5 @@
-/* How the particles of a row move once the forces on them are known: gravity, outer forces, limits, the drift to
-   the next place, and what their motion says of the energies. */
+/* How the particles of a row move once the forces on them are known: gravity, outer forces, limits,
+   the drift to the next place, and what their motion says of the energies. */
 #ifndef PERILAT_RUNTIME_MOTION_H
 #define PERILAT_RUNTIME_MOTION_H
 
@@ -26,8 +26,8 @@ static inline row_part whole_row(const body *w, int row) {
   return (row_part){row, 0, w->count[row]};
 }
 
-/* What gravity and outer forces add to the velocities after the kick, next[count of the row]; not 0 when one is not
-   below its limit. */
+/* What gravity and outer forces add to the velocities after the kick, next[count of the row]; not 0
+   when one is not below its limit. */
 int64_t motion_push(const body *w, const row_part *at, int component, double *next);
 /* Notes the first bad velocity among the block's `next` from place `first` of a row on: from there
    on the row stays. */

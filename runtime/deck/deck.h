@@ -35,8 +35,8 @@ enum link_to { LINK_TO_SITES, LINK_TO_PLACE };
 
 typedef enum volume_correction { VOLUME_WHOLE, VOLUME_LINEAR } volume_correction;
 
-/* Of a &lattice, or of a &bar or a &link, which are of the kinds `bar` and `link`: they stand behind
-   them, in this order. */
+/* Of a &lattice, or of a &bar or a &link, which are of the kinds `bar` and `link`: they stand
+   behind them, in this order. */
 typedef struct deck_lattice {
   deck_item item;
   const char *name;

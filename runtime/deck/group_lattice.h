@@ -1,5 +1,5 @@
-/* Groups of a lattice: its sites, or the line of a bar, or what a link joins; its material, and the random fields of its
-   parameters. */
+/* Groups of a lattice: its sites, or the line of a bar, or what a link joins; its material, and the
+   random fields of its parameters. */
 #ifndef PERILAT_RUNTIME_GROUP_LATTICE_H
 #define PERILAT_RUNTIME_GROUP_LATTICE_H
 

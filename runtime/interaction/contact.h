@@ -45,7 +45,7 @@ double contact_stored(const contact *c);
 double contact_power(const contact *c, double *power);
 
 /* Where no contact has kept them apart: pairs of particles nearer than `part` of d at the present
-   places. Finds no forces; it is not known where bonds were lost, and they count as lost at rest. */
+   places. Finds no forces; where bonds were lost is not known: they count as lost at rest. */
 typedef struct contact_overlap {
   long pairs;
   double nearest; /* r/d of the nearest pair, */
@@ -54,8 +54,8 @@ typedef struct contact_overlap {
 } contact_overlap;
 contact_overlap contact_overlaps(contact *c, double part);
 
-/* For saving a run: distances (m) at which the bonds of a body were lost, *count of them; NULL where
-   none is. */
+/* For saving a run: distances (m) at which the bonds of a body were lost, *count of them; NULL
+   where none is. */
 double *contact_lost(contact *c, int body, size_t *count);
 double contact_memory(const contact *c); /* bytes */
 

@@ -284,8 +284,8 @@ void load_steps_set_back(loads *l, body *w) {
     for (long p = 0; p < l->lattice->particle_count; p++) {
       const int64_t q = l->lattice->particle_site[p];
       double *v = &w->velocity[d][q];
-      *v = back * *v -
-           half * ((w->force[d][q] + body_outer(w, d, q)) / body_mass(w, d, q) + weight);
+      *v =
+          back * *v - half * ((w->force[d][q] + body_outer(w, d, q)) / body_mass(w, d, q) + weight);
     }
   }
   for (long i = 0; i < l->force_count; i++) {
@@ -613,8 +613,7 @@ load_sums load_steps_total(const loads *l) {
 static double free_velocity(const body *w, int component, int64_t site) {
   const double weight = component < w->dimensions ? w->gravity[component] : 0;
   return w->decay * w->velocity[component][site] +
-         given_by(w, component, site,
-                  w->force[component][site] + body_outer(w, component, site)) +
+         given_by(w, component, site, w->force[component][site] + body_outer(w, component, site)) +
          w->time_step * motion_force_part(w) * weight;
 }
 

@@ -1,5 +1,5 @@
-/* This room: loads. What acts on a few particles from outside: supports, drives, forces, end moments, collected from
-   a deck; load_steps.h says what they do in a step. */
+/* This room: loads. What acts on a few particles from outside: supports, drives, forces, end
+   moments, collected from a deck; load_steps.h says what they do in a step. */
 #ifndef PERILAT_RUNTIME_LOADS_H
 #define PERILAT_RUNTIME_LOADS_H
 

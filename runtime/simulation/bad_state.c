@@ -24,7 +24,8 @@ struct bad_search {
 
 static long in_results(const bad_search *s, int32_t particle) {
   const rows_copy *copies = s->of->lattice_rows->copies;
-  if (copies) return s->bodies[copies[particle].lattice].first_particle + copies[particle].particle[0];
+  if (copies)
+    return s->bodies[copies[particle].lattice].first_particle + copies[particle].particle[0];
   return (long)s->of->first_particle + particle;
 }
 

@@ -5,9 +5,10 @@
 
    Mass damping is chosen as they go (Underwood 1983): critical for the frequency of the motion
    since the last look, omega^2 = -du df/(du m du) with the displacements u and the forces f of
-   bonds and links. While the loads move, there is a tenth of it: the drag of the whole on a bar that is drawn
-   out in this time is pi/2 of the force that the increment needs, and breaks what would have held.
-   The ramp takes about a period, so that a bar without damping comes out of it at rest.
+   bonds and links. While the loads move, there is a tenth of it: the drag of the whole on a bar
+   that is drawn out in this time is pi/2 of the force that the increment needs, and breaks what
+   would have held. The ramp takes about a period, so that a bar without damping comes out of it at
+   rest.
 
    An increment is done when the unbalanced force, the root of the sum of squares over all
    components that are not held, is at most `tolerance` times the same of the reactions, or of the

@@ -60,9 +60,10 @@ static inline long run_body_particles(const run_body *b) {
 }
 
 /* `built` [lattice_count] has the deck's lattices so far; the body's own is built where it is NULL,
-   and its own from then on. `lattice`, `laws` and what the caller has of these are set. What of the deck does not fit this lattice and these laws is reported; false after errors.
-   Laws and parameters may be missing where they are wrong themselves: then the deck is checked as
-   far as it does not depend on them. */
+   and its own from then on. `lattice`, `laws` and what the caller has of these are set. What of the
+   deck does not fit this lattice and these laws is reported; false after errors. Laws and
+   parameters may be missing where they are wrong themselves: then the deck is checked as far as it
+   does not depend on them. */
 bool run_body_open(run_body *b, const deck *k, rows **built, diagnostics *d);
 /* The state at rest, with the step that the run takes. False with a diagnostic where it cannot
    begin so. */

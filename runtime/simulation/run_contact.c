@@ -103,7 +103,7 @@ bool run_contacts_open(run_contacts *c, const deck *k, run_body *bodies, int bod
   return true;
 }
 
-/* --- what failed bonds bear --------------------------------------------------------------------- */
+/* --- what failed bonds bear ------------------------------------------------------------------- */
 
 static double *copy_of(const double *values, size_t count) {
   double *copy = must_alloc((count + 1) * sizeof *copy);

@@ -11,8 +11,8 @@
 
 #include "runtime/simulation/run_body.h"
 
-/* What a copy follows: particles, and of one that turns with a bar that of the bar, those before and
-   after it. */
+/* What a copy follows: particles, and of one that turns with a bar that of the bar, those before
+   and after it. */
 typedef struct link_copy {
   const body *of, *bar;
   int count;

@@ -1,6 +1,6 @@
 /* Micropolar laws of bonds off the hexagon and in space, with their compiled kernels: the isotropic
-   lattices of mplm_space and mplm_concrete_space, rigid and spinning bodies, the stable step of a body, cantilevers against
-   theory. */
+   lattices of mplm_space and mplm_concrete_space, rigid and spinning bodies, the stable step of a
+   body, cantilevers against theory. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

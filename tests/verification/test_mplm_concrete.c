@@ -1,7 +1,7 @@
 /* The law mplm_concrete through decks and the program: one bond between two particles pulled apart,
    pushed together, rubbed. Work of fracture, strength, crushing and friction against the closed
-   forms of Gerstle et al. (2013) for all choices of each option; friction dissipates on any path. In
-   space: the curvature of ends that turn about different axes, the cost of a crack. */
+   forms of Gerstle et al. (2013) for all choices of each option; friction dissipates on any path.
+   In space: the curvature of ends that turn about different axes, the cost of a crack. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
-/* Laws of links as they come along: `bar_bond` against the closed forms of a beam as stiff as a bond
-   of the lattice; dampers and damage in the ledger; the same bits for any number of threads and
-   after stops; laws that do not suit. */
+/* Laws of links as they come along: `bar_bond` against the closed forms of a beam as stiff as a
+   bond of the lattice; dampers and damage in the ledger; the same bits for any number of threads
+   and after stops; laws that do not suit. */
 #define _GNU_SOURCE /* nftw */
 #include <setjmp.h>
 #include <stdarg.h>

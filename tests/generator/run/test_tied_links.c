@@ -92,7 +92,7 @@ static void a_linear_bond_holds_as_its_closed_form(void **state) {
   assert_true(error[1] < 0.27 * error[0] && error[2] < 0.27 * error[1]);
 }
 
-/* The power law along a bar that is long enough: F^2 = 2 E A pi d * integral of tau over the slip. */
+/* The power law along a bar that is long enough: F^2 = 2 E A pi d * integral of tau over slip. */
 static void the_model_code_holds_as_its_closed_form(void **state) {
   (void)state;
   const double tau_max = 2.5 * sqrt(27.58) * 1e6, K = 200e9, s_1 = 1e-3, u = 4e-5,

@@ -408,11 +408,13 @@ static void slips_are_told_at_their_line(void **state) {
                                 "&material lattice = 'l' between = 'a', 'c' model = "
                                 "'elastic_central' /\n",
        "is in both regions, `a` and `c`", "between = 'a', 'c'"},
-      {WHOLE("elastic_micropolar") "&region name = 'c' shape = 'point' at = 0, 0 /\n"
-                                   "&material lattice = 'l' region = 'c' model = 'mplm_concrete' /\n",
+      {WHOLE(
+           "elastic_micropolar") "&region name = 'c' shape = 'point' at = 0, 0 /\n"
+                                 "&material lattice = 'l' region = 'c' model = 'mplm_concrete' /\n",
        "no bond has both ends in the region `c`", "region = 'c'"},
-      {WHOLE("elastic_micropolar") "&region name = 'c' shape = 'disc' centre = 0, 0 radius = 1 /\n"
-                                   "&material lattice = 'l' region = 'c' model = 'mplm_concrete' /\n",
+      {WHOLE(
+           "elastic_micropolar") "&region name = 'c' shape = 'disc' centre = 0, 0 radius = 1 /\n"
+                                 "&material lattice = 'l' region = 'c' model = 'mplm_concrete' /\n",
        "all bonds of `l` belong to other materials", "model = 'elastic_micropolar'"},
       {WHOLE(
            "elastic_central") "&lattice name = 'l.a-b' kind = 'hexagonal' spacing = 1 thickness = "

@@ -1,6 +1,6 @@
-/* Links between a bar and the lattice around it, of beams by hand: forces of one bond against closed
-   forms, what a free body keeps, energies, the same bits for any number of threads and after stops,
-   the stable step, motion at the start, rest, and what is held where a link pulls. */
+/* Links between a bar and the lattice around it, of beams by hand: forces of one bond against
+   closed forms, what a free body keeps, energies, the same bits for any number of threads and after
+   stops, the stable step, motion at the start, rest, and what is held where a link pulls. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -492,8 +492,8 @@ static void only_links_that_share_particles_add_up(void **state) {
 
 /* --- at the start ----------------------------------------------------------------------------- */
 
-/* Links that are strained at the start pull from the first step on: the error is of the second order
-   in the step. */
+/* Links that are strained at the start pull from the first step on: the error is of the second
+   order in the step. */
 static void a_bar_that_begins_beside_its_place(void **state) {
   (void)state;
   enum { STEPS = 100, RUNS = 3 };
