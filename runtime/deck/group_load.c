@@ -393,12 +393,23 @@ static bool have_a_pair(const deck_contact *a, const deck_contact *b) {
   return same || a->lattice_count == 0 || b->lattice_count == 0;
 }
 
+/* Bars and links do not. */
+static bool some_lattice_touches(const deck *k) {
+  for (int n = 0; n < k->lattice_count; n++)
+    if (!deck_lattice_is_bar(&k->lattices[n]) && !deck_lattice_is_link(&k->lattices[n]))
+      return true;
+  return k->lattice_count == 0;
+}
+
 static void check_contact(deck_reader *r, const namelist_group *from, void *into) {
   deck_contact *item = into;
   const span where = deck_where(&item->item, "lattices");
   (void)from;
   const deck_item *other = other_of_name(r, item->name);
   deck_check_name(r, "lattice or contact", item->name, &item->item, other);
+  if (!some_lattice_touches(r->k))
+    diag_report(r->d, DIAG_CONFLICT, item->item.where,
+                "the deck has no lattice: bars touch nothing");
   if (item->lattice_count > 2)
     diag_report(r->d, DIAG_BAD_VALUE, where, "`lattices` takes one name or two, but %d are given",
                 item->lattice_count);
