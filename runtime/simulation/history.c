@@ -24,11 +24,45 @@ static const char *part_name(const history *h, int number) {
                          : h->contacts->items[number - bodies].from->name;
 }
 
-/* "energy/kinetic" in sum, "plate/kinetic" of a body. */
+static const ledger_term law_terms[HISTORY_LAW_TERMS] = {LEDGER_STORED, LEDGER_DISSIPATED_DAMAGE};
+
+static int laws_beside(const history *h) {
+  int count = 0;
+  for (int b = 0; b < h->monitors->body_count; b++)
+    count += h->monitors->bodies[b].law_count > 1 ? h->monitors->bodies[b].law_count - 1 : 0;
+  return count;
+}
+
+static const char *law_name(const history *h, int number) {
+  for (int b = 0;; b++) {
+    const run_body *of = &h->monitors->bodies[b];
+    const int beside = of->law_count > 1 ? of->law_count - 1 : 0;
+    if (number < beside) return of->laws[1 + number].from->name;
+    number -= beside;
+  }
+}
+
+/* Terms of the sum, of bodies and contacts; those of laws stand behind them. */
+static int whole_terms(const history *h) {
+  return (1 + parts_apart(h)) * LEDGER_COUNT;
+}
+
+static ledger_term term_of(const history *h, int energy) {
+  const int own = energy - whole_terms(h);
+  return own < 0 ? (ledger_term)(energy % LEDGER_COUNT) : law_terms[own % HISTORY_LAW_TERMS];
+}
+
+/* Whose energy it is; NULL: of all. */
+static const char *owner_of(const history *h, int energy) {
+  const int number = energy / LEDGER_COUNT - 1, own = energy - whole_terms(h);
+  if (own >= 0) return law_name(h, own / HISTORY_LAW_TERMS);
+  return number < 0 ? NULL : part_name(h, number);
+}
+
+/* "energy/kinetic" in sum, "plate/kinetic" of a body, "plate.core/stored" of a law in a part. */
 static char *energy_name(const history *h, int energy) {
-  const int number = energy / LEDGER_COUNT - 1;
-  const char *term = ledger_names[energy % LEDGER_COUNT];
-  const char *folder = number < 0 ? "energy" : part_name(h, number);
+  const char *owner = owner_of(h, energy), *term = ledger_names[term_of(h, energy)];
+  const char *folder = owner ? owner : "energy";
   term = strchr(term, '/') + 1;
   const size_t size = strlen(folder) + strlen(term) + 2;
   char *name = must_alloc(size);
@@ -39,7 +73,7 @@ static char *energy_name(const history *h, int energy) {
 history history_new(const monitors *m, const run_contacts *c, const relaxation *r, bool energies,
                     int64_t capacity) {
   history h = {.monitors = m, .contacts = c, .relaxation = r, .capacity = capacity};
-  h.energies = energies ? (1 + parts_apart(&h)) * LEDGER_COUNT : 0;
+  h.energies = energies ? whole_terms(&h) + laws_beside(&h) * HISTORY_LAW_TERMS : 0;
   h.series_count = m->count + h.energies + (r ? INCREMENT_SERIES : 0);
   h.time = must_calloc((size_t)capacity, sizeof *h.time);
   h.values = must_calloc((size_t)capacity * (size_t)h.series_count + 1, sizeof *h.values);
@@ -64,8 +98,12 @@ double *history_energies(const history *h) {
 }
 
 double *history_energies_of(const history *h, int number) {
-  const bool apart = h->energies > LEDGER_COUNT;
+  const bool apart = parts_apart(h) > 0;
   return h->energies ? history_energies(h) + (apart ? (1 + number) * LEDGER_COUNT : 0) : NULL;
+}
+
+double *history_energies_of_law(const history *h, int number) {
+  return h->energies ? history_energies(h) + whole_terms(h) + number * HISTORY_LAW_TERMS : NULL;
 }
 
 void history_add(history *h, int64_t sample, double time) {
@@ -91,13 +129,11 @@ char *history_words(const history *h, int k, arena *a) {
   const int energy = k - h->monitors->count, own = energy - h->energies;
   if (energy < 0) return monitor_words(h->monitors, k, a);
   if (own >= 0) return arena_printf(a, "%s", increment_words[own]);
-  const char *words = ledger_words[energy % LEDGER_COUNT];
-  const int number = energy / LEDGER_COUNT - 1;
-  return number < 0 ? arena_printf(a, "%s", words)
-                    : arena_printf(a, "%s, of `%s`", words, part_name(h, number));
+  const char *words = ledger_words[term_of(h, energy)], *owner = owner_of(h, energy);
+  return owner ? arena_printf(a, "%s, of `%s`", words, owner) : arena_printf(a, "%s", words);
 }
 
 int history_imbalance(const history *h, int number) {
   const int first = (1 + number) * LEDGER_COUNT;
-  return first < h->energies ? h->monitors->count + first + LEDGER_IMBALANCE : -1;
+  return first < whole_terms(h) && h->energies ? h->monitors->count + first + LEDGER_IMBALANCE : -1;
 }

@@ -9,7 +9,8 @@
 #include "runtime/simulation/run_contact.h"
 
 /* Series: the deck's monitors; the energy terms, in sum, then, of several bodies, those of each,
-   and of each contact; what an increment took. */
+   and of each contact, and of laws beside the first one of a body what they store and take; what an
+   increment took. */
 typedef struct history {
   const monitors *monitors;
   const run_contacts *contacts;
@@ -29,6 +30,10 @@ void history_free(history *h);
    contacts are counted on behind the bodies. NULL without. */
 double *history_energies(const history *h);
 double *history_energies_of(const history *h, int body);
+/* The same of a law beside the first one of its body, all of them counted through: what is stored
+   in its bonds, and what it takes by damage and states. */
+enum { HISTORY_LAW_STORED, HISTORY_LAW_TAKES, HISTORY_LAW_TERMS };
+double *history_energies_of_law(const history *h, int number);
 /* Sample number `sample` is what stands in `sampled`, and of the increment that has ended. */
 void history_add(history *h, int64_t sample, double time);
 

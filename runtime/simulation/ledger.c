@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/base/elementary.h"
+#include "runtime/interaction/family.h"
 
 const char *const ledger_names[LEDGER_COUNT] = {
 #define X(code, name, words) name,
@@ -50,6 +51,21 @@ static double imbalance(const ledger *g, const ledger_laws *of, const double *te
   if (of->unchecked) return NAN;
   return terms[LEDGER_EXTERNAL] - (held - g->initial) - terms[LEDGER_DISSIPATED_DAMAGE] -
          terms[LEDGER_DISSIPATED_DAMPING];
+}
+
+double ledger_stored_by(const sweep *law) {
+  double sum = 0;
+  for (int row = 0; row < law->lattice->row_count; row++)
+    sum += family_stored_in_row(law, row);
+  return law->law->stores ? sum : NAN;
+}
+
+double ledger_taken_by(const sweep *law) {
+  double sum = 0;
+  if (!law->lost_state) return law->law->field_count > 0 ? NAN : 0;
+  for (long q = 0; q < law->lattice->size; q++)
+    sum += law->dissipated_state[q] + law->lost_state[q];
+  return sum;
 }
 
 void ledger_sample_link(ledger *g, const ledger_laws *of, const body *state, double work,

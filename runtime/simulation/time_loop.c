@@ -42,6 +42,17 @@ static void add_up(const simulation *s) {
   }
 }
 
+/* Of laws beside the first one of a body. */
+static void sample_laws(simulation *s) {
+  int number = 0;
+  for (int b = 0; b < s->body_count; b++)
+    for (int n = 1; n < s->bodies[b].law_count; n++) {
+      double *terms = history_energies_of_law(&s->history, number++);
+      terms[HISTORY_LAW_STORED] = ledger_stored_by(s->bodies[b].laws[n].state);
+      terms[HISTORY_LAW_TAKES] = ledger_taken_by(s->bodies[b].laws[n].state);
+    }
+}
+
 /* Energies of the state observed; they tell of a run that has gone wrong. */
 static void sample_energies(simulation *s) {
   const bool last = run_clock_position(&s->clock) == run_clock_end(&s->clock);
@@ -63,6 +74,7 @@ static void sample_energies(simulation *s) {
       end_badly(s, "energy from nothing");
   }
   add_up(s);
+  sample_laws(s);
   const double *terms = history_energies(&s->history);
   if (last && !isfinite(terms[LEDGER_KINETIC] + terms[LEDGER_STORED]))
     end_badly(s, "energies that are not finite");

@@ -14,6 +14,7 @@
 #include "runtime/result/result_fields.h"
 #include "runtime/result/result_file.h"
 #include "runtime/result/result_read.h"
+#include "runtime/simulation/ledger.h"
 #include "tests/generator/command_tools.h"
 #include "tests/runtime/hand_over.h"
 #include "tests/verification/case.h"
@@ -102,8 +103,9 @@ static void two_copies_of_a_law_are_the_law(void **state) {
 
 /* --- whose a bond is -------------------------------------------------------------------------- */
 
-/* Each spring is stretched as it is soft: `softness` of those left, across and right. */
-static void check_row(const char *text, const double softness[3]) {
+/* Each spring is stretched as it is soft: `softness` of those left, across and right. `beside`: of
+   which of these are the laws beside the first one, 1 and 2; 0: there are no more. */
+static void check_row(const char *text, const double softness[3], const int beside[2]) {
   enum { LEFT = 10, PARTICLES = 20 };
   deck_case c;
   open_text(&c, text);
@@ -121,6 +123,14 @@ static void check_row(const char *text, const double softness[3]) {
     left = fmax(left, fabs(w->body->force[0][g->particle_site[p]]));
   print_message("%.1e of the force is left in a row of springs\n", left / borne);
   assert_true(borne > 0 && left < 1e-8 * borne); /* of strains of 1e-7 */
+  sweep_observe(w);
+  for (int k = 0; k < 2 && beside[k]; k++) { /* half the force times what they are stretched by */
+    const int bonds = beside[k] == 1 ? 1 : PARTICLES - LEFT - 1;
+    const double stored = 0.5 * borne * bonds * softness[beside[k]] * 1e-7 * g->spacing;
+    const sweep *beside_it = simulation_law_state(c.simulation, 1 + k);
+    assert_true(fabs(ledger_stored_by(beside_it) / stored - 1) < 1e-6 &&
+                ledger_stored_by(beside_it) > 0);
+  }
   deck_case_close(&c);
 }
 
@@ -131,9 +141,9 @@ static void a_bond_has_the_law_of_both_ends_or_none(void **state) {
   "&material lattice = 'l' region = 'right' model = 'mplm_bilinear' E = '30 GPa' S_t = 0.1 /\n"
 #define WEAK                                                                                       \
   "&material lattice = 'l' between = 'right', 'left' model = 'elastic_micropolar' E = '4 GPa' /\n"
-  check_row(ROW SOFT STIFF, (double[]){1, 1, 1.0 / 3});
-  check_row(ROW SOFT STIFF WEAK, (double[]){1, 2.5, 1.0 / 3});
-  check_row(ROW SOFT WEAK, (double[]){1, 2.5, 1});
+  check_row(ROW SOFT STIFF, (double[]){1, 1, 1.0 / 3}, (int[]){2, 0});
+  check_row(ROW SOFT STIFF WEAK, (double[]){1, 2.5, 1.0 / 3}, (int[]){2, 1});
+  check_row(ROW SOFT WEAK, (double[]){1, 2.5, 1}, (int[]){1, 0});
 }
 
 /* --- energy ----------------------------------------------------------------------------------- */
@@ -316,7 +326,8 @@ static void threads_and_a_resume_give_the_same_bits(void **state) {
                               "&monitor name = 'through' kind = 'force' at = 0, '15 mm' normal = " \
                               "1, 0 /\n"                                                           \
                               "&monitor name = 'all' kind = 'momentum' component = 'x' /\n"        \
-                              "&output frames = 4 fields = 'displacement', 'damage', 'stress' /\n"
+                              "&output frames = 4 losses = T fields = 'displacement', "            \
+                              "'damage', 'stress' /\n"
 
 static double last_of(result_file *f, const char *name) {
   char error[512], unit_text[32];
@@ -351,6 +362,9 @@ static void a_weak_plane_breaks(void **state) {
   assert_int_equal(broken, 13);
   assert_int_equal(last_of(f, "torn"), 13);
   assert_true(last_of(f, "way") > 25e-3);
+  const double taken = last_of(f, "l.a-b/dissipated_damage"); /* by the plane alone */
+  assert_true(taken > 0 && fabs(taken / last_of(f, "energy/dissipated_damage") - 1) < 1e-9);
+  assert_true(last_of(f, "l.a-b/stored") < last_of(f, "energy/stored"));
   free(omega);
   result_read_close(f);
   expect(w, "plot split.h5 --map damage -o split.png", 0, "written");
