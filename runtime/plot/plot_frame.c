@@ -34,6 +34,11 @@ static double bond_length(const plot_frame *m, long b) {
   return n == 2 ? plane : pl_hypot(plane, j[2] - i[2]);
 }
 
+/* Bonds of laws that know no damage, as of bars and links, lie among others and hide none. */
+static bool has_no_damage(const plot_frame *m, long b) {
+  return m->damage && isnan(m->damage[b]);
+}
+
 /* [particles] distance to the nearest bonded one, 0 without; to be freed. */
 static double *nearest_of(const plot_frame *m) {
   double *nearest = must_calloc((size_t)m->particles + 1, sizeof *nearest);
@@ -41,6 +46,7 @@ static double *nearest_of(const plot_frame *m) {
     for (int e = 0; e < 2; e++) {
       double *known = &nearest[m->pairs[2 * b + e]];
       const double length = bond_length(m, b);
+      if (has_no_damage(m, b)) continue;
       if (*known == 0 || length < *known) *known = length;
     }
   return nearest;
@@ -442,6 +448,7 @@ static bool has_crowded_bonds(const plot_frame *m) {
   bool crowded = false;
   for (long b = 0; b < m->bonds && !crowded; b++)
     crowded =
+        !has_no_damage(m, b) &&
         bond_length(m, b) > 1.5 * pl_fmax(nearest[m->pairs[2 * b]], nearest[m->pairs[2 * b + 1]]);
   free(nearest);
   return crowded;
