@@ -163,6 +163,24 @@ static void two_damages_have_two_colours_each(void **state) {
   expect(w, "plot two.h5 --map omega_t,omega_x", 1, "did you mean `omega_c`?");
 }
 
+/* A bar beside the sites, whose bonds and links are shorter than those of the lattice, hides none. */
+static void bars_hide_no_bonds(void **state) {
+  workplace *w = *state;
+  write_text(w, "bar.nml",
+             "&simulation end_time = '1 us' /\n"
+             "&lattice name = 'c' kind = 'hexagonal' spacing = '20 mm' thickness = '0.1 m' /\n"
+             "&material lattice = 'c' model = 'mplm_concrete' /\n"
+             "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.2, 0.1 /\n"
+             "&bar name = 'b' points = 0.011, 0.02, 0.19, 0.02 diameter = 0.01 spacing = '5 mm' /\n"
+             "&material bar = 'b' model = 'steel_bar' /\n"
+             "&link name = 'l' bar = 'b' lattice = 'c' /\n"
+             "&material link = 'l' model = 'bar_bond' /\n"
+             "&output result = 'bar.h5' frames = 1 fields = 'displacement', 'omega_t', 'omega_c' "
+             "/\n");
+  expect(w, "run bar.nml", 0, "bar.h5");
+  expect(w, "plot bar.h5 --map omega_t,omega_c -o bar.svg", 0, "written");
+}
+
 /* Marks of a picture, without that of the legend: by their colour. */
 static int marks_in(workplace *w, const char *mark) {
   size_t size;
@@ -194,8 +212,10 @@ int main(void) {
 #define IN_WORKPLACE(test)                                                                         \
   cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
       IN_WORKPLACE(frames_are_found_by_number_and_by_value),
-      IN_WORKPLACE(several_frames_in_one_picture), IN_WORKPLACE(mistakes_are_said),
+      IN_WORKPLACE(several_frames_in_one_picture),
+      IN_WORKPLACE(mistakes_are_said),
       IN_WORKPLACE(marks_stand_where_the_field_says),
-      IN_WORKPLACE(two_damages_have_two_colours_each)};
+      IN_WORKPLACE(two_damages_have_two_colours_each),
+      IN_WORKPLACE(bars_hide_no_bonds)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
