@@ -194,7 +194,10 @@ static bool suits_chain(const deck_material *m, const deck_lattice *l, const law
                   ? "the law `%s` reads whole families, but a %s has bonds along one line alone"
                   : "the law `%s` reads the thickness `t`, which a %s does not have",
               of->tree->name, word);
-  diag_hint(said, "take a law of bonds that reads `area`, such as `bar` or `beam`");
+  diag_hint(said,
+            deck_lattice_is_link(l)
+                ? "take a law that reads `area`, such as `bond_slip`, or a link `to = 'sites'`"
+                : "take a law of bonds that reads `area`, such as `bar` or `beam`");
   return false;
 }
 
@@ -218,7 +221,7 @@ static bool suits_section(const deck_material *m, const deck_lattice *l, const l
       "the law `%s` reads `area`, the cross-section of a bar, which chains and bars alone have",
       of->tree->name);
   diag_hint(said, deck_lattice_is_link(l)
-                      ? "take another law, such as `bar_bond`"
+                      ? "take another law, such as `bar_bond`, or a link `to = 'place'`"
                       : "give the lattice `kind = 'chain'` and an `area`, or take another law");
   return false;
 }
