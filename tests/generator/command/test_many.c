@@ -224,7 +224,7 @@ static void decks(void **state) {
       {"stops", "run --set output.result=%s.h5 %s", write_stops, 1200, 0},
       {"loads", "check %s", write_loads, 800, 0},
       {"drives", "check %s", write_drives, 1200, 1}, /* of one particle: most are refused */
-      {"lattices", "check %s", write_lattices, 800, 1},
+      {"lattices", "check %s", write_lattices, 200, 1},
       {"unknown groups", "check %s", write_unknown_groups, 2400, 1},
   };
   all_grow_so(*state, cases, sizeof cases / sizeof *cases);
