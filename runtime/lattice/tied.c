@@ -4,7 +4,6 @@
 #include <stdlib.h>
 
 #include "dsl/base/arena.h"
-#include "dsl/base/elementary.h"
 #include "runtime/lattice/near_particles.h"
 #include "runtime/lattice/scattered.h"
 
@@ -15,12 +14,13 @@ enum { SPACINGS = 3, NEAREST = 14, MOST_CORNERS = ROWS_MOST_COPIED };
 
 typedef struct tier {
   const deck_link *link;
+  const bar_line *line;
   const rows *bar, *body;
   near_particles near;
   rows_copy *copies; /* [2 count] of the bar, then of the place */
   double *at[3];     /* [2 count] m */
   point_pair *pairs; /* [count] */
-  long count, outside;
+  long count;
 } tier;
 
 /* --- cells ------------------------------------------------------------------------------------ */
@@ -136,16 +136,8 @@ static bool find_cell(tier *t, const double from[3], rows_copy *out) {
 
 /* --- the bar ---------------------------------------------------------------------------------- */
 
-static bool is_closed(const rows *bar) {
-  return bar->bond_count == bar->particle_count;
-}
-
-/* Particles before and after one, from which the bar's direction there is taken. */
-static void find_direction(const tier *t, int32_t particle, rows_copy *c, double tangent[3]) {
-  const int32_t last = (int32_t)t->bar->particle_count - 1;
-  const bool closed = is_closed(t->bar);
-  c->before = particle > 0 ? particle - 1 : closed ? last : 0;
-  c->after = particle < last ? particle + 1 : closed ? 0 : last;
+/* Of the bar, from the particle before to that after. */
+static void find_direction(const tier *t, const rows_copy *c, double tangent[3]) {
   double from[3], to[3], length = 0;
   rows_place(t->bar, t->bar->particle_site[c->before], from);
   rows_place(t->bar, t->bar->particle_site[c->after], to);
@@ -155,29 +147,17 @@ static void find_direction(const tier *t, int32_t particle, rows_copy *c, double
     tangent[a] = (to[a] - from[a]) / sqrt(length);
 }
 
-/* The length of bar that a bond stands for: half of the way to the next chosen ones, which at an
-   end there may be none of. */
-static double length_of(const tier *t, int32_t particle) {
-  const double half = 0.5 * t->link->every, last = (double)t->bar->particle_count - 1;
-  if (is_closed(t->bar)) return t->link->spacing;
-  return (pl_fmin(particle + half, last) - pl_fmax(particle - half, 0)) / t->link->every *
-         t->link->spacing;
-}
-
 static void tie(tier *t, int32_t particle) {
   rows_copy bar = {.lattice = t->link->of_bar, .count = 1, .particle = {particle}, .weight = {1}},
             place_of = {.lattice = t->link->of_around};
   double at[3], tangent[3];
   rows_place(t->bar, t->bar->particle_site[particle], at);
-  if (!find_cell(t, at, &place_of)) {
-    t->outside++;
-    return;
-  }
-  find_direction(t, particle, &bar, tangent);
+  if (!find_cell(t, at, &place_of)) return;
   place_of.at = bar.at = particle;
-  place_of.before = bar.before;
-  place_of.after = bar.after;
-  place_of.ahead = length_of(t, particle);
+  place_of.before = bar.before = bar_line_beside(t->line, particle, -1);
+  place_of.after = bar.after = bar_line_beside(t->line, particle, 1);
+  place_of.ahead = bar_line_share(t->line, particle);
+  find_direction(t, &bar, tangent);
   bar.along = place_of.along = true;
   const long n = 2 * t->count;
   t->copies[n] = bar;
@@ -210,32 +190,19 @@ static rows *rows_of(const tier *t) {
 
 static bool is_tied(const tier *t, diagnostics *d) {
   const deck_link *k = t->link;
-  if (t->count > 0 && t->outside > 0) {
-    diag_report(
-        d, DIAG_DECK_WARNING, deck_where(&k->item, "bar"),
-        "%ld of the bar's particles that the link `%s` chooses lie outside of `%s`, and are "
-        "not joined",
-        t->outside, k->name, k->around);
-    return true;
-  }
   if (t->count > 0) return true;
-  if (t->outside > 0) {
-    diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&k->item, "bar"),
-                "the link `%s` joins nothing: the bar `%s` lies outside of `%s`", k->name, k->bar,
-                k->around);
-    diag_hint(d, "compare the bar's `points` with the lattice's bodies and notches");
-  } else {
-    diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&k->item, "first"),
-                "the bar `%s` has %ld particles: there is none with the number %d", k->bar,
-                t->bar->particle_count, k->first);
-    diag_hint(d, "they are counted from 0");
-  }
+  diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&k->item, "bar"),
+              "the link `%s` joins nothing: the bar `%s` lies outside of `%s`", k->name, k->bar,
+              k->around);
+  diag_hint(d, "compare the bar's `points` with the lattice's bodies and notches");
   return false;
 }
 
-rows *tied_build(const deck_link *link, const rows *bar, const rows *body, diagnostics *d) {
+rows *tied_build(const deck_link *link, const bar_line *line, const rows *bar, const rows *body,
+                 diagnostics *d) {
   const size_t most = (size_t)bar->particle_count + 1;
   tier t = {.link = link,
+            .line = line,
             .bar = bar,
             .body = body,
             .near = near_particles_of(body, SPACINGS * body->spacing),
@@ -243,8 +210,8 @@ rows *tied_build(const deck_link *link, const rows *bar, const rows *body, diagn
             .pairs = must_calloc(most, sizeof(point_pair))};
   for (int a = 0; a < body->dimensions; a++)
     t.at[a] = must_calloc(2 * most, sizeof(double));
-  for (long p = link->first; p < bar->particle_count; p += link->every)
-    tie(&t, (int32_t)p);
+  for (int32_t p = 0; p < bar->particle_count; p++)
+    if (bar_line_chooses(line, p)) tie(&t, p);
   rows *w = is_tied(&t, d) ? rows_of(&t) : NULL;
   if (w)
     w->copies = t.copies;

@@ -47,8 +47,7 @@ static void build(tied_rows *b, const char *head, const char *bar, const char *l
     b->built[n] = lattice_build(b->text.deck, n, &b->text.said);
     rows_set_density(b->built[n], 2300);
   }
-  b->built[LINK] =
-      tied_build(&b->text.deck->lattices[LINK], b->built[BAR], b->built[BODY], &b->text.said);
+  b->built[LINK] = linked_build(b->text.deck, LINK, b->built, &b->text.said);
   if (b->built[LINK]) linked_take_masses(b->built[LINK], b->built);
 }
 
@@ -152,6 +151,12 @@ static void bonds_stand_for_all_of_the_bar(void **state) {
         "every = 2");
   assert_true(fabs(sum_of_lengths(b.built[LINK]) - 0.4) < 1e-14);
   end(&b);
+  build(&b, PLANE("hexagonal"),
+        "points = 0.05, 0.05, 0.05, 0.064, 0.084, 0.064, 0.084, 0.164 copies = 4 shift = 0.05, 0 "
+        "spacing = 0.01",
+        "every = 3 first = 1");
+  assert_true(fabs(sum_of_lengths(b.built[LINK]) - 4 * 0.148) < 1e-14);
+  end(&b);
 }
 
 static bool says(const tied_rows *b, const char *text) {
@@ -171,7 +176,8 @@ static void what_lies_outside_is_told(void **state) {
   tied_rows b;
   build(&b, PLANE("hexagonal"), "points = 0.3, 0.1, 0.5, 0.1 spacing = 0.01", "");
   assert_int_equal(b.built[LINK]->bond_count, 11);
-  assert_true(says(&b, "10 of the bar's particles that the link `l` chooses lie outside of `c`"));
+  assert_true(
+      says(&b, "10 of the 21 particles of the bar `b` that the link `l` chooses are not joined"));
   end(&b);
   build(&b, PLANE("hexagonal"), "points = 0.3, 0.5, 0.5, 0.5 spacing = 0.01", "");
   assert_null(b.built[LINK]);
