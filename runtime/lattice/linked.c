@@ -243,7 +243,7 @@ rows *linked_build(const deck *k, int lattice, rows *const *built, diagnostics *
   if (!l.bar || !l.body) return NULL; /* what is wrong with these has been said */
   l.line = bar_line_of(bar, link, l.bar);
   rows *w = !has_first(link, &l.line, bar, d) ? NULL
-            : link->to == LINK_TO_PLACE       ? tied_build(link, &l.line, l.bar, l.body, d)
+            : link->to == LINK_TO_PLACE       ? tied_build(k, link, &l.line, l.bar, l.body, d)
                                               : join_sites(&l, d);
   if (w) warn_of_missed(&l, w, d);
   linker_free(&l);

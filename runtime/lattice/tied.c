@@ -6,13 +6,17 @@
 #include "dsl/base/arena.h"
 #include "runtime/lattice/near_particles.h"
 #include "runtime/lattice/scattered.h"
+#include "runtime/particles/site_marks.h"
 
 /* How far outside of a cell a place may be by rounding, as a weight. */
 #define ROUNDING 1e-9
+/* A line of a cell that is no deeper in a notch is not cut, in spacings. */
+#define NOTCH_DEPTH 1e-6
 /* Sites that may be corners of the cell: the nearest ones within so many spacings. */
 enum { SPACINGS = 3, NEAREST = 14, MOST_CORNERS = ROWS_MOST_COPIED };
 
 typedef struct tier {
+  const deck *deck;
   const deck_link *link;
   const bar_line *line;
   const rows *bar, *body;
@@ -67,8 +71,11 @@ static bool weigh(int dimensions, double flat, const near_particle *const corner
   return true;
 }
 
-/* Of all cells of nearest sites that hold the place, that whose corners are the nearest. */
+/* Of all cells of nearest sites that hold the place and that no notch goes through, that whose
+   corners are the nearest. */
 typedef struct cell_search {
+  const tier *tier;
+  const double *place;
   int dimensions, count;
   double flat; /* m^2, m^3: cells that are no larger are none */
   const near_particle *nearest;
@@ -77,11 +84,32 @@ typedef struct cell_search {
   rows_copy *best;
 } cell_search;
 
+static bool is_cut(const cell_search *s, const double from[3], const double to[3]) {
+  const tier *t = s->tier;
+  return site_notch_between(t->deck, &t->deck->lattices[t->link->of_around], from, to,
+                            NOTCH_DEPTH * t->body->spacing);
+}
+
+/* Between corners that carry something, or between one of them and the place. */
+static bool is_cell_cut(const cell_search *s, const double weight[MOST_CORNERS]) {
+  double at[MOST_CORNERS][3];
+  for (int k = 0; k <= s->dimensions; k++) {
+    const rows *g = s->tier->body;
+    rows_place(g, g->particle_site[s->corner[k]->particle], at[k]);
+    if (weight[k] <= ROUNDING) continue;
+    if (is_cut(s, s->place, at[k])) return true;
+    for (int j = 0; j < k; j++)
+      if (weight[j] > ROUNDING && is_cut(s, at[j], at[k])) return true;
+  }
+  return false;
+}
+
 static void take_cell(cell_search *s) {
   double weight[MOST_CORNERS], sum = 0;
   for (int k = 0; k <= s->dimensions; k++)
     sum += s->corner[k]->square;
   if (!(sum < s->least) || !weigh(s->dimensions, s->flat, s->corner, weight)) return;
+  if (is_cell_cut(s, weight)) return;
   s->least = sum;
   s->best->count = 0;
   for (int k = 0; k <= s->dimensions; k++) {
@@ -120,10 +148,12 @@ static void make_weights_whole(rows_copy *c) {
     c->weight[k] /= sum;
 }
 
-static bool find_cell(tier *t, const double from[3], rows_copy *out) {
+static bool find_cell(tier *t, const double place_of[3], rows_copy *out) {
   const double edge = t->body->spacing;
-  cell_search s = {.dimensions = t->body->dimensions,
-                   .count = find_nearest(&t->near, from),
+  cell_search s = {.tier = t,
+                   .place = place_of,
+                   .dimensions = t->body->dimensions,
+                   .count = find_nearest(&t->near, place_of),
                    .flat = 1e-6 * (t->body->dimensions == 2 ? edge * edge : edge * edge * edge),
                    .nearest = t->near.found,
                    .least = INFINITY,
@@ -198,10 +228,11 @@ static bool is_tied(const tier *t, diagnostics *d) {
   return false;
 }
 
-rows *tied_build(const deck_link *link, const bar_line *line, const rows *bar, const rows *body,
-                 diagnostics *d) {
+rows *tied_build(const deck *k, const deck_link *link, const bar_line *line, const rows *bar,
+                 const rows *body, diagnostics *d) {
   const size_t most = (size_t)bar->particle_count + 1;
-  tier t = {.link = link,
+  tier t = {.deck = k,
+            .link = link,
             .line = line,
             .bar = bar,
             .body = body,
