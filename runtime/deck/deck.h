@@ -59,6 +59,8 @@ typedef struct deck_lattice {
   const double *points;
   int value_count; /* of all coordinates */
   bool closed;     /* the last corner is joined to the first */
+  int copies;      /* of this line, */
+  double shift[3]; /* m: each from the one before */
   double diameter; /* m; 0: the area is given */
   /* of a link: names and numbers of the bar and of the lattice around it */
   const char *bar, *around;
