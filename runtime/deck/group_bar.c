@@ -107,11 +107,28 @@ static void check_legs(deck_reader *r, const deck_bar *item, int dimensions) {
   }
 }
 
+/* A bar is longer than thick: mostly a unit is missing. */
+static void check_thickness(deck_reader *r, const namelist_group *from, const deck_bar *item,
+                            int dimensions) {
+  const polyline p = {dimensions, item->value_count / dimensions, item->points, item->closed};
+  const bool area = namelist_find(from, "area");
+  const double length = polyline_length(&p);
+  if (item->diameter < length) return;
+  diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, area ? "area" : "diameter"),
+              "the bar is %.6g mm thick, but only %.6g mm long", 1e3 * item->diameter,
+              1e3 * length);
+  diag_hint(r->d, area ? "a plain number is in m^2: `area = '113 mm^2'`"
+                       : "a plain number is in m: `diameter = '12 mm'`");
+}
+
 static void check_section(deck_reader *r, const namelist_group *from, deck_bar *item) {
   deck_refuse_both(r, from, "diameter", "area");
   if (item->diameter == 0 && item->area == 0)
     diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&bar` needs a `diameter` or an `area`");
-  if (item->area == 0) item->area = M_PI / 4 * item->diameter * item->diameter;
+  if (item->area == 0)
+    item->area = M_PI / 4 * item->diameter * item->diameter;
+  else
+    item->diameter = sqrt(item->area * 4 / M_PI);
 }
 
 static bool is_nowhere(const double shift[3], double spacing) {
@@ -150,7 +167,9 @@ static void check_bar(deck_reader *r, const namelist_group *from, void *into) {
   deck_check_lattice_name(r, item);
   if (!dimensions) return;
   deck_check_places(r, from, &deck_group_bar, dimensions);
-  if (has_corners(r, item, dimensions)) check_legs(r, item, dimensions);
+  if (!has_corners(r, item, dimensions)) return;
+  check_legs(r, item, dimensions);
+  check_thickness(r, from, item, dimensions);
 }
 
 DECK_MORE(bar, lattice, .identity = "name", .begin = begin_bar, .check = check_bar,
