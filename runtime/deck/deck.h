@@ -257,7 +257,10 @@ typedef enum monitor_kind {
   MONITOR_STRESS,           /* Pa */
   MONITOR_STRAIN,           /* 1 */
   MONITOR_APPLIED,          /* N, N m */
-  MONITOR_REACTIONS         /* N, `between`: half of the second's reaction less the first's */
+  MONITOR_BAR_FORCE,     /* N: along a bar, in the bond nearest to `at`, or the largest tension */
+  MONITOR_SLIP,          /* m: of a link to places, nearest to `at`, or the largest in size */
+  MONITOR_CONTACT_FORCE, /* N: of all contacts, on the region's or on all particles */
+  MONITOR_REACTIONS      /* N, `between`: half of the second's reaction less the first's */
 } monitor_kind;
 
 enum { MONITOR_KINETIC, MONITOR_STORED }; /* components of MONITOR_ENERGY */

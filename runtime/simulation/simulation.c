@@ -86,7 +86,7 @@ static void open_clock(simulation *s) {
 
 static bool open_monitors(simulation *s, diagnostics *d) {
   const deck *k = s->deck;
-  s->monitors = monitors_new(k, s->bodies, s->body_count,
+  s->monitors = monitors_new(k, s->bodies, s->body_count, s->links, s->link_count,
                              s->relaxation ? s->relaxation->interval : s->limit.step, d);
   if (!s->monitors) return false;
   s->history = history_new(s->monitors, &s->contacts, s->relaxation, k->output.energy,
