@@ -178,11 +178,12 @@ typedef struct deck_drive { /* prescribed motion: velocity or displacement; free
   time_function motion; /* m/s or m (rad/s, rad) */
 } deck_drive;
 
-typedef struct deck_force { /* total force on the region, shared equally by its particles */
+typedef struct deck_force { /* on the region, shared equally by its particles */
   deck_item item;
   const char *region;
   int component;       /* a rotation: moment in N*m */
-  time_function force; /* N */
+  bool per_length;     /* by the particles' parts of their row */
+  time_function force; /* N; per length N/m */
 } deck_force;
 
 typedef struct deck_end_moment { /* horizontal forces, linear in y over the region, without

@@ -64,6 +64,10 @@ typedef struct loads {
 loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, diagnostics *d);
 void loads_free(loads *l);
 
+/* The shares of the deck's force of that number in sum, of a load per length its length in m, and
+   on how many particles. */
+double loads_shares_of(const loads *l, int force, long *particles);
+
 /* A share of a force of the run's link of that number, which stands at `force` (N, N m) when it is
    known; the last one is to be followed by loads_links_added. */
 void loads_add_link(loads *l, int64_t site, int component, int link, double share,
