@@ -311,6 +311,14 @@ static void announce_lattice(const run *r, int lattice) {
       1e3 * w->height, depth);
 }
 
+/* "mass       0.2 kg on 3 particles of `tip`" */
+static void announce_point_mass(const run *r, int index) {
+  long particles;
+  const double mass = simulation_point_mass(r->simulation, index, &particles);
+  printf("  mass       %.6g kg on %ld particle%s of `%s`\n", mass, particles,
+         particles == 1 ? "" : "s", r->deck->point_masss[index].region);
+}
+
 static bool is_written(const deck_item *item, const char *key) {
   for (int k = 0; k < item->key_count; k++)
     if (strcasecmp(item->keys[k].name, key) == 0) return true;
@@ -371,6 +379,8 @@ void announce(const run *r) {
     announce_notches(r, k);
     announce_laws(r, k);
   }
+  for (int p = 0; p < r->deck->point_mass_count; p++)
+    announce_point_mass(r, p);
   for (int f = 0; f < r->deck->force_count; f++)
     if (r->deck->forces[f].per_length) announce_line_load(r, f);
   if (r->deck->relaxation.increments > 0)

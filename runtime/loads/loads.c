@@ -276,6 +276,38 @@ void loads_links_added(loads *l) {
     l->forces[i].holder = holder_of(l, &l->forces[i]);
 }
 
+/* --- point masses ----------------------------------------------------------------------------- */
+
+static void check_point_masses(const loads *l, const motions *m) {
+  const int turning = l->lattice->dimensions;
+  for (int i = 0; i < l->deck->point_mass_count; i++) {
+    const deck_point_mass *p = &l->deck->point_masss[i];
+    if (p->inertia > 0 && region_of(l, p->region))
+      has_component(m, turning, deck_where(&p->item, "inertia"));
+  }
+}
+
+static double mass_of_each(const deck_point_mass *p, const region_sites *at) {
+  return p->mass > 0 ? p->mass : p->total / (double)at->count;
+}
+
+void loads_point_masses(const loads *l, body *w) {
+  for (int i = 0; i < l->deck->point_mass_count; i++) {
+    const deck_point_mass *p = &l->deck->point_masss[i];
+    const region_sites *at = region_of(l, p->region);
+    for (long n = 0; at && n < at->count; n++)
+      body_add_mass(w, l->lattice->particle_site[at->particles[n]], mass_of_each(p, at),
+                    p->inertia);
+  }
+}
+
+double loads_point_mass_of(const loads *l, int index, long *particles) {
+  const deck_point_mass *p = &l->deck->point_masss[index];
+  const region_sites *at = region_of(l, p->region);
+  *particles = at ? at->count : 0;
+  return at ? mass_of_each(p, at) * (double)at->count : 0;
+}
+
 /* --- motion at the start ---------------------------------------------------------------------- */
 
 typedef struct initial_list { /* of one kind */
@@ -367,6 +399,7 @@ loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, 
   check_initials(l, &m, velocities_of(k));
   check_initials(l, &m, displacements_of(k));
   check_formulas(l, d);
+  check_point_masses(l, &m);
   protect(l, w);
   free(m.holder);
   if (d->errors == before) return l;

@@ -1,5 +1,6 @@
 /* This room: loads. What acts on a few particles from outside: supports, drives, forces, end
-   moments, collected from a deck; load_steps.h says what they do in a step. */
+   moments, collected from a deck; load_steps.h says what they do in a step. And the masses that
+   particles carry. */
 #ifndef PERILAT_RUNTIME_LOADS_H
 #define PERILAT_RUNTIME_LOADS_H
 
@@ -73,6 +74,12 @@ double loads_shares_of(const loads *l, int force, long *particles);
 void loads_add_link(loads *l, int64_t site, int component, int link, double share,
                     const double *force);
 void loads_links_added(loads *l);
+
+/* Puts the deck's point masses on the particles. */
+void loads_point_masses(const loads *l, body *w);
+/* kg: the deck's point mass of that number on all of its particles, and how many these are; 0 of
+   another lattice's. */
+double loads_point_mass_of(const loads *l, int index, long *particles);
 
 /* Displacements and velocities that regions begin with. False with diagnostics where a velocity is
    too large for a step. */
