@@ -221,6 +221,28 @@ double simulation_memory(const simulation *s) {
   return sum;
 }
 
+double simulation_loaded_length(const simulation *s, int force, long *particles) {
+  double sum = 0;
+  *particles = 0;
+  for (int b = 0; b < s->body_count; b++) {
+    long here;
+    sum += loads_shares_of(s->bodies[b].loads, force, &here);
+    *particles += here;
+  }
+  return sum;
+}
+
+double simulation_point_mass(const simulation *s, int index, long *particles) {
+  double sum = 0;
+  *particles = 0;
+  for (int b = 0; b < s->body_count; b++) {
+    long here;
+    sum += loads_point_mass_of(s->bodies[b].loads, index, &here);
+    *particles += here;
+  }
+  return sum;
+}
+
 const deck_stop *simulation_stopped_by(const simulation *s) {
   return s->clock.at.stop >= 0 ? &s->deck->stops[s->clock.at.stop] : NULL;
 }
