@@ -287,3 +287,11 @@ void run_link_step(run_link *link, int stage, int part, int parts) {
     add_work(link);
   }
 }
+
+double run_link_slip(const run_link *link, long particle) {
+  const link_copy *c = &link->copies[particle];
+  double slip = 0;
+  for (int a = 0; a < c->bar->dimensions; a++)
+    slip += c->along[a] * (c->way[a] - c->bar->displacement[a][c->at]);
+  return slip;
+}

@@ -52,4 +52,8 @@ void run_link_begin(run_link *link);
 enum { RUN_LINK_STAGES = 4 };
 void run_link_step(run_link *link, int stage, int part, int parts);
 
+/* m: how far the place that this particle of a link to places is a copy of has slid along the bar's
+   present tangent in the state whose forces are known. */
+double run_link_slip(const run_link *link, long particle);
+
 #endif
