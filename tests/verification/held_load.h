@@ -44,11 +44,11 @@ static inline double largest_in(const double *values, const double *time, long s
 
 /* Under the force `kN` held from `held`, s, on: the deflection of the second half of the hold is
    that of the first, within 5 %. */
-static inline bool bears(const char *deck_name, double kN, double held) {
+static inline bool bears_with(const char *deck_name, double kN, double held, const char *more) {
   deck_case c;
   char total[64];
   snprintf(total, sizeof total, "force.total=%.9g kN", kN);
-  run(&c, deck_name, total, NULL);
+  run(&c, deck_name, total, more);
   const double *time, *deflection = deck_case_series(&c, "deflection"),
                       *load = deck_case_series(&c, "load");
   const long samples = simulation_history(c.simulation, &time);
@@ -59,6 +59,10 @@ static inline bool bears(const char *deck_name, double kN, double held) {
   print_message("%s, %g kN: deflection %.4g, then %.4g m\n", deck_name, kN, first, second);
   deck_case_close(&c);
   return second <= 1.05 * first;
+}
+
+static inline bool bears(const char *deck_name, double kN, double held) {
+  return bears_with(deck_name, kN, held, NULL);
 }
 
 #endif
