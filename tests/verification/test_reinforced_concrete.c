@@ -57,7 +57,7 @@ static void one_bar(void **state) {
 static void carries(const char *deck_name, const char *more, const char *row, const char *form) {
   deck_case c;
   char figure[64];
-  run(&c, deck_name, more, NULL);
+  run(&c, deck_name, (const char *[]){"simulation.threads=1", more, NULL});
   const double *load = deck_case_series(&c, "load");
   const long samples = simulation_history(c.simulation, NULL);
   double most = 0;
@@ -86,7 +86,9 @@ static void pull_out(void **state) {
   deck_case c;
   char figures[128];
   double force[2];
-  run(&c, "pull_out", "simulation.end_time=20.6 ms", "simulation.step_safety=0.9");
+  run(&c, "pull_out",
+      (const char *[]){"simulation.threads=1", "simulation.end_time=20.6 ms",
+                       "simulation.step_safety=0.9", NULL});
   const double *load = deck_case_series(&c, "load"), *slip = deck_case_series(&c, "slip");
   for (int n = 0, k = 1; n < 2; n++) {
     while (slip[k] < at[n])
@@ -107,7 +109,9 @@ static void pull_out(void **state) {
 static void open_bonds_do_not_rub(void **state) {
   (void)state;
   deck_case c;
-  run(&c, "plain_beam", "force.total=-55.2 kN", "material.friction=stick_slip");
+  run(&c, "plain_beam",
+      (const char *[]){"simulation.threads=1", "force.total=-55.2 kN",
+                       "material.friction=stick_slip", NULL});
   const double *lost = deck_case_series(&c, "energy/dissipated_damage");
   const long samples = simulation_history(c.simulation, NULL);
   print_message("broken beam with friction: %.4g J lost, imbalance %.2g J\n", lost[samples - 1],

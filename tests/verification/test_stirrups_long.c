@@ -9,33 +9,55 @@
 
 #include "tests/verification/held_load.h"
 
+#define OFF_SITES "bar[bottom].points=-0.60 m, 20 mm, 0.60 m, 20 mm"
+#define DAMAGED   "material[concrete].damper=damaged"
+
+/* kN/m: a load that the beam bears, and the next one, which it does not. */
+static void strength(const char *deck_name, double borne, double not_borne, const char *more,
+                     const char *again) {
+  assert_true(bears_with(deck_name, -1.2 * borne, 10.85e-3, more, again));
+  assert_false(bears_with(deck_name, -1.2 * not_borne, 10.85e-3, more, again));
+}
+
 /* Reference: 42 to 46. */
 static void one_bar_off_sites(void **state) {
   (void)state;
-  static const char off[] = "bar.points=-0.60 m, 20 mm, 0.60 m, 20 mm";
-  assert_true(bears_with("one_bar", -54 * 1.2, 10.85e-3, off));
-  assert_false(bears_with("one_bar", -58 * 1.2, 10.85e-3, off));
+  strength("one_bar", 54, 58, OFF_SITES, NULL);
   page_says("With the one bar at y = 20 mm", "bears 54 kN/m and breaks at 58");
 }
 
 /* Reference: 65 to 70. */
 static void bending(void **state) {
   (void)state;
-  assert_true(bears("stirrups_bending", -72 * 1.2, 10.85e-3));
-  assert_false(bears("stirrups_bending", -76 * 1.2, 10.85e-3));
+  strength("stirrups_bending", 72, 76, NULL, NULL);
   page_says("| 5.5 stirrups, bending", "| 72, 76 kN/m |");
 }
 
 /* Reference: 250 to 270. */
 static void shear(void **state) {
   (void)state;
-  assert_true(bears("stirrups_shear", -300 * 1.2, 10.85e-3));
-  assert_false(bears("stirrups_shear", -320 * 1.2, 10.85e-3));
+  strength("stirrups_shear", 300, 320, NULL, NULL);
   page_says("| 5.6 stirrups, shear", "| 300, 320 kN/m |");
+}
+
+/* Where torn bonds do not hold back what parts: the reference, within a step of the loads. */
+static void without_dampers_of_torn_bonds(void **state) {
+  (void)state;
+  strength("plain_beam", 43, 44, DAMAGED, NULL);
+  page_says("| 5.3 plain beam", "| 43, 44 |");
+  strength("one_bar", 80, 82, DAMAGED, NULL);
+  page_says("| 5.4 one bar, on", "| 80, 82 |");
+  strength("one_bar", 44, 48, OFF_SITES, DAMAGED);
+  page_says("| 5.4 one bar, off", "| 44, 48 |");
+  strength("stirrups_bending", 68, 72, DAMAGED, NULL);
+  page_says("| 5.5 stirrups, bending", "| 68, 72 |");
+  strength("stirrups_shear", 260, 270, DAMAGED, NULL);
+  page_says("| 5.6 stirrups, shear", "| 260, 270 |");
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(one_bar_off_sites), cmocka_unit_test(bending),
-                                     cmocka_unit_test(shear)};
+                                     cmocka_unit_test(shear),
+                                     cmocka_unit_test(without_dampers_of_torn_bonds)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
