@@ -248,6 +248,14 @@ static void announce_placing(const run *r, int lattice) {
   }
 }
 
+/* "15 copies, each (80, 0) mm from the one before, " */
+static void announce_copies(const deck_bar *k, int dimensions) {
+  char text[ROWS_PLACE_TEXT];
+  if (k->copies > 1)
+    printf("%d copies, each %s from the one before, ", k->copies,
+           rows_place_text(dimensions, k->shift, text));
+}
+
 /* "bar        bottom: 58 particles, 57 bonds, 1.14 m long, spacing 20 mm, area 126.68 mm^2" */
 static void announce_bar(const run *r, int lattice) {
   const rows *w = simulation_rows(r->simulation, lattice);
@@ -261,9 +269,11 @@ static void announce_bar(const run *r, int lattice) {
     shortest = pl_fmin(shortest, part);
     longest = pl_fmax(longest, part);
   }
-  printf("  bar        %s: %s%ld particles, %ld bonds, %.6g mm long, area %.6g mm^2, spacing %.6g",
-         k->name, k->closed ? "closed, " : "", w->particle_count, w->bond_count,
-         1e3 * polyline_length(&p), 1e6 * k->area, 1e3 * shortest);
+  printf("  bar        %s: ", k->name);
+  announce_copies(k, w->dimensions);
+  printf("%s%ld particles, %ld bonds, %s%.6g mm long, area %.6g mm^2, spacing %.6g",
+         k->closed ? "closed, " : "", w->particle_count, w->bond_count,
+         k->copies > 1 ? "each " : "", 1e3 * polyline_length(&p), 1e6 * k->area, 1e3 * shortest);
   if (longest > shortest * (1 + POLYLINE_ROUNDING)) printf(" to %.6g", 1e3 * longest);
   fputs(" mm", stdout);
   if (pl_fmax(longest - k->spacing, k->spacing - shortest) > POLYLINE_ROUNDING * k->spacing)

@@ -59,7 +59,9 @@ typedef struct deck_lattice {
   const double *points;
   int value_count; /* of all coordinates */
   bool closed;     /* the last corner is joined to the first */
-  double diameter; /* m; 0: the area is given */
+  int copies;      /* of this line, */
+  double shift[3]; /* m: each from the one before */
+  double diameter; /* m; where the area is given, of the round one */
   /* of a link: names and numbers of the bar and of the lattice around it */
   const char *bar, *around;
   int of_bar, of_around;

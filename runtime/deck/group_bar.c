@@ -24,6 +24,18 @@ static const deck_key_info bar_keys[] = {
      .fallback = ".false.",
      DECK_AT(bar, closed),
      .doc = "the last corner is joined to the first, as of a stirrup"},
+    {.name = "copies",
+     .type = DECK_COUNT,
+     .fallback = "1",
+     .most = 1000000,
+     DECK_AT(bar, copies),
+     .doc = "how many such lines there are, which do not touch each other"},
+    {.name = "shift",
+     .type = DECK_PLACE,
+     .unit = "m",
+     .fallback = "= none; required with several `copies`",
+     DECK_AT(bar, shift),
+     .doc = "from each of the copies to the next"},
     {.name = "spacing",
      .type = DECK_REAL,
      .unit = "m",
@@ -95,11 +107,51 @@ static void check_legs(deck_reader *r, const deck_bar *item, int dimensions) {
   }
 }
 
+/* A bar is longer than thick: mostly a unit is missing. */
+static void check_thickness(deck_reader *r, const namelist_group *from, const deck_bar *item,
+                            int dimensions) {
+  const polyline p = {dimensions, item->value_count / dimensions, item->points, item->closed};
+  const bool area = namelist_find(from, "area");
+  const double length = polyline_length(&p);
+  if (item->diameter < length) return;
+  diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, area ? "area" : "diameter"),
+              "the bar is %.6g mm thick, but only %.6g mm long", 1e3 * item->diameter,
+              1e3 * length);
+  diag_hint(r->d, area ? "a plain number is in m^2: `area = '113 mm^2'`"
+                       : "a plain number is in m: `diameter = '12 mm'`");
+}
+
 static void check_section(deck_reader *r, const namelist_group *from, deck_bar *item) {
   deck_refuse_both(r, from, "diameter", "area");
   if (item->diameter == 0 && item->area == 0)
     diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&bar` needs a `diameter` or an `area`");
-  if (item->area == 0) item->area = M_PI / 4 * item->diameter * item->diameter;
+  if (item->area == 0)
+    item->area = M_PI / 4 * item->diameter * item->diameter;
+  else
+    item->diameter = sqrt(item->area * 4 / M_PI);
+}
+
+static bool is_nowhere(const double shift[3], double spacing) {
+  const double length = sqrt(shift[0] * shift[0] + shift[1] * shift[1] + shift[2] * shift[2]);
+  return length < POLYLINE_ROUNDING * spacing;
+}
+
+static void check_copies(deck_reader *r, const namelist_group *from, const deck_bar *item) {
+  const bool shift = namelist_find(from, "shift");
+  if (item->copies < 1) {
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "copies"),
+                "a bar has at least one copy: itself");
+  } else if (shift && !namelist_find(from, "copies")) {
+    diag_report(r->d, DIAG_MISSING_KEY, deck_where(&item->item, "shift"), "`shift` needs `copies`");
+    diag_hint(r->d, "copies: how many such lines there are, the first one included");
+  } else if (item->copies > 1 && !shift) {
+    diag_report(r->d, DIAG_MISSING_KEY, deck_where(&item->item, "copies"),
+                "several `copies` need a `shift`");
+    diag_hint(r->d, "shift: from each to the next, such as '80 mm', 0%s",
+              strcmp(item->setting, "space") == 0 ? ", 0" : "");
+  } else if (item->copies > 1 && is_nowhere(item->shift, item->spacing))
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "shift"),
+                "without a `shift` all %d copies are in the same place", item->copies);
 }
 
 static void begin_bar(void *item) {
@@ -111,13 +163,19 @@ static void check_bar(deck_reader *r, const namelist_group *from, void *into) {
   const int dimensions = bar_dimensions(r, item);
   item->setting = dimensions == 3 ? "space" : "plane_stress";
   check_section(r, from, item);
+  check_copies(r, from, item);
   deck_check_lattice_name(r, item);
-  if (dimensions && has_corners(r, item, dimensions)) check_legs(r, item, dimensions);
+  if (!dimensions) return;
+  deck_check_places(r, from, &deck_group_bar, dimensions);
+  if (!has_corners(r, item, dimensions)) return;
+  check_legs(r, item, dimensions);
+  check_thickness(r, from, item, dimensions);
 }
 
 DECK_MORE(bar, lattice, .identity = "name", .begin = begin_bar, .check = check_bar,
-          .doc = "A bar: particles along a line of straight legs, each joined to the next. It "
-                 "needs no `&body`; everywhere else it is named as a lattice is.");
+          .doc =
+              "A bar: particles along a line of straight legs, each joined to the next, or several "
+              "such lines. It needs no `&body`; everywhere else it is named as a lattice is.");
 
 /* --- links ------------------------------------------------------------------------------------ */
 
@@ -138,8 +196,9 @@ static const deck_key_info link_keys[] = {
      .fallback = "1",
      .most = 1000000,
      DECK_AT(link, every),
-     .doc = "of the bar's particles, counted from 0 along it, every one, every second, ... is "
-            "joined"},
+     .doc =
+         "of the particles of each of the bar's copies, counted from 0 along it, every one, every "
+         "second, ... is joined"},
     {.name = "first",
      .type = DECK_COUNT,
      .fallback = "0",

@@ -9,20 +9,26 @@
 #include "runtime/lattice/scattered.h"
 #include "runtime/particles/site_marks.h"
 
-typedef struct chain { /* particles in the order of the polyline */
-  int dimensions;
-  long count, bond_count;
-  double *at[3];     /* [count] m */
-  double *length;    /* [count] m that a particle stands for */
-  point_pair *bonds; /* [bond_count] */
+typedef struct chain { /* particles in the order of the polyline, copy after copy */
+  int dimensions, copies;
+  bool closed;
+  long each, count, bond_count; /* particles of a copy, of all */
+  double *at[3];                /* [count] m */
+  double *length;               /* [count] m that a particle stands for */
+  point_pair *bonds;            /* [bond_count] */
 } chain;
 
-static chain chain_new(int dimensions, long count, bool closed) {
-  chain c = {.dimensions = dimensions, .count = count, .bond_count = closed ? count : count - 1};
-  for (int a = 0; a < dimensions; a++)
-    c.at[a] = must_alloc((size_t)count * sizeof(double));
-  c.length = must_calloc((size_t)count, sizeof *c.length);
-  c.bonds = must_alloc((size_t)count * sizeof *c.bonds);
+static chain chain_new(const polyline *p, double spacing, int copies) {
+  chain c = {.dimensions = p->dimensions, .copies = copies, .closed = p->closed};
+  c.each = !p->closed;
+  for (int leg = 0; leg < polyline_legs(p); leg++)
+    c.each += polyline_parts(p, leg, spacing);
+  c.count = copies * c.each;
+  c.bond_count = c.count - !p->closed * copies;
+  for (int a = 0; a < c.dimensions; a++)
+    c.at[a] = must_alloc((size_t)c.count * sizeof(double));
+  c.length = must_calloc((size_t)c.count, sizeof *c.length);
+  c.bonds = must_alloc((size_t)c.count * sizeof *c.bonds);
   return c;
 }
 
@@ -35,7 +41,7 @@ static void chain_free(chain *c) {
 
 /* Half of it to either end. */
 static void join(chain *c, long bond, double length) {
-  const long next = (bond + 1) % c->count;
+  const long next = (bond + 1) % c->each;
   c->bonds[bond] = (point_pair){(int32_t)bond, (int32_t)next};
   c->length[bond] += length / 2;
   c->length[next] += length / 2;
@@ -53,21 +59,41 @@ static void fill_leg(chain *c, const polyline *p, int leg, long first, long part
   }
 }
 
-static chain chain_along(const polyline *p, double spacing) {
-  long parts = 0, first = 0;
-  for (int leg = 0; leg < polyline_legs(p); leg++)
-    parts += polyline_parts(p, leg, spacing);
-  chain c = chain_new(p->dimensions, parts + !p->closed, p->closed);
+/* The first of the copies. */
+static void fill(chain *c, const polyline *p, double spacing) {
+  long first = 0;
   for (int leg = 0; leg < polyline_legs(p); leg++) {
     const long of_leg = polyline_parts(p, leg, spacing);
-    fill_leg(&c, p, leg, first, of_leg);
+    fill_leg(c, p, leg, first, of_leg);
     first += of_leg;
   }
-  if (p->closed) return c;
-  for (int a = 0; a < c.dimensions; a++)
-    c.at[a][first] = p->at[(p->corners - 1) * p->dimensions + a];
-  c.length[0] *= 2;
-  c.length[first] *= 2;
+  if (p->closed) return;
+  for (int a = 0; a < c->dimensions; a++)
+    c->at[a][first] = p->at[(p->corners - 1) * p->dimensions + a];
+  c->length[0] *= 2;
+  c->length[first] *= 2;
+}
+
+/* From the first, which is whole. */
+static void repeat(chain *c, const double shift[3]) {
+  const long bonds = c->each - !c->closed;
+  for (int copy = 1; copy < c->copies; copy++) {
+    const long first = copy * c->each;
+    for (long k = 0; k < c->each; k++) {
+      for (int a = 0; a < c->dimensions; a++)
+        c->at[a][first + k] = c->at[a][k] + copy * shift[a];
+      c->length[first + k] = c->length[k];
+    }
+    for (long k = 0; k < bonds; k++)
+      c->bonds[copy * bonds + k] =
+          (point_pair){(int32_t)(first + c->bonds[k].i), (int32_t)(first + c->bonds[k].j)};
+  }
+}
+
+static chain chain_along(const polyline *p, double spacing, int copies, const double shift[3]) {
+  chain c = chain_new(p, spacing, copies);
+  fill(&c, p, spacing);
+  repeat(&c, shift);
   return c;
 }
 
@@ -89,26 +115,37 @@ static rows *rows_of(const chain *c, double area) {
   return w;
 }
 
+static bool is_crossed(const deck_bar *bar, const polyline *p, const deck_shape *notch) {
+  for (int copy = 0; copy < bar->copies; copy++)
+    for (int leg = 0; leg < polyline_legs(p); leg++) {
+      const double *from, *to, length = polyline_leg(p, leg, &from, &to);
+      double a[3], b[3];
+      for (int k = 0; k < p->dimensions; k++) {
+        a[k] = from[k] + copy * bar->shift[k];
+        b[k] = to[k] + copy * bar->shift[k];
+      }
+      if (shape_crossed(notch, a, b, 1e-9 * length)) return true;
+    }
+  return false;
+}
+
 /* Legs are whole: a notch, or a crack drawn as one, may be what the bar is to hold together. */
 static void warn_of_notches(const deck *k, const deck_bar *bar, const polyline *p, diagnostics *d) {
-  for (int n = 0; n < k->notch_count; n++)
-    for (int leg = 0; leg < polyline_legs(p) && k->notchs[n].cut_bonds; leg++) {
-      const double *from, *to, length = polyline_leg(p, leg, &from, &to);
-      if (!shape_crossed(&k->notchs[n].shape, from, to, 1e-9 * length)) continue;
-      diag_report(d, DIAG_DECK_WARNING, deck_where(&bar->item, "points"),
-                  "the bar `%s` crosses a notch, which does not cut it", bar->name);
-      diag_note(d, k->notchs[n].item.where, "the notch");
-      break;
-    }
+  for (int n = 0; n < k->notch_count; n++) {
+    if (!k->notchs[n].cut_bonds || !is_crossed(bar, p, &k->notchs[n].shape)) continue;
+    diag_report(d, DIAG_DECK_WARNING, deck_where(&bar->item, "points"),
+                "the bar `%s` crosses a notch, which does not cut it", bar->name);
+    diag_note(d, k->notchs[n].item.where, "the notch");
+  }
 }
 
 rows *bar_rows(const deck *k, int lattice, diagnostics *d) {
   const deck_bar *l = &k->lattices[lattice];
   const int dimensions = deck_lattice_dimensions(l);
   const polyline p = {dimensions, l->value_count / dimensions, l->points, l->closed};
+  if (site_too_many(l, l->copies * polyline_length(&p) / l->spacing, d)) return NULL;
   warn_of_notches(k, l, &p, d);
-  if (site_too_many(l, polyline_length(&p) / l->spacing, d)) return NULL;
-  chain c = chain_along(&p, l->spacing);
+  chain c = chain_along(&p, l->spacing, l->copies, l->shift);
   rows *w = rows_of(&c, l->area);
   if (!w)
     diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&l->item, "spacing"),
@@ -120,7 +157,7 @@ rows *bar_rows(const deck *k, int lattice, diagnostics *d) {
 rows *bar_rows_straight(const rows *like, int particles) {
   const double ends[6] = {[3] = like->spacing * (particles - 1)}, flat[4] = {[2] = ends[3]};
   const polyline p = {like->dimensions, 2, like->dimensions == 3 ? ends : flat, false};
-  chain c = chain_along(&p, like->spacing);
+  chain c = chain_along(&p, like->spacing, 1, NULL);
   rows *w = rows_of(&c, like->area);
   chain_free(&c);
   return w;

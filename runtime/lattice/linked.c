@@ -5,6 +5,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/lattice/bar_line.h"
 #include "runtime/lattice/near_particles.h"
 #include "runtime/lattice/scattered.h"
 #include "runtime/lattice/tied.h"
@@ -19,6 +20,7 @@ typedef struct linker {
   const deck *deck;
   const deck_lattice *link;
   const rows *bar, *body;
+  bar_line line;
   double reach;      /* m */
   int32_t *copied;   /* [particles of the body] number among the copies, or -1 */
   rows_copy *copies; /* [count] of the bar first */
@@ -77,6 +79,7 @@ static void join(linker *l, int32_t of_bar, near_particles *near) {
 }
 
 static void linker_free(linker *l) {
+  bar_line_end(&l->line);
   free(l->copied);
   free(l->copies);
   free(l->pairs);
@@ -90,8 +93,8 @@ static void find(linker *l) {
   l->shortest = INFINITY;
   for (long p = 0; p < l->body->particle_count; p++)
     l->copied[p] = -1;
-  for (long p = l->link->first; p < l->bar->particle_count; p += l->link->every)
-    join(l, (int32_t)p, &near);
+  for (int32_t p = 0; p < l->bar->particle_count; p++)
+    if (bar_line_chooses(&l->line, p)) join(l, p, &near);
   near_particles_end(&near);
 }
 
@@ -125,13 +128,6 @@ static rows *rows_of(const linker *l, long *crowded) {
 
 static bool has_pairs(const linker *l, diagnostics *d) {
   const deck_lattice *k = l->link;
-  if (k->first >= l->bar->particle_count) {
-    diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&k->item, "first"),
-                "the bar `%s` has %ld particles: there is none with the number %d", k->bar,
-                l->bar->particle_count, k->first);
-    diag_hint(d, "they are counted from 0");
-    return false;
-  }
   if (l->pair_count > 0) return true;
   if (l->cut > 0) {
     diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&k->item, "within"),
@@ -182,21 +178,88 @@ static bool is_crowded(const linker *l, diagnostics *d) {
   return true;
 }
 
+static bool has_first(const deck_link *link, const bar_line *line, const deck_bar *bar,
+                      diagnostics *d) {
+  if (link->first < line->each) return true;
+  diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&link->item, "first"),
+              "%sthe bar `%s` has %ld particles: there is none with the number %d",
+              bar->copies > 1 ? "each copy of " : "", link->bar, line->each, link->first);
+  diag_hint(d, "they are counted from 0");
+  return false;
+}
+
+/* A bar lies in a body, and is thinner than that. */
+static bool is_thinner(const linker *l, const deck_bar *bar, diagnostics *d) {
+  const rows *g = l->body;
+  double least = pl_fmin(g->width, g->height);
+  if (g->dimensions == 3) least = pl_fmin(least, g->depth);
+  least += g->spacing;
+  if (bar->diameter < least) return true;
+  diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&l->link->item, "bar"),
+              "the bar `%s` is %.4g mm thick, but `%s`, in which it lies, only %.4g mm", bar->name,
+              1e3 * bar->diameter, l->link->around, 1e3 * least);
+  diag_hint(d, "are the bar's `diameter` or `area` and the bodies in the units that they say?");
+  return false;
+}
+
+static void say_missed(const linker *l, long missed, long chosen, int32_t first, diagnostics *d) {
+  const int copies = l->deck->lattices[l->link->of_bar].copies;
+  char text[ROWS_PLACE_TEXT];
+  double at[3];
+  rows_place(l->bar, l->bar->particle_site[first], at);
+  rows_place_text(l->bar->dimensions, at, text);
+  diag_report(
+      d, DIAG_DECK_WARNING, deck_where(&l->link->item, "bar"),
+      "%ld of the %ld particles of the bar `%s` that the link `%s` chooses are not joined to "
+      "`%s`: they lie outside of it, or notches are between",
+      missed, chosen, l->link->bar, l->link->name, l->link->around);
+  if (copies > 1)
+    diag_hint(d, "the first is at %s, in copy %ld of %d", text, first / l->line.each + 1, copies);
+  else
+    diag_hint(d, "the first is at %s", text);
+}
+
+static void warn_of_missed(const linker *l, const rows *w, diagnostics *d) {
+  bool *joined = must_calloc((size_t)l->bar->particle_count + 1, sizeof *joined);
+  long missed = 0, chosen = 0;
+  int32_t first = 0;
+  for (long p = 0; p < w->particle_count; p++)
+    if (w->copies[p].lattice == l->link->of_bar) joined[w->copies[p].particle[0]] = true;
+  for (int32_t p = (int32_t)l->bar->particle_count - 1; p >= 0; p--) {
+    if (!bar_line_chooses(&l->line, p)) continue;
+    chosen++;
+    if (joined[p]) continue;
+    missed++;
+    first = p;
+  }
+  free(joined);
+  if (missed > 0) say_missed(l, missed, chosen, first, d);
+}
+
+static rows *join_sites(linker *l, diagnostics *d) {
+  long crowded;
+  l->reach = l->link->within * l->body->spacing * (1 + REACH_TOLERANCE);
+  find(l);
+  rows *w = has_pairs(l, d) && !is_crowded(l, d) ? rows_of(l, &crowded) : NULL;
+  if (w) {
+    warn_of_short(l, d);
+    warn_of_cut(l, d);
+    w->copies = l->copies;
+    l->copies = NULL;
+  }
+  return w;
+}
+
 rows *linked_build(const deck *k, int lattice, rows *const *built, diagnostics *d) {
-  const deck_lattice *link = &k->lattices[lattice];
+  const deck_link *link = &k->lattices[lattice];
+  const deck_bar *bar = &k->lattices[link->of_bar];
   linker l = {.deck = k, .link = link, .bar = built[link->of_bar], .body = built[link->of_around]};
   if (!l.bar || !l.body) return NULL; /* what is wrong with these has been said */
-  if (link->to == LINK_TO_PLACE) return tied_build(link, l.bar, l.body, d);
-  l.reach = link->within * l.body->spacing * (1 + REACH_TOLERANCE);
-  find(&l);
-  long crowded;
-  rows *w = has_pairs(&l, d) && !is_crowded(&l, d) ? rows_of(&l, &crowded) : NULL;
-  if (w) {
-    warn_of_short(&l, d);
-    warn_of_cut(&l, d);
-    w->copies = l.copies;
-    l.copies = NULL;
-  }
+  l.line = bar_line_of(bar, link, l.bar);
+  rows *w = !has_first(link, &l.line, bar, d) || !is_thinner(&l, bar, d) ? NULL
+            : link->to == LINK_TO_PLACE ? tied_build(k, link, &l.line, l.bar, l.body, d)
+                                        : join_sites(&l, d);
+  if (w) warn_of_missed(&l, w, d);
   linker_free(&l);
   return w;
 }

@@ -4,23 +4,27 @@
 #include <stdlib.h>
 
 #include "dsl/base/arena.h"
-#include "dsl/base/elementary.h"
 #include "runtime/lattice/near_particles.h"
 #include "runtime/lattice/scattered.h"
+#include "runtime/particles/site_marks.h"
 
 /* How far outside of a cell a place may be by rounding, as a weight. */
 #define ROUNDING 1e-9
+/* A line of a cell that is no deeper in a notch is not cut, in spacings. */
+#define NOTCH_DEPTH 1e-6
 /* Sites that may be corners of the cell: the nearest ones within so many spacings. */
 enum { SPACINGS = 3, NEAREST = 14, MOST_CORNERS = ROWS_MOST_COPIED };
 
 typedef struct tier {
+  const deck *deck;
   const deck_link *link;
+  const bar_line *line;
   const rows *bar, *body;
   near_particles near;
   rows_copy *copies; /* [2 count] of the bar, then of the place */
   double *at[3];     /* [2 count] m */
   point_pair *pairs; /* [count] */
-  long count, outside;
+  long count;
 } tier;
 
 /* --- cells ------------------------------------------------------------------------------------ */
@@ -67,8 +71,11 @@ static bool weigh(int dimensions, double flat, const near_particle *const corner
   return true;
 }
 
-/* Of all cells of nearest sites that hold the place, that whose corners are the nearest. */
+/* Of all cells of nearest sites that hold the place and that no notch goes through, that whose
+   corners are the nearest. */
 typedef struct cell_search {
+  const tier *tier;
+  const double *place;
   int dimensions, count;
   double flat; /* m^2, m^3: cells that are no larger are none */
   const near_particle *nearest;
@@ -77,11 +84,32 @@ typedef struct cell_search {
   rows_copy *best;
 } cell_search;
 
+static bool is_cut(const cell_search *s, const double from[3], const double to[3]) {
+  const tier *t = s->tier;
+  return site_notch_between(t->deck, &t->deck->lattices[t->link->of_around], from, to,
+                            NOTCH_DEPTH * t->body->spacing);
+}
+
+/* Between corners that carry something, or between one of them and the place. */
+static bool is_cell_cut(const cell_search *s, const double weight[MOST_CORNERS]) {
+  double at[MOST_CORNERS][3];
+  for (int k = 0; k <= s->dimensions; k++) {
+    const rows *g = s->tier->body;
+    rows_place(g, g->particle_site[s->corner[k]->particle], at[k]);
+    if (weight[k] <= ROUNDING) continue;
+    if (is_cut(s, s->place, at[k])) return true;
+    for (int j = 0; j < k; j++)
+      if (weight[j] > ROUNDING && is_cut(s, at[j], at[k])) return true;
+  }
+  return false;
+}
+
 static void take_cell(cell_search *s) {
   double weight[MOST_CORNERS], sum = 0;
   for (int k = 0; k <= s->dimensions; k++)
     sum += s->corner[k]->square;
   if (!(sum < s->least) || !weigh(s->dimensions, s->flat, s->corner, weight)) return;
+  if (is_cell_cut(s, weight)) return;
   s->least = sum;
   s->best->count = 0;
   for (int k = 0; k <= s->dimensions; k++) {
@@ -120,10 +148,12 @@ static void make_weights_whole(rows_copy *c) {
     c->weight[k] /= sum;
 }
 
-static bool find_cell(tier *t, const double from[3], rows_copy *out) {
+static bool find_cell(tier *t, const double place_of[3], rows_copy *out) {
   const double edge = t->body->spacing;
-  cell_search s = {.dimensions = t->body->dimensions,
-                   .count = find_nearest(&t->near, from),
+  cell_search s = {.tier = t,
+                   .place = place_of,
+                   .dimensions = t->body->dimensions,
+                   .count = find_nearest(&t->near, place_of),
                    .flat = 1e-6 * (t->body->dimensions == 2 ? edge * edge : edge * edge * edge),
                    .nearest = t->near.found,
                    .least = INFINITY,
@@ -136,16 +166,8 @@ static bool find_cell(tier *t, const double from[3], rows_copy *out) {
 
 /* --- the bar ---------------------------------------------------------------------------------- */
 
-static bool is_closed(const rows *bar) {
-  return bar->bond_count == bar->particle_count;
-}
-
-/* Particles before and after one, from which the bar's direction there is taken. */
-static void find_direction(const tier *t, int32_t particle, rows_copy *c, double tangent[3]) {
-  const int32_t last = (int32_t)t->bar->particle_count - 1;
-  const bool closed = is_closed(t->bar);
-  c->before = particle > 0 ? particle - 1 : closed ? last : 0;
-  c->after = particle < last ? particle + 1 : closed ? 0 : last;
+/* Of the bar, from the particle before to that after. */
+static void find_direction(const tier *t, const rows_copy *c, double tangent[3]) {
   double from[3], to[3], length = 0;
   rows_place(t->bar, t->bar->particle_site[c->before], from);
   rows_place(t->bar, t->bar->particle_site[c->after], to);
@@ -155,29 +177,17 @@ static void find_direction(const tier *t, int32_t particle, rows_copy *c, double
     tangent[a] = (to[a] - from[a]) / sqrt(length);
 }
 
-/* The length of bar that a bond stands for: half of the way to the next chosen ones, which at an
-   end there may be none of. */
-static double length_of(const tier *t, int32_t particle) {
-  const double half = 0.5 * t->link->every, last = (double)t->bar->particle_count - 1;
-  if (is_closed(t->bar)) return t->link->spacing;
-  return (pl_fmin(particle + half, last) - pl_fmax(particle - half, 0)) / t->link->every *
-         t->link->spacing;
-}
-
 static void tie(tier *t, int32_t particle) {
   rows_copy bar = {.lattice = t->link->of_bar, .count = 1, .particle = {particle}, .weight = {1}},
             place_of = {.lattice = t->link->of_around};
   double at[3], tangent[3];
   rows_place(t->bar, t->bar->particle_site[particle], at);
-  if (!find_cell(t, at, &place_of)) {
-    t->outside++;
-    return;
-  }
-  find_direction(t, particle, &bar, tangent);
+  if (!find_cell(t, at, &place_of)) return;
   place_of.at = bar.at = particle;
-  place_of.before = bar.before;
-  place_of.after = bar.after;
-  place_of.ahead = length_of(t, particle);
+  place_of.before = bar.before = bar_line_beside(t->line, particle, -1);
+  place_of.after = bar.after = bar_line_beside(t->line, particle, 1);
+  place_of.ahead = bar_line_share(t->line, particle);
+  find_direction(t, &bar, tangent);
   bar.along = place_of.along = true;
   const long n = 2 * t->count;
   t->copies[n] = bar;
@@ -210,32 +220,20 @@ static rows *rows_of(const tier *t) {
 
 static bool is_tied(const tier *t, diagnostics *d) {
   const deck_link *k = t->link;
-  if (t->count > 0 && t->outside > 0) {
-    diag_report(
-        d, DIAG_DECK_WARNING, deck_where(&k->item, "bar"),
-        "%ld of the bar's particles that the link `%s` chooses lie outside of `%s`, and are "
-        "not joined",
-        t->outside, k->name, k->around);
-    return true;
-  }
   if (t->count > 0) return true;
-  if (t->outside > 0) {
-    diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&k->item, "bar"),
-                "the link `%s` joins nothing: the bar `%s` lies outside of `%s`", k->name, k->bar,
-                k->around);
-    diag_hint(d, "compare the bar's `points` with the lattice's bodies and notches");
-  } else {
-    diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&k->item, "first"),
-                "the bar `%s` has %ld particles: there is none with the number %d", k->bar,
-                t->bar->particle_count, k->first);
-    diag_hint(d, "they are counted from 0");
-  }
+  diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&k->item, "bar"),
+              "the link `%s` joins nothing: the bar `%s` lies outside of `%s`", k->name, k->bar,
+              k->around);
+  diag_hint(d, "compare the bar's `points` with the lattice's bodies and notches");
   return false;
 }
 
-rows *tied_build(const deck_link *link, const rows *bar, const rows *body, diagnostics *d) {
+rows *tied_build(const deck *k, const deck_link *link, const bar_line *line, const rows *bar,
+                 const rows *body, diagnostics *d) {
   const size_t most = (size_t)bar->particle_count + 1;
-  tier t = {.link = link,
+  tier t = {.deck = k,
+            .link = link,
+            .line = line,
             .bar = bar,
             .body = body,
             .near = near_particles_of(body, SPACINGS * body->spacing),
@@ -243,8 +241,8 @@ rows *tied_build(const deck_link *link, const rows *bar, const rows *body, diagn
             .pairs = must_calloc(most, sizeof(point_pair))};
   for (int a = 0; a < body->dimensions; a++)
     t.at[a] = must_calloc(2 * most, sizeof(double));
-  for (long p = link->first; p < bar->particle_count; p += link->every)
-    tie(&t, (int32_t)p);
+  for (int32_t p = 0; p < bar->particle_count; p++)
+    if (bar_line_chooses(line, p)) tie(&t, p);
   rows *w = is_tied(&t, d) ? rows_of(&t) : NULL;
   if (w)
     w->copies = t.copies;

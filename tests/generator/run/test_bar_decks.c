@@ -41,7 +41,7 @@
   "&monitor name = 'load' kind = 'reaction' region = 'end' component = 'x' /\n"
 
 static void open_deck(deck_case *c, const char *text, int threads) {
-  char whole[4000];
+  char whole[8000];
   snprintf(whole, sizeof whole, text, threads);
   if (!deck_case_text(c, whole)) diag_print(&c->model.said, stderr);
   assert_non_null(c->simulation);
@@ -119,6 +119,111 @@ static void bars_do_not_act_on_what_they_touch(void **state) {
   deck_case_close(&bars);
 }
 
+static double last_of(const workplace *w, const char *name) {
+  result_file *f = open_result_of(w, "bars.h5");
+  char unit_text[64], error[1000];
+  long count;
+  double *values =
+      result_read_series(f, name, &count, unit_text, sizeof unit_text, error, sizeof error);
+  assert_non_null(values);
+  const double last = values[count - 1];
+  free(values);
+  result_read_close(f);
+  return last;
+}
+
+/* Stirrups that are struck and yield, joined to a plate that tears. */
+#define LEG(name, x, copies)                                                                       \
+  "&bar name = '" name "' points = '" x "', '13 mm', '" x                                          \
+  "', '85 mm' diameter = '8 mm' spacing = "                                                        \
+  "'10 mm' " copies " /\n&material bar = '" name "' model = 'steel_bar' H = '2 GPa' /\n"           \
+  "&link name = 'k" name "' bar = '" name "' lattice = 'plate' every = 2 first = 1 /\n"            \
+  "&material link = 'k" name "' model = 'bar_bond' /\n"                                            \
+  "&region name = 't" name "' lattice = '" name                                                    \
+  "' shape = 'rectangle' corner = 0, '80 mm' size = "                                              \
+  "1, 1 /\n&initial_velocity region = 't" name "' component = 'y' value = '40 m/s' /\n"
+#define COPIES LEG("s", "23 mm", "copies = 3 shift = '80 mm', 0")
+#define SINGLE LEG("a", "23 mm", "") LEG("b", "103 mm", "") LEG("c", "183 mm", "")
+enum { ALL = 1, LEGS = 3, EACH = 8 };
+
+static double far_apart(const body *a, long p, const body *b, long q) {
+  double most = 0;
+  for (int d = 0; d < a->dof; d++)
+    most = fmax(most, fabs(a->displacement[d][a->lattice->particle_site[p]] -
+                           b->displacement[d][b->lattice->particle_site[q]]));
+  return most;
+}
+
+/* A bar of copies moves as bars do that stand each by itself, and so does the plate. */
+static void copies_move_as_single_bars(void **state) {
+  (void)state;
+  deck_case copies, single;
+  double apart = 0;
+  open_deck(&copies, START PLATE COPIES, 1);
+  open_deck(&single, START PLATE SINGLE, 1);
+  assert_int_equal(deck_case_go(&copies), STEP_END);
+  assert_int_equal(deck_case_go(&single), STEP_END);
+  assert_true(most_of_field(&copies, 0) > 0.1 && most_of_field(&copies, ALL) > 1e-3);
+  const body *plate = simulation_state(copies.simulation, 0)->body,
+             *all = simulation_state(copies.simulation, ALL)->body;
+  assert_int_equal(all->lattice->particle_count, LEGS * EACH);
+  for (long p = 0; p < plate->lattice->particle_count; p++)
+    apart = fmax(apart, far_apart(plate, p, simulation_state(single.simulation, 0)->body, p));
+  for (int leg = 0; leg < LEGS; leg++)
+    for (long p = 0; p < EACH; p++)
+      apart = fmax(apart, far_apart(all, leg * EACH + p,
+                                    simulation_state(single.simulation, 1 + leg)->body, p));
+  print_message("%.1e m apart\n", apart);
+  assert_true(apart < 1e-12);
+  deck_case_close(&copies);
+  deck_case_close(&single);
+}
+
+static void copies_have_the_same_bits_whatever_the_threads(void **state) {
+  (void)state;
+  deck_case one, more, rest;
+  open_deck(&one, START PLATE COPIES, 1);
+  open_deck(&more, START PLATE COPIES, 3);
+  open_deck(&rest, START PLATE COPIES, 2);
+  assert_int_equal(deck_case_go(&one), STEP_END);
+  hand_over(more.simulation, simulation_step_count(one.simulation) / 3, rest.simulation);
+  assert_int_equal(deck_case_go(&rest), STEP_END);
+  for (int b = 0; b < 2; b++)
+    same_bodies(&one, b, &rest, b);
+  deck_case_close(&one);
+  deck_case_close(&more);
+  deck_case_close(&rest);
+}
+
+static void copies_stand_in_report_and_results(void **state) {
+  workplace *w = *state;
+  char text[4000];
+  snprintf(text, sizeof text,
+           START PLATE COPIES
+           "&monitor name = 'cut' kind = 'force' lattice = 's' at = 0, '51 mm' normal = 0, 1 "
+           "component = 'y' /\n&output result = 'bars.h5' frames = 2 fields = 'displacement', "
+           "'sigma' /\n",
+           1);
+  write_text(w, "copies.nml", text);
+  expect(w, "run copies.nml", 0,
+         "  bar        s: 3 copies, each (80, 0) mm from the one before, 24 particles, 21 bonds, "
+         "each 72 mm long, area 50.2655 mm^2, spacing 10.2857 mm");
+  assert_non_null(strstr(w->said, "  placing    of 24 particles of s 24 lie in plate"));
+  assert_non_null(strstr(w->said, " join 12 particles of s to "));
+  assert_true(last_of(w, "cut") != 0);
+  expect(w, "export bars.h5 --frame 2 --bonds --field s/sigma", 0, "");
+  expect(
+      w, "check copies.nml --set bar[s].copies=4", 0,
+      "4 of the 16 particles of the bar `s` that the link `ks` chooses are not joined to `plate`");
+  assert_non_null(strstr(w->said, "the first is at (263, 23.2857) mm, in copy 4 of 4"));
+  expect(w,
+         "check copies.nml --set link[ks].to=place --set material[ks].model=bond_slip --set "
+         "material[ks].f_cm=30",
+         1, "`f_cm` = 30 Pa is not in [1000000, inf), the range of the law `bond_slip`");
+  expect(w, "check copies.nml --set link[ks].first=8", 1,
+         "each copy of the bar `s` has 8 particles");
+}
+
 static void write_deck(workplace *w) {
   char text[4000];
   snprintf(text, sizeof text,
@@ -150,19 +255,6 @@ static void the_report_says_what_bars_are(void **state) {
          "the law `lps` reads whole families, but a bar has bonds along one line alone");
   expect(w, "check bars.nml --set bar[tie].spacing='1 nm'", 1,
          "the bar 'tie' has 2.2e+08 particles");
-}
-
-static double last_of(const workplace *w, const char *name) {
-  result_file *f = open_result_of(w, "bars.h5");
-  char unit_text[64], error[1000];
-  long count;
-  double *values =
-      result_read_series(f, name, &count, unit_text, sizeof unit_text, error, sizeof error);
-  assert_non_null(values);
-  const double last = values[count - 1];
-  free(values);
-  result_read_close(f);
-  return last;
 }
 
 /* Bonds with a number in a map, of those that are drawn. */
@@ -214,9 +306,13 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(threads_and_a_resume_give_the_same_bits),
       cmocka_unit_test(bars_do_not_act_on_what_they_touch),
+      cmocka_unit_test(copies_move_as_single_bars),
+      cmocka_unit_test(copies_have_the_same_bits_whatever_the_threads),
       cmocka_unit_test_setup_teardown(the_report_says_what_bars_are, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(results_and_pictures_hold_bars, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(copies_stand_in_report_and_results, set_up_workplace,
                                       tear_down_workplace),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -105,6 +105,8 @@ static const struct {
      "&monitor name = 'm' kind = 'tip' at = 3*0 direction = 2*1 above = 0.5 /"},
     {"about", "&monitor name = 'm' kind = 'angular_momentum' about = 3*0 /",
      "&monitor name = 'm' kind = 'angular_momentum' about = 2*0 component = 'z' /"},
+    {"shift", "&bar name = 'b' points = 4*0 spacing = 1 area = 1 copies = 2 shift = 3*1 /",
+     "&bar name = 'b' points = 6*0 spacing = 1 area = 1 copies = 2 shift = 2*1 /"},
     {"origin", NULL, NULL}, /* of the lattice itself */
 };
 

@@ -116,6 +116,47 @@ static void a_stirrup_is_closed(void **state) {
   built_end(&b);
 }
 
+/* Copy after copy, each as the line alone but for its place, and none joined to another. */
+static void copies_are_lines_of_their_own(void **state) {
+  (void)state;
+  static const struct {
+    const char *line, *shift;
+    double by[3];
+    int copies;
+  } bars[] = {
+      {"points = 0, 0, 0, 0.104, 0.2, 0.104 spacing = 0.01", "0.03, -0.01", {0.03, -0.01}, 4},
+      {"points = 0, 0, 0.2, 0, 0.2, 0.1, 0, 0.1 closed = T spacing = 0.02", "0.08, 0", {0.08}, 15},
+      {"points = 0, 0, 0, 0, 0.1, 0, 0, 0.1, 0.1 closed = T spacing = 0.013 setting = 'space'",
+       "0.05, 0, 0.002",
+       {0.05, 0, 0.002},
+       3}};
+  for (int n = 0; n < 3; n++) {
+    built_rows one, all;
+    char text[256];
+    build_bar(&one, bars[n].line);
+    snprintf(text, sizeof text, "%s copies = %d shift = %s", bars[n].line, bars[n].copies,
+             bars[n].shift);
+    build_bar(&all, text);
+    const rows *v = one.rows, *w = all.rows;
+    const int32_t each = (int32_t)v->particle_count;
+    assert_int_equal(w->particle_count, bars[n].copies * each);
+    assert_int_equal(w->bond_count, bars[n].copies * v->bond_count);
+    assert_true(fabs(w->spacing / v->spacing - 1) < 1e-13);
+    for (int32_t p = 0; p < w->particle_count; p++) {
+      const int32_t copy = p / each, same = p % each, next = (same + 1) % each;
+      double at[3];
+      rows_place(v, v->particle_site[same], at);
+      stands_at(w, p, at[0] + copy * bars[n].by[0], at[1] + copy * bars[n].by[1],
+                at[2] + copy * bars[n].by[2]);
+      assert_true(fabs(mass_of(w, p) / mass_of(v, same) - 1) < 1e-14);
+      assert_true(fabs(inertia_of(w, p) / inertia_of(v, same) - 1) < 1e-13);
+      assert_true(fabs(joined(w, p, copy * each + next) - joined(v, same, next)) < 1e-15);
+    }
+    built_end(&one);
+    built_end(&all);
+  }
+}
+
 /* Bars of a deck move where its lattices do; alone they say so. */
 static void bars_in_space(void **state) {
   (void)state;
@@ -128,8 +169,8 @@ static void bars_in_space(void **state) {
   assert_true(b.rows->stiffness_thickness == 0 && b.rows->area == area);
   built_end(&b);
   read_deck(&b, "&simulation end_time = 1 /\n"
-                "&bar name = 'b' area = 1 points = 6*0, 1, 1, 1 spacing = 0.1 /\n"
-                "&bar name = 'c' diameter = 2 points = 3*0, 1, 1, 1 spacing = 0.1 /\n"
+                "&bar name = 'b' area = 0.01 points = 6*0, 1, 1, 1 spacing = 0.1 /\n"
+                "&bar name = 'c' diameter = 0.2 points = 3*0, 1, 1, 1 spacing = 0.1 /\n"
                 "&lattice name = 'a' kind = 'cubic' spacing = 1 /\n"
                 "&body lattice = 'a' shape = 'sphere' centre = 3*0 radius = 2 /\n"
                 "&material lattice = 'a' model = 'lps' /\n&material bar = 'c' model = 'beam' /\n"
@@ -169,6 +210,7 @@ int main(void) {
       cmocka_unit_test(a_straight_bar),
       cmocka_unit_test(legs_are_divided_evenly),
       cmocka_unit_test(a_stirrup_is_closed),
+      cmocka_unit_test(copies_are_lines_of_their_own),
       cmocka_unit_test(bars_in_space),
       cmocka_unit_test(a_diameter_gives_the_area),
       cmocka_unit_test(a_straight_one_of_the_same_bar),

@@ -47,8 +47,7 @@ static void build(tied_rows *b, const char *head, const char *bar, const char *l
     b->built[n] = lattice_build(b->text.deck, n, &b->text.said);
     rows_set_density(b->built[n], 2300);
   }
-  b->built[LINK] =
-      tied_build(&b->text.deck->lattices[LINK], b->built[BAR], b->built[BODY], &b->text.said);
+  b->built[LINK] = linked_build(b->text.deck, LINK, b->built, &b->text.said);
   if (b->built[LINK]) linked_take_masses(b->built[LINK], b->built);
 }
 
@@ -152,6 +151,12 @@ static void bonds_stand_for_all_of_the_bar(void **state) {
         "every = 2");
   assert_true(fabs(sum_of_lengths(b.built[LINK]) - 0.4) < 1e-14);
   end(&b);
+  build(&b, PLANE("hexagonal"),
+        "points = 0.05, 0.05, 0.05, 0.064, 0.084, 0.064, 0.084, 0.164 copies = 4 shift = 0.05, 0 "
+        "spacing = 0.01",
+        "every = 3 first = 1");
+  assert_true(fabs(sum_of_lengths(b.built[LINK]) - 4 * 0.148) < 1e-14);
+  end(&b);
 }
 
 static bool says(const tied_rows *b, const char *text) {
@@ -171,7 +176,8 @@ static void what_lies_outside_is_told(void **state) {
   tied_rows b;
   build(&b, PLANE("hexagonal"), "points = 0.3, 0.1, 0.5, 0.1 spacing = 0.01", "");
   assert_int_equal(b.built[LINK]->bond_count, 11);
-  assert_true(says(&b, "10 of the bar's particles that the link `l` chooses lie outside of `c`"));
+  assert_true(
+      says(&b, "10 of the 21 particles of the bar `b` that the link `l` chooses are not joined"));
   end(&b);
   build(&b, PLANE("hexagonal"), "points = 0.3, 0.5, 0.5, 0.5 spacing = 0.01", "");
   assert_null(b.built[LINK]);
@@ -181,6 +187,43 @@ static void what_lies_outside_is_told(void **state) {
   assert_null(b.built[LINK]);
   assert_true(says(&b, "has 21 particles: there is none with the number 21"));
   end(&b);
+}
+
+/* A slit between two columns of sites, on both sides of which or on which itself the bar has
+   particles: no corner is behind it, and what it leaves without a cell is not joined. */
+#define SLIT(kind, x)                                                                              \
+  PLANE(kind) "&notch lattice = 'c' shape = 'segment' from = " x ", -1 to = " x ", 0.1 /\n"
+
+static void no_cell_reaches_through_a_notch(void **state) {
+  (void)state;
+  static const struct {
+    const char *head, *bar;
+    double x;
+    int missed;
+  } cases[] = {
+      {SLIT("square", "0.21"), "points = 0.1, 0.03, 0.32, 0.03 spacing = 0.005", 0.21, 3},
+      {SLIT("square", "0.21"), "points = 0.102, 0.03, 0.322, 0.03 spacing = 0.005", 0.21, 4},
+      {SLIT("hexagonal", "0.2051"), "points = 0.1, 0.03, 0.32, 0.045 spacing = 0.0044", 0.2051, 0},
+      {PLANE("hexagonal") "&notch lattice = 'c' shape = 'rectangle' corner = 0.15, 0 size = 0.07, "
+                          "0.1 /\n",
+       "points = 0.1, 0.05, 0.32, 0.05 spacing = 0.005", 0.18, 0}};
+  for (int n = 0; n < 4; n++) {
+    tied_rows b;
+    build(&b, cases[n].head, cases[n].bar, "");
+    const rows *w = b.built[LINK], *g = b.built[BODY];
+    const long missed = b.built[BAR]->particle_count - w->bond_count;
+    check_places(&b, 2 * spacing);
+    for (long p = 0; p < w->particle_count; p++) {
+      const rows_copy *c = &w->copies[p];
+      const double x = b.built[BAR]->x[b.built[BAR]->particle_site[c->at]];
+      for (int k = 0; k < c->count && c->lattice == BODY; k++)
+        assert_true((g->x[g->particle_site[c->particle[k]]] < cases[n].x) == (x < cases[n].x));
+    }
+    print_message("%ld not joined\n", missed);
+    assert_true(missed > 0 && (cases[n].missed == 0 || missed == cases[n].missed));
+    assert_true(says(&b, "they lie outside of it, or notches are between"));
+    end(&b);
+  }
 }
 
 /* However many places a site carries, together they are no heavier than it. */
@@ -217,6 +260,7 @@ int main(void) {
                                      cmocka_unit_test(corners_that_carry_nothing_are_none),
                                      cmocka_unit_test(bonds_stand_for_all_of_the_bar),
                                      cmocka_unit_test(what_lies_outside_is_told),
+                                     cmocka_unit_test(no_cell_reaches_through_a_notch),
                                      cmocka_unit_test(places_share_the_masses_of_their_sites)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
