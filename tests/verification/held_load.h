@@ -4,20 +4,12 @@
 #define PERILAT_TESTS_HELD_LOAD_H
 
 #include "tests/verification/case.h"
+#include "tests/verification/page.h"
 
 #define FOLDER "examples/reinforced_concrete/"
 /* A line of the page's table holds both texts. */
 static inline void page_says(const char *beginning, const char *figure) {
-  char error[512], line[512];
-  size_t length;
-  char *page =
-      read_text_file(SOURCE_DIR "/" FOLDER "README.md", 1 << 20, &length, error, sizeof error);
-  assert_non_null(page);
-  const char *row = strstr(page, beginning);
-  assert_non_null(row);
-  snprintf(line, sizeof line, "%.*s", (int)strcspn(row, "\n"), row);
-  if (!strstr(line, figure)) fail_msg("%s\nshould say %s", line, figure);
-  free(page);
+  page_line_says(FOLDER "README.md", beginning, figure);
 }
 
 /* A deck until its end, with overrides: a list that ends with NULL. */
