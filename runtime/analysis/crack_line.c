@@ -188,6 +188,11 @@ crack_line *crack_line_new(const body *of, const damage_law *laws, int law_count
   for (int a = 0; a < 3; a++)
     l->along[a] = (to[a] - from[a]) / length;
   take_bonds(l);
+  l->what = must_calloc((size_t)l->parts, sizeof *l->what);
+  l->opening = must_calloc((size_t)l->parts, sizeof *l->opening);
+  l->owner = must_calloc((size_t)l->parts, sizeof *l->owner);
+  l->away = must_calloc((size_t)l->parts, sizeof *l->away);
+  l->cracks = must_calloc((size_t)crack_line_most(l), sizeof *l->cracks);
   return l;
 }
 
@@ -198,6 +203,11 @@ void crack_line_free(crack_line *l) {
   free(l->first);
   free(l->bonds);
   free(l->cut);
+  free(l->what);
+  free(l->opening);
+  free(l->owner);
+  free(l->away);
+  free(l->cracks);
   free(l);
 }
 
@@ -248,75 +258,99 @@ static double stretch_of(const crack_line *l, const line_bond *b) {
   return sqrt(square) / b->length - 1;
 }
 
-/* How far a part opens, m; false where no crack crosses it. */
-static bool opens(const crack_line *l, long part, const double now[3], double *opening) {
-  double elastic = 0, start[3], end[3];
-  bool cracked = l->cut[part];
+/* How far a part opens, m, and whether it is the middle of a crack. */
+static double open_part(const crack_line *l, long part, const double now[3], line_part *what) {
+  double elastic = 0, opening = -l->part, most = l->cut[part] ? 1 : 0, start[3], end[3];
   for (long b = l->first[part]; b < l->first[part + 1]; b++) {
     const line_bond *at = &l->bonds[b];
     const double damage = damage_between(l, at), stretch = stretch_of(l, at);
-    cracked = cracked || damage > l->above;
+    most = pl_fmax(most, damage);
     elastic += at->share * (stretch > 0 ? (1 - damage) * stretch : stretch);
   }
-  if (!cracked) return false;
+  *what = most > l->above ? PART_CORE : most > 0 ? PART_DAMAGED : PART_WHOLE;
+  if (*what == PART_WHOLE) return 0;
   way_of(l, part, start);
   way_of(l, part + 1, end);
-  *opening = -l->part * (1 + elastic);
   for (int a = 0; a < 3; a++)
-    *opening += now[a] * (l->along[a] * l->part + end[a] - start[a]);
-  return true;
+    opening += now[a] * (l->along[a] * l->part + end[a] - start[a]);
+  return opening - l->part * elastic;
 }
 
-/* Of neighbouring parts: the sum of their openings, where the middle of these is. */
-static crack crack_of(const crack_line *l, long from, long to, double sum, double moment) {
-  const double middle = 0.5 * (double)(from + to) * l->part;
-  return (crack){sum > 0
-                     ? pl_fmin(pl_fmax(moment / sum, (double)from * l->part), (double)to * l->part)
-                     : middle,
-                 pl_fmax(sum, 0)};
+/* Numbers of the cracks whose cores parts are; damaged ones behind them are theirs, too. Returns
+   how many. */
+static long own_forward(crack_line *l) {
+  long count = 0, core = -1; /* the last one with nothing whole behind it */
+  for (long n = 0; n < l->parts; n++) {
+    l->owner[n] = -1;
+    if (l->what[n] == PART_WHOLE) core = -1;
+    if (l->what[n] == PART_CORE) {
+      count += n == 0 || l->what[n - 1] != PART_CORE;
+      core = n;
+    }
+    if (core < 0) continue;
+    l->owner[n] = count - 1;
+    l->away[n] = n - core;
+  }
+  return count;
+}
+
+/* Those nearer to the next core are that one's. */
+static void own_backward(crack_line *l) {
+  long core = -1;
+  for (long n = l->parts - 1; n >= 0; n--) {
+    if (l->what[n] == PART_WHOLE) core = -1;
+    if (l->what[n] == PART_CORE) core = n;
+    if (core >= 0 && (l->owner[n] < 0 || core - n < l->away[n])) l->owner[n] = l->owner[core];
+  }
+}
+
+/* Sums of openings and of their moments about the beginning of the line. */
+static void add_parts(const crack_line *l, crack *cracks) {
+  for (long n = 0; n < l->parts; n++) {
+    if (l->owner[n] < 0) continue;
+    const double opening = pl_fmax(l->opening[n], 0);
+    cracks[l->owner[n]].place += opening * ((double)n + 0.5) * l->part;
+    cracks[l->owner[n]].width += l->opening[n];
+    cracks[l->owner[n]].weight += opening;
+  }
+}
+
+/* Where nothing opens a crack is in the middle of its core. */
+static double middle_of(const crack_line *l, long number) {
+  long first = 0, last;
+  while (l->owner[first] != number || l->what[first] != PART_CORE)
+    first++;
+  for (last = first; last + 1 < l->parts && l->what[last + 1] == PART_CORE; last++)
+    ;
+  return 0.5 * (double)(first + last + 1) * l->part;
+}
+
+const crack *crack_line_find(crack_line *l, long *count) {
+  double now[3];
+  find_direction(l, now);
+  for (long n = 0; n < l->parts; n++)
+    l->opening[n] = open_part(l, n, now, &l->what[n]);
+  *count = own_forward(l);
+  own_backward(l);
+  memset(l->cracks, 0, (size_t)*count * sizeof *l->cracks);
+  add_parts(l, l->cracks);
+  for (long k = 0; k < *count; k++) {
+    crack *c = &l->cracks[k];
+    c->place = c->weight > 0 ? c->place / c->weight : middle_of(l, k);
+    c->width = pl_fmax(c->width, 0);
+  }
+  return l->cracks;
+}
+
+double crack_line_widest(crack_line *l) {
+  long count;
+  double widest = 0;
+  const crack *cracks = crack_line_find(l, &count);
+  for (long k = 0; k < count; k++)
+    widest = pl_fmax(widest, cracks[k].width);
+  return widest;
 }
 
 long crack_line_most(const crack_line *l) {
   return (l->parts + 1) / 2;
-}
-
-typedef struct crack_list {
-  crack *cracks; /* may be NULL */
-  long count;
-  double widest;
-} crack_list;
-
-static void add_crack(crack_list *to, crack found) {
-  if (to->cracks) to->cracks[to->count] = found;
-  to->count++;
-  to->widest = pl_fmax(to->widest, found.width);
-}
-
-static crack_list find_cracks(const crack_line *l, crack *cracks) {
-  crack_list found = {.cracks = cracks};
-  double now[3], opening = 0, sum = 0, moment = 0;
-  long from = -1;
-  find_direction(l, now);
-  for (long part = 0; part <= l->parts; part++) {
-    if (part < l->parts && opens(l, part, now, &opening)) {
-      if (from < 0) {
-        from = part;
-        sum = moment = 0;
-      }
-      sum += opening;
-      moment += ((double)part + 0.5) * l->part * opening;
-    } else if (from >= 0) {
-      add_crack(&found, crack_of(l, from, part, sum, moment));
-      from = -1;
-    }
-  }
-  return found;
-}
-
-long crack_line_find(const crack_line *l, crack *cracks) {
-  return find_cracks(l, cracks).count;
-}
-
-double crack_line_widest(const crack_line *l) {
-  return find_cracks(l, NULL).widest;
 }

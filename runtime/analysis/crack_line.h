@@ -11,9 +11,12 @@
    best, along the line, times the length, is taken off. (That is exact for each cell whose bonds
    fix all strains, where the force of a damaged bond is (1 - D) of an intact one's.)
 
-   Parts with a bond of more damage than `above` beside them, or with a cut through the cell, belong
-   to a crack, and neighbouring ones to one crack; elsewhere nothing opens. Where rigid pieces part
-   the width is their way along the line, to rounding; around a crack of a strained body the strain over a cell comes on top. */
+   The core of a crack are neighbouring parts with a bond of more damage than `above` beside them, or
+   a cut through the cell. What opens around it belongs to it as far as bonds are damaged at all, or
+   half of the way to the next core. Where all is whole, or damaged without a core, nothing opens.
+
+   Where rigid pieces part the width is their way along the line, to rounding; around a crack of a
+   strained body the strain over a cell comes on top. */
 #ifndef PERILAT_RUNTIME_CRACK_LINE_H
 #define PERILAT_RUNTIME_CRACK_LINE_H
 
@@ -21,6 +24,7 @@
 
 typedef struct crack {
   double place, width; /* m: along the line from its beginning, in the reference state; opening */
+  double weight;       /* m: of the parts that open, by which the place is their mean */
 } crack;
 
 typedef struct line_station { /* moves as these sites' weighted mean */
@@ -35,6 +39,8 @@ typedef struct line_bond {
   double length, share; /* m; of its elastic stretch in the strain along the line */
 } line_bond;
 
+typedef enum line_part { PART_WHOLE, PART_DAMAGED, PART_CORE } line_part;
+
 typedef struct crack_line {
   const body *of;
   damage_law *laws; /* [law_count] */
@@ -45,6 +51,11 @@ typedef struct crack_line {
   long *first;      /* [parts + 1] of the bonds of a part; in `bonds`, one part after the other */
   line_bond *bonds; /* of all parts */
   bool *cut;        /* [parts] some bond was cut away */
+  /* in the state looked at last */
+  line_part *what;    /* [parts] */
+  double *opening;    /* [parts] m */
+  long *owner, *away; /* [parts] crack that it belongs to, or -1; parts from its core */
+  crack *cracks;      /* as many as there can be */
 } crack_line;
 
 /* Between two places; laws of damage are all at work on the body. NULL where some of it lies outside
@@ -55,10 +66,9 @@ crack_line *crack_line_new(const body *of, const damage_law *laws, int law_count
 void crack_line_free(crack_line *l);
 /* As many as there can be. */
 long crack_line_most(const crack_line *l);
-/* Cracks of the state observed from the line's beginning on; returns how many. cracks[most] may be
-   NULL. */
-long crack_line_find(const crack_line *l, crack *cracks);
+/* Cracks of the state observed, *count of them, from the line's beginning on; the line's own. */
+const crack *crack_line_find(crack_line *l, long *count);
 /* Width of the widest, m; 0 without. */
-double crack_line_widest(const crack_line *l);
+double crack_line_widest(crack_line *l);
 
 #endif

@@ -281,7 +281,7 @@ double watched_value(const watched_part *w, const watch_instant *at) {
   }
 }
 
-const crack_line *watched_line(const watched_part *w) {
+crack_line *watched_line(const watched_part *w) {
   return w ? w->line : NULL;
 }
 

@@ -36,7 +36,7 @@ double watched_value(const watched_part *w, const watch_instant *at);
 /* Of an acceleration: the mean velocity half a step before, m/s. */
 double watched_velocity(const watched_part *w);
 /* The line across which cracks are measured; NULL of other kinds. */
-const crack_line *watched_line(const watched_part *w);
+crack_line *watched_line(const watched_part *w);
 /* "stress xx of `middle`" */
 char *watched_words(const watched_part *w, arena *a);
 

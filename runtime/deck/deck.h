@@ -285,7 +285,7 @@ typedef struct deck_monitor {
   double about[3];                /* m */
   double average; /* s: mean over this time before each sample; 0: value at the sample */
   double zero_at; /* s: the value then is subtracted; negative: never */
-  double above;   /* DAMAGED: default 0; BROKEN: default 1; CRACK_WIDTH: default 0.5 */
+  double above;   /* DAMAGED: default 0; BROKEN: default 1; CRACK_WIDTH: default 0.99 */
   double scale;   /* factor on the value; default 1 (-1: downward load positive) */
 } deck_monitor;
 

@@ -106,7 +106,7 @@ static const deck_key_info monitor_keys[] = {
      .type = DECK_REAL,
      .unit = "1",
      .bound = BOUND_NOT_NEGATIVE,
-     .fallback = "= 0; broken: 1; crack_width: 0.5; required of a tip",
+     .fallback = "= 0; broken: 1; crack_width: 0.99; required of a tip",
      DECK_AT(monitor, above),
      .doc = "damaged: bonds with more damage than this are counted (particles, where the law's "
             "damage stands on these alone); broken: those with at least this damage, e.g. 0.999 "
@@ -283,7 +283,7 @@ static void check_broken(deck_reader *r, const namelist_group *from, deck_monito
 static bool check_line(deck_reader *r, const namelist_group *from, deck_monitor *item) {
   double way[3];
   if (!is_kind(item, OF_WIDTH)) return true;
-  if (!namelist_find(from, "above")) item->above = 0.5;
+  if (!namelist_find(from, "above")) item->above = 0.99;
   if (item->above >= 1)
     diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "above"),
                 "`above` of a crack must be less than 1: no damage is more");

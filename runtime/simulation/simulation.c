@@ -96,7 +96,7 @@ static bool open_monitors(simulation *s, diagnostics *d) {
 
 static bool open_frames(simulation *s, diagnostics *d) {
   const frame_field *fields;
-  s->frames = frames_new(&s->deck->output, s->bodies, s->body_count, &s->clock);
+  s->frames = frames_new(&s->deck->output, s->bodies, s->body_count, s->monitors, &s->clock);
   const int count = frames_fields(s->frames, &fields);
   return law_fits_result(s->deck, s->bodies, fields, count, d);
 }
