@@ -10,7 +10,7 @@
 #include "generator/kernel/model.h"
 #include "generator/results/compare_curve.h"
 #include "generator/results/compare_results.h"
-#include "runtime/deck/text_table.h"
+#include "runtime/base/text_table.h"
 
 enum { SAME = 0, WRONG = 1 }; /* as the comparisons have it; 2: different */
 static const char program[] = "perilat compare";

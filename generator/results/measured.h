@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-#include "runtime/deck/text_table.h"
+#include "runtime/base/text_table.h"
 
 /* The two histories that a curve is drawn over. */
 typedef struct measured_axes {

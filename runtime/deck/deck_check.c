@@ -7,6 +7,7 @@
 #include "dsl/base/arena.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/lattice_kind.h"
+#include "runtime/deck/output_fields.h"
 
 /* --- names ------------------------------------------------------------------------------------ */
 
@@ -104,6 +105,25 @@ bool deck_is_one_of(const char *name, const char *const *words, int count) {
   for (int i = 0; i < count; i++)
     if (strcmp(words[i], name) == 0) return true;
   return false;
+}
+
+void deck_check_lattice_name(deck_reader *r, const deck_lattice *item) {
+#define X(name, unit, components, exists, kind, words) #name,
+  static const char *const taken[] = {"time", ".", OUTPUT_FIELDS(X)};
+#undef X
+  const char *word = deck_lattice_word(item);
+  const span where = deck_where(&item->item, "name");
+  if (deck_is_one_of(item->name, taken, (int)(sizeof taken / sizeof *taken)) ||
+      output_is_component(item->name, 3))
+    diag_report(r->d, DIAG_RESERVED_NAME, where,
+                "a %s cannot be called `%s`: the result has a field of that name", word,
+                item->name);
+  else if (strchr(item->name, '/'))
+    diag_report(r->d, DIAG_BAD_VALUE, where, "a %s's name must not hold `/`", word);
+  const int first = deck_find_lattice(r->k, item->name);
+  const deck_lattice *other = first < 0 ? NULL : &r->k->lattices[first];
+  deck_check_name(r, other ? deck_lattice_word(other) : word, item->name, &item->item,
+                  other ? &other->item : NULL);
 }
 
 void deck_refuse_both(deck_reader *r, const namelist_group *from, const char *a, const char *b) {

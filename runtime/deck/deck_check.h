@@ -37,6 +37,8 @@ bool deck_moving_region_known(deck_reader *r, const deck_item *item, const char 
    NULL. */
 void deck_check_name(deck_reader *r, const char *kind, const char *name, const deck_item *item,
                      const deck_item *first);
+/* The same of a lattice, a bar or a link, which stand side by side in results. */
+void deck_check_lattice_name(deck_reader *r, const deck_lattice *item);
 /* Names of faulty items may be missing. */
 bool deck_same_name(const char *a, const char *b);
 bool deck_is_one_of(const char *name, const char *const *words, int count);

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "runtime/base/text_table.h"
 #include "runtime/deck/deck_value.h"
-#include "runtime/deck/text_table.h"
 #include "runtime/deck/time_function.h"
 
 static const formula_variable variables[FORMULA_VARIABLES] = {[FORMULA_X] = {"x", "m"},

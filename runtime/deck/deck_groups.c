@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "runtime/deck/group_bar.h"
 #include "runtime/deck/group_body.h"
 #include "runtime/deck/group_lattice.h"
 #include "runtime/deck/group_load.h"

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "runtime/base/text_table.h"
 #include "runtime/deck/deck_formula.h"
-#include "runtime/deck/text_table.h"
 
 enum { FROM_FILE = TIME_FORMULA + 1, WAYS };
 

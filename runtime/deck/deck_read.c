@@ -7,6 +7,7 @@
 
 #include "dsl/base/elementary.h"
 #include "dsl/semantics/formula.h"
+#include "runtime/base/text_table.h"
 #include "runtime/deck/deck_check.h"
 #include "runtime/deck/deck_formula.h"
 #include "runtime/deck/deck_groups.h"
@@ -14,7 +15,6 @@
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/group_lattice.h"
 #include "runtime/deck/lattice_kind.h"
-#include "runtime/deck/text_table.h"
 
 enum { MOST_ERRORS = 100 };
 

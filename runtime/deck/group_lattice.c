@@ -10,8 +10,6 @@
 #include "runtime/deck/deck_formula.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/lattice_kind.h"
-#include "runtime/deck/output_fields.h"
-#include "runtime/geometry/polyline.h"
 
 /* --- lattices --------------------------------------------------------------------------------- */
 
@@ -260,26 +258,6 @@ static void check_kind(deck_reader *r, const namelist_group *from, deck_lattice 
   if (arrangement != REGULAR) check_neighbours(r, from, item, dimensions);
 }
 
-/* Lattices and bars stand side by side in results. */
-static void check_lattice_name(deck_reader *r, const deck_lattice *item) {
-#define X(name, unit, components, exists, kind, words) #name,
-  static const char *const taken[] = {"time", ".", OUTPUT_FIELDS(X)};
-#undef X
-  const char *word = deck_lattice_word(item);
-  const span where = deck_where(&item->item, "name");
-  if (deck_is_one_of(item->name, taken, (int)(sizeof taken / sizeof *taken)) ||
-      output_is_component(item->name, 3))
-    diag_report(r->d, DIAG_RESERVED_NAME, where,
-                "a %s cannot be called `%s`: the result has a field of that name", word,
-                item->name);
-  else if (strchr(item->name, '/'))
-    diag_report(r->d, DIAG_BAD_VALUE, where, "a %s's name must not hold `/`", word);
-  const int first = deck_find_lattice(r->k, item->name);
-  const deck_lattice *other = first < 0 ? NULL : &r->k->lattices[first];
-  deck_check_name(r, other ? deck_lattice_word(other) : word, item->name, &item->item,
-                  other ? &other->item : NULL);
-}
-
 static void check_lattice(deck_reader *r, const namelist_group *from, void *into) {
   deck_lattice *item = into;
   check_kind(r, from, item);
@@ -289,222 +267,11 @@ static void check_lattice(deck_reader *r, const namelist_group *from, void *into
                 "a particle has at least one shell of neighbours");
   if (item->stiffness_thickness == 0) item->stiffness_thickness = item->thickness;
   if (item->mass_thickness == 0) item->mass_thickness = item->thickness;
-  check_lattice_name(r, item);
+  deck_check_lattice_name(r, item);
 }
 
 DECK_LIST(lattice, .identity = "name", .check = check_lattice,
           .doc = "A lattice of particles that bodies are cut from. At least one.");
-
-/* --- bars ------------------------------------------------------------------------------------- */
-
-static const deck_key_info bar_keys[] = {
-    {.name = "name", .type = DECK_NAME, .required = true, DECK_AT(bar, name), .doc = "its name"},
-    {.name = "points",
-     .type = DECK_REALS,
-     .unit = "m",
-     .required = true,
-     DECK_AT(bar, points),
-     DECK_COUNT_AT(bar, value_count),
-     .doc = "its corners from end to end: x1, y1, x2, y2, ..., in space x1, y1, z1, ..."},
-    {.name = "closed",
-     .type = DECK_LOGICAL,
-     .fallback = ".false.",
-     DECK_AT(bar, closed),
-     .doc = "the last corner is joined to the first, as of a stirrup"},
-    {.name = "spacing",
-     .type = DECK_REAL,
-     .unit = "m",
-     .bound = BOUND_POSITIVE,
-     .required = true,
-     DECK_AT(bar, spacing),
-     .doc = "distance of its particles; each straight leg is divided into equal parts as near to "
-            "it as can be"},
-    {.name = "diameter",
-     .type = DECK_REAL,
-     .unit = "m",
-     .bound = BOUND_POSITIVE,
-     DECK_AT(bar, diameter),
-     .doc = "of its round cross-section; or give the `area`"},
-    {.name = "area",
-     .type = DECK_REAL,
-     .unit = "m^2",
-     .bound = BOUND_POSITIVE,
-     DECK_AT(bar, area),
-     .doc = "of its cross-section, `area` of the law; or give the `diameter`"},
-    {.name = "setting",
-     .type = DECK_WORD,
-     .choices = "plane|space",
-     .fallback = "= that of the deck's lattices, without one `'plane'`",
-     DECK_AT(bar, setting),
-     .doc = "whether its corners have two coordinates or three"},
-};
-
-/* Bars move where the deck's lattices do. 0: nobody knows. */
-static int bar_dimensions(const deck_reader *r, const deck_bar *item) {
-  if (item->setting) return strcmp(item->setting, "space") == 0 ? 3 : 2;
-  if (r->k->lattice_count > 0)
-    return r->k->lattices[0].kind ? deck_lattice_dimensions(&r->k->lattices[0]) : 0;
-  return deck_lacks(r->k, "lattice") ? 0 : 2;
-}
-
-/* Whole corners, as many as a line needs. */
-static bool has_corners(deck_reader *r, const deck_bar *item, int dimensions) {
-  const span where = deck_where(&item->item, "points");
-  const int corners = item->value_count / dimensions, least = item->closed ? 3 : 2;
-  if (item->value_count % dimensions) {
-    diag_report(r->d, DIAG_BAD_VALUE, where,
-                "a point has %d coordinates in %s, but `points` has %d "
-                "values",
-                dimensions, dimensions == 2 ? "the plane" : "space", item->value_count);
-    diag_hint(r->d, "a bar in space, in a deck without a lattice, says so: `setting = 'space'`");
-  } else if (corners < least)
-    diag_report(r->d, DIAG_BAD_VALUE, where, "a %sbar has at least %d points, but here %s %d",
-                item->closed ? "closed " : "", least, corners == 1 ? "is" : "are", corners);
-  return item->value_count % dimensions == 0 && corners >= least;
-}
-
-static void check_legs(deck_reader *r, const deck_bar *item, int dimensions) {
-  const polyline p = {dimensions, item->value_count / dimensions, item->points, item->closed};
-  for (int k = 0; k < polyline_legs(&p); k++) {
-    const double *from, *to, length = polyline_leg(&p, k, &from, &to);
-    const int end = (k + 1) % p.corners + 1;
-    if (length == 0) {
-      diag_report(r->d, DIAG_BAD_VALUE, deck_where(&item->item, "points"),
-                  "points %d and %d are the same", k + 1, end);
-      if (end == 1) diag_hint(r->d, "`closed` joins the last point to the first by itself");
-    } else if (length < item->spacing * (1 - POLYLINE_ROUNDING)) {
-      diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "spacing"),
-                  "the leg from point %d to point %d is %.6g mm long, shorter than the `spacing`",
-                  k + 1, end, 1e3 * length);
-    } else
-      continue;
-    return;
-  }
-}
-
-static void check_section(deck_reader *r, const namelist_group *from, deck_bar *item) {
-  deck_refuse_both(r, from, "diameter", "area");
-  if (item->diameter == 0 && item->area == 0)
-    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&bar` needs a `diameter` or an `area`");
-  if (item->area == 0) item->area = M_PI / 4 * item->diameter * item->diameter;
-}
-
-static void begin_bar(void *item) {
-  ((deck_bar *)item)->kind = lattice_kinds[LATTICE_KIND_bar].name;
-}
-
-static void check_bar(deck_reader *r, const namelist_group *from, void *into) {
-  deck_bar *item = into;
-  const int dimensions = bar_dimensions(r, item);
-  item->setting = dimensions == 3 ? "space" : "plane_stress";
-  check_section(r, from, item);
-  check_lattice_name(r, item);
-  if (dimensions && has_corners(r, item, dimensions)) check_legs(r, item, dimensions);
-}
-
-DECK_MORE(bar, lattice, .identity = "name", .begin = begin_bar, .check = check_bar,
-          .doc = "A bar: particles along a line of straight legs, each joined to the next. It "
-                 "needs no `&body`; everywhere else it is named as a lattice is.");
-
-/* --- links ------------------------------------------------------------------------------------ */
-
-static const deck_key_info link_keys[] = {
-    {.name = "name", .type = DECK_NAME, .required = true, DECK_AT(link, name), .doc = "its name"},
-    {.name = "bar",
-     .type = DECK_NAME,
-     .required = true,
-     DECK_AT(link, bar),
-     .doc = "name of the bar that it joins"},
-    {.name = "lattice",
-     .type = DECK_NAME,
-     .required = true,
-     DECK_AT(link, around),
-     .doc = "name of the lattice around the bar"},
-    {.name = "every",
-     .type = DECK_COUNT,
-     .fallback = "1",
-     .most = 1000000,
-     DECK_AT(link, every),
-     .doc = "of the bar's particles, counted from 0 along it, every one, every second, ... is "
-            "joined"},
-    {.name = "first",
-     .type = DECK_COUNT,
-     .fallback = "0",
-     .most = 1000000000,
-     DECK_AT(link, first),
-     .doc = "the first of these"},
-    {.name = "to",
-     .type = DECK_CHOICE,
-     .choices = "sites|place",
-     .fallback = "'sites'",
-     DECK_AT(link, to),
-     .doc =
-         "`sites`: a bond to each particle of the lattice within reach; `place`: one bond to the "
-         "place where the bar's particle is, which moves as the corners of the triangle or "
-         "tetrahedron of sites that holds it do"},
-    {.name = "within",
-     .type = DECK_REAL,
-     .unit = "1",
-     .bound = BOUND_POSITIVE,
-     .fallback = "1",
-     DECK_AT(link, within),
-     .doc = "`sites`, in spacings of the lattice: how far away they may be; one at the same place "
-            "is not joined"},
-};
-
-static void begin_link(void *item) {
-  ((deck_link *)item)->kind = lattice_kinds[LATTICE_KIND_link].name;
-}
-
-/* What laws are told: of links to sites what they are of the lattice around the bar; of those to
-   places the bar's area, and the length that each stands for. */
-static void take_quantities(const deck_lattice *bar, const deck_lattice *around, deck_link *item) {
-  item->setting = around->setting;
-  if (item->to == LINK_TO_PLACE) {
-    item->spacing = bar->spacing * item->every;
-    item->area = bar->area;
-    return;
-  }
-  item->spacing = around->spacing;
-  item->thickness = around->thickness;
-  item->stiffness_thickness = around->stiffness_thickness;
-  item->mass_thickness = around->mass_thickness;
-}
-
-static void take_around(deck_reader *r, deck_link *item) {
-  const deck_lattice *around = &r->k->lattices[item->of_around];
-  take_quantities(&r->k->lattices[item->of_bar], around, item);
-  if (deck_lattice_is_bar(around) || deck_lattice_is_link(around))
-    diag_report(r->d, DIAG_BAD_VALUE, deck_where(&item->item, "lattice"),
-                "`%s` is a %s: a link joins a bar to the lattice around it",
-                deck_shown(r->memory, item->around), deck_lattice_word(around));
-  else if (around->kind && deck_lattice_dimensions(around) !=
-                               deck_lattice_dimensions(&r->k->lattices[item->of_bar]))
-    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "lattice"),
-                "the bar `%s` and the lattice `%s` are not both in the plane, or in space",
-                deck_shown(r->memory, item->bar), deck_shown(r->memory, item->around));
-}
-
-static void check_link(deck_reader *r, const namelist_group *from, void *into) {
-  deck_link *item = into;
-  check_lattice_name(r, item);
-  if (item->to == LINK_TO_PLACE && namelist_find(from, "within"))
-    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "within"),
-                "`within` is for links `to = 'sites'`: a place is where the bar is");
-  if (item->every < 1)
-    diag_report(r->d, DIAG_BAD_VALUE, deck_where(&item->item, "every"),
-                "`every` counts from 1, which is each particle");
-  if (!deck_bar_known(r, &item->item, item->bar) ||
-      !deck_lattice_known(r, &item->item, item->around))
-    return;
-  item->of_bar = deck_find_lattice(r->k, item->bar);
-  item->of_around = deck_find_lattice(r->k, item->around);
-  if (item->of_bar >= 0 && item->of_around >= 0) take_around(r, item);
-}
-
-DECK_MORE(link, lattice, .identity = "name", .begin = begin_link, .check = check_link,
-          .doc = "Bonds between a bar and the lattice around it; their law is that of a "
-                 "`&material link =`. Everywhere else it is named as a lattice is.");
 
 /* --- materials -------------------------------------------------------------------------------- */
 

@@ -5,7 +5,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "runtime/geometry/shape.h"
+#include "runtime/lattice/near_particles.h"
 #include "runtime/lattice/scattered.h"
 #include "runtime/lattice/tied.h"
 #include "runtime/particles/site_marks.h"
@@ -19,76 +19,15 @@ typedef struct linker {
   const deck *deck;
   const deck_lattice *link;
   const rows *bar, *body;
-  double reach;    /* m */
-  int32_t *chosen; /* [chosen_count] particles of the bar */
-  long chosen_count;
-  unsigned char *near; /* [chosen_count + particles of the body] in reach of a chosen one */
-  int32_t *copied;     /* [particles of the body] number among the copies, or -1 */
-  rows_copy *copies;   /* [count] of the bar first */
+  double reach;      /* m */
+  int32_t *copied;   /* [particles of the body] number among the copies, or -1 */
+  rows_copy *copies; /* [count] of the bar first */
   long count;
   point_pair *pairs; /* [pair_count] of copies */
-  long pair_count;
+  long pair_count, pair_room;
   long cut;        /* more would cross notches */
   double shortest; /* m */
 } linker;
-
-typedef struct chord {
-  double from[3], to[3];
-  double length; /* m */
-} chord;
-
-static chord chord_of(const linker *l, int32_t of_bar, int32_t of_body) {
-  chord c;
-  double square = 0;
-  rows_place(l->bar, l->bar->particle_site[of_bar], c.from);
-  rows_place(l->body, l->body->particle_site[of_body], c.to);
-  for (int a = 0; a < l->body->dimensions; a++)
-    square += (c.to[a] - c.from[a]) * (c.to[a] - c.from[a]);
-  c.length = sqrt(square);
-  return c;
-}
-
-/* Of the body around, whether it has taken particles or bonds. */
-static bool crosses_notch(const linker *l, const chord *c) {
-  for (int n = 0; n < l->deck->notch_count; n++) {
-    const deck_notch *notch = &l->deck->notchs[n];
-    if (site_of_lattice(&l->deck->lattices[l->link->of_around], notch->lattice) &&
-        shape_crossed(&notch->shape, c->from, c->to, REACH_TOLERANCE * l->body->spacing))
-      return true;
-  }
-  return false;
-}
-
-static void choose(linker *l) {
-  l->chosen = must_calloc((size_t)l->bar->particle_count + 1, sizeof *l->chosen);
-  for (long p = l->link->first; p < l->bar->particle_count; p += l->link->every)
-    l->chosen[l->chosen_count++] = (int32_t)p;
-}
-
-/* Of all particles of the body few are near a bar. */
-static void find_near(linker *l) {
-  const long body = l->body->particle_count, count = l->chosen_count + body;
-  const int dimensions = l->body->dimensions;
-  double *at[3] = {NULL, NULL, NULL};
-  int32_t *numbers = must_calloc((size_t)l->chosen_count + 1, sizeof *numbers);
-  for (int a = 0; a < dimensions; a++)
-    at[a] = must_calloc((size_t)count + 1, sizeof **at);
-  for (long n = 0; n < count; n++) {
-    const bool of_bar = n < l->chosen_count;
-    const rows *g = of_bar ? l->bar : l->body;
-    double place_of[3];
-    rows_place(g, g->particle_site[of_bar ? l->chosen[n] : n - l->chosen_count], place_of);
-    for (int a = 0; a < dimensions; a++)
-      at[a][n] = place_of[a];
-    if (of_bar) numbers[n] = (int32_t)n;
-  }
-  const point_cloud cloud = {dimensions, count, {at[0], at[1], at[2]}};
-  l->near = must_calloc((size_t)count + 1, 1);
-  points_near(&cloud, numbers, l->chosen_count, l->reach * 1.001, l->near);
-  for (int a = 0; a < dimensions; a++)
-    free(at[a]);
-  free(numbers);
-}
 
 static rows_copy copy_of(int32_t lattice, int32_t particle) {
   return (rows_copy){.lattice = lattice, .count = 1, .particle = {particle}, .weight = {1}};
@@ -103,44 +42,41 @@ static int32_t copy_of_body(linker *l, int32_t particle) {
 }
 
 static void add_pair(linker *l, int32_t i, int32_t j, double length) {
-  l->pairs = must_realloc(l->pairs, ((size_t)l->pair_count + 1) * sizeof *l->pairs);
+  if (l->pair_count == l->pair_room) {
+    l->pair_room = 2 * l->pair_room + 64;
+    l->pairs = must_realloc(l->pairs, (size_t)l->pair_room * sizeof *l->pairs);
+  }
   l->pairs[l->pair_count++] = (point_pair){i, j};
   l->shortest = pl_fmin(l->shortest, length);
 }
 
 /* What stands on one place is not joined (Gerstle et al. 2013, section 4). */
-static bool is_joined(linker *l, const chord *c) {
-  if (c->length > l->reach || c->length <= REACH_TOLERANCE * l->body->spacing) return false;
-  const bool cut = crosses_notch(l, c);
+static bool is_joined(linker *l, const double from[3], const near_particle *p) {
+  const double rounding = REACH_TOLERANCE * l->body->spacing;
+  double to[3];
+  if (sqrt(p->square) <= rounding) return false;
+  rows_place(l->body, l->body->particle_site[p->particle], to);
+  const bool cut =
+      site_notch_between(l->deck, &l->deck->lattices[l->link->of_around], from, to, rounding);
   l->cut += cut;
   return !cut;
 }
 
-static void join(linker *l) {
-  const long body = l->body->particle_count;
-  long near_count = 0;
-  int32_t *near = must_calloc((size_t)body + 1, sizeof *near);
-  for (long p = 0; p < body; p++) {
-    l->copied[p] = -1;
-    if (l->near[l->chosen_count + p]) near[near_count++] = (int32_t)p;
+static void join(linker *l, int32_t of_bar, near_particles *near) {
+  const int32_t here = (int32_t)l->count;
+  bool joined = false;
+  double from[3];
+  rows_place(l->bar, l->bar->particle_site[of_bar], from);
+  near_particles_find(near, from);
+  for (long n = 0; n < near->count; n++) {
+    if (!is_joined(l, from, &near->found[n])) continue;
+    if (!joined) l->copies[l->count++] = copy_of(l->link->of_bar, of_bar);
+    joined = true;
+    add_pair(l, here, copy_of_body(l, near->found[n].particle), sqrt(near->found[n].square));
   }
-  for (long n = 0; n < l->chosen_count; n++) {
-    const int32_t here = (int32_t)l->count;
-    bool joined = false;
-    for (long m = 0; m < near_count; m++) {
-      const chord c = chord_of(l, l->chosen[n], near[m]);
-      if (!is_joined(l, &c)) continue;
-      if (!joined) l->copies[l->count++] = copy_of(l->link->of_bar, l->chosen[n]);
-      joined = true;
-      add_pair(l, here, copy_of_body(l, near[m]), c.length);
-    }
-  }
-  free(near);
 }
 
 static void linker_free(linker *l) {
-  free(l->chosen);
-  free(l->near);
   free(l->copied);
   free(l->copies);
   free(l->pairs);
@@ -148,12 +84,15 @@ static void linker_free(linker *l) {
 
 static void find(linker *l) {
   const size_t most = (size_t)l->bar->particle_count + (size_t)l->body->particle_count;
-  l->copied = must_calloc(most, sizeof *l->copied);
+  near_particles near = near_particles_of(l->body, l->reach);
+  l->copied = must_alloc(most * sizeof *l->copied);
   l->copies = must_calloc(most, sizeof *l->copies);
   l->shortest = INFINITY;
-  choose(l);
-  find_near(l);
-  join(l);
+  for (long p = 0; p < l->body->particle_count; p++)
+    l->copied[p] = -1;
+  for (long p = l->link->first; p < l->bar->particle_count; p += l->link->every)
+    join(l, (int32_t)p, &near);
+  near_particles_end(&near);
 }
 
 /* Those of the bar and of the body take turns in `copies`; lists do not mind. */
@@ -186,7 +125,7 @@ static rows *rows_of(const linker *l, long *crowded) {
 
 static bool has_pairs(const linker *l, diagnostics *d) {
   const deck_lattice *k = l->link;
-  if (l->chosen_count == 0) {
+  if (k->first >= l->bar->particle_count) {
     diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&k->item, "first"),
                 "the bar `%s` has %ld particles: there is none with the number %d", k->bar,
                 l->bar->particle_count, k->first);

@@ -5,24 +5,18 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/lattice/near_particles.h"
 #include "runtime/lattice/scattered.h"
 
 /* How far outside of a cell a place may be by rounding, as a weight. */
 #define ROUNDING 1e-9
-/* Sites that may be corners of the cell: the nearest ones. */
-enum { NEAREST = 14, MOST_CORNERS = ROWS_MOST_COPIED };
-
-typedef struct candidate {
-  int32_t particle;
-  double square; /* of the distance, m^2 */
-  double at[3];  /* from the place, m */
-} candidate;
+/* Sites that may be corners of the cell: the nearest ones within so many spacings. */
+enum { SPACINGS = 3, NEAREST = 14, MOST_CORNERS = ROWS_MOST_COPIED };
 
 typedef struct tier {
   const deck_link *link;
   const rows *bar, *body;
-  int32_t *near; /* [near_count] particles of the body that are near the bar */
-  long near_count;
+  near_particles near;
   rows_copy *copies; /* [2 count] of the bar, then of the place */
   double *at[3];     /* [2 count] m */
   point_pair *pairs; /* [count] */
@@ -32,38 +26,26 @@ typedef struct tier {
 /* --- cells ------------------------------------------------------------------------------------ */
 
 static int by_distance(const void *a, const void *b) {
-  const candidate *p = a, *q = b;
+  const near_particle *p = a, *q = b;
   if (p->square != q->square) return p->square < q->square ? -1 : 1;
   return p->particle < q->particle ? -1 : p->particle > q->particle;
 }
 
-static int find_nearest(const tier *t, const double at[3], candidate nearest[NEAREST]) {
-  candidate *all = must_calloc((size_t)t->near_count + 1, sizeof *all);
-  long count = 0;
-  for (long n = 0; n < t->near_count; n++) {
-    candidate *c = &all[count++];
-    c->particle = t->near[n];
-    rows_place(t->body, t->body->particle_site[c->particle], c->at);
-    for (int a = 0; a < 3; a++) {
-      c->at[a] = a < t->body->dimensions ? c->at[a] - at[a] : 0;
-      c->square += c->at[a] * c->at[a];
-    }
-  }
-  qsort(all, (size_t)count, sizeof *all, by_distance);
-  const int found = count < NEAREST ? (int)count : NEAREST;
-  for (int n = 0; n < found; n++)
-    nearest[n] = all[n];
-  free(all);
-  return found;
+/* The nearest first; returns how many there are, at most NEAREST. */
+static int find_nearest(near_particles *near, const double from[3]) {
+  near_particles_find(near, from);
+  if (near->count > 1) qsort(near->found, (size_t)near->count, sizeof *near->found, by_distance);
+  return near->count < NEAREST ? (int)near->count : NEAREST;
 }
 
 /* Determinant of the edges from the first of the corners, one of which is replaced by the place. */
-static double volume_of(int dimensions, const candidate *const corner[MOST_CORNERS], int replaced) {
+static double volume_of(int dimensions, const near_particle *const corner[MOST_CORNERS],
+                        int replaced) {
   static const double here[3] = {0, 0, 0};
   const double *p[MOST_CORNERS];
   double e[3][3];
   for (int k = 0; k <= dimensions; k++)
-    p[k] = k == replaced ? here : corner[k]->at;
+    p[k] = k == replaced ? here : corner[k]->way;
   for (int k = 0; k < dimensions; k++)
     for (int a = 0; a < dimensions; a++)
       e[k][a] = p[k + 1][a] - p[0][a];
@@ -74,7 +56,7 @@ static double volume_of(int dimensions, const candidate *const corner[MOST_CORNE
 }
 
 /* Weights of the corners; false: flat, or the place is outside. */
-static bool weigh(int dimensions, double flat, const candidate *const corner[MOST_CORNERS],
+static bool weigh(int dimensions, double flat, const near_particle *const corner[MOST_CORNERS],
                   double weight[MOST_CORNERS]) {
   const double whole = volume_of(dimensions, corner, -1);
   if (!(fabs(whole) > flat)) return false;
@@ -89,8 +71,8 @@ static bool weigh(int dimensions, double flat, const candidate *const corner[MOS
 typedef struct cell_search {
   int dimensions, count;
   double flat; /* m^2, m^3: cells that are no larger are none */
-  const candidate *nearest;
-  const candidate *corner[MOST_CORNERS];
+  const near_particle *nearest;
+  const near_particle *corner[MOST_CORNERS];
   double least;
   rows_copy *best;
 } cell_search;
@@ -138,13 +120,12 @@ static void make_weights_whole(rows_copy *c) {
     c->weight[k] /= sum;
 }
 
-static bool find_cell(const tier *t, const double at[3], rows_copy *out) {
-  candidate nearest[NEAREST];
+static bool find_cell(tier *t, const double from[3], rows_copy *out) {
   const double edge = t->body->spacing;
   cell_search s = {.dimensions = t->body->dimensions,
-                   .count = find_nearest(t, at, nearest),
+                   .count = find_nearest(&t->near, from),
                    .flat = 1e-6 * (t->body->dimensions == 2 ? edge * edge : edge * edge * edge),
-                   .nearest = nearest,
+                   .nearest = t->near.found,
                    .least = INFINITY,
                    .best = out};
   search_cells(&s, 0, 0);
@@ -210,34 +191,6 @@ static void tie(tier *t, int32_t particle) {
 
 /* --- all of it -------------------------------------------------------------------------------- */
 
-/* Particles of the body that may be corners of cells at the bar. */
-static void find_near(tier *t) {
-  enum { SPACINGS = 3 };
-  const long bar = t->bar->particle_count, count = bar + t->body->particle_count;
-  unsigned char *near = must_calloc((size_t)count + 1, 1);
-  int32_t *numbers = must_calloc((size_t)bar + 1, sizeof *numbers);
-  double *at[3] = {NULL, NULL, NULL};
-  for (int a = 0; a < t->body->dimensions; a++)
-    at[a] = must_calloc((size_t)count + 1, sizeof **at);
-  for (long n = 0; n < count; n++) {
-    const rows *g = n < bar ? t->bar : t->body;
-    double here[3];
-    rows_place(g, g->particle_site[n < bar ? n : n - bar], here);
-    for (int a = 0; a < t->body->dimensions; a++)
-      at[a][n] = here[a];
-    if (n < bar) numbers[n] = (int32_t)n;
-  }
-  const point_cloud cloud = {t->body->dimensions, count, {at[0], at[1], at[2]}};
-  points_near(&cloud, numbers, bar, SPACINGS * t->body->spacing, near);
-  t->near = must_calloc((size_t)t->body->particle_count + 1, sizeof *t->near);
-  for (long p = 0; p < t->body->particle_count; p++)
-    if (near[bar + p]) t->near[t->near_count++] = (int32_t)p;
-  for (int a = 0; a < 3; a++)
-    free(at[a]);
-  free(numbers);
-  free(near);
-}
-
 static rows *rows_of(const tier *t) {
   const long count = 2 * t->count;
   double *measure = must_calloc((size_t)count + 1, sizeof *measure);
@@ -285,11 +238,11 @@ rows *tied_build(const deck_link *link, const rows *bar, const rows *body, diagn
   tier t = {.link = link,
             .bar = bar,
             .body = body,
+            .near = near_particles_of(body, SPACINGS * body->spacing),
             .copies = must_calloc(2 * most, sizeof(rows_copy)),
             .pairs = must_calloc(most, sizeof(point_pair))};
   for (int a = 0; a < body->dimensions; a++)
     t.at[a] = must_calloc(2 * most, sizeof(double));
-  find_near(&t);
   for (long p = link->first; p < bar->particle_count; p += link->every)
     tie(&t, (int32_t)p);
   rows *w = is_tied(&t, d) ? rows_of(&t) : NULL;
@@ -297,7 +250,7 @@ rows *tied_build(const deck_link *link, const rows *bar, const rows *body, diagn
     w->copies = t.copies;
   else
     free(t.copies);
-  free(t.near);
+  near_particles_end(&t.near);
   free(t.pairs);
   for (int a = 0; a < 3; a++)
     free(t.at[a]);

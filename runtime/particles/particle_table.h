@@ -4,7 +4,7 @@
 #ifndef PERILAT_RUNTIME_PARTICLE_TABLE_H
 #define PERILAT_RUNTIME_PARTICLE_TABLE_H
 
-#include "runtime/deck/text_table.h"
+#include "runtime/base/text_table.h"
 
 typedef struct particle_table {
   int dimensions;

@@ -118,6 +118,15 @@ bool site_of_lattice(const deck_lattice *l, const char *name) {
   return name == NULL || strcmp(name, l->name) == 0;
 }
 
+bool site_notch_between(const deck *k, const deck_lattice *l, const double from[3],
+                        const double to[3], double tolerance) {
+  for (int n = 0; n < k->notch_count; n++)
+    if (site_of_lattice(l, k->notchs[n].lattice) &&
+        shape_crossed(&k->notchs[n].shape, from, to, tolerance))
+      return true;
+  return false;
+}
+
 bool site_too_many(const deck_lattice *l, double sites, diagnostics *d) {
   if (sites <= SITE_MOST) return false;
   const double part = sites / SITE_MOST;

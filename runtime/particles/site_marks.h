@@ -8,7 +8,7 @@
 
 #define SITE_OUTLINE_TOLERANCE 1e-6 /* spacings: a site this near to an outline lies on it */
 #define SITE_TIE_TOLERANCE     1e-9 /* spacings: of sites equally near a point the first is taken */
-#define SITE_MOST              2e8 /* with absent ones: site numbers and memory stay in bounds */
+#define SITE_MOST              2e8  /* with absent ones: site numbers and memory stay in bounds */
 
 /* Columns, rows and layers of the infinite lattice, ends included; empty where first > last. */
 typedef struct site_range {
@@ -39,6 +39,10 @@ bool site_marks_stands(const site_marks *m, long column, long row, long layer);
 
 /* True for a group without a lattice's name, or with this one's. */
 bool site_of_lattice(const deck_lattice *l, const char *name);
+/* The straight line between two places crosses a notch of the lattice deeper than `tolerance` (m),
+   whether that has taken particles or bonds. */
+bool site_notch_between(const deck *k, const deck_lattice *l, const double from[3],
+                        const double to[3], double tolerance);
 /* How far from a point shape its site may stand, the tolerance included. */
 double site_point_reach(const deck_shape *shape, double spacing);
 /* The deck's line on sites that cannot be stored. */

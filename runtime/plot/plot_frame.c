@@ -39,14 +39,15 @@ static bool has_no_damage(const plot_frame *m, long b) {
   return m->damage && isnan(m->damage[b]);
 }
 
-/* [particles] distance to the nearest bonded one, 0 without; to be freed. */
-static double *nearest_of(const plot_frame *m) {
+/* [particles] distance to the nearest bonded one, 0 without; to be freed. `damaging`: by bonds of
+   laws that know damage. */
+static double *nearest_of(const plot_frame *m, bool damaging) {
   double *nearest = must_calloc((size_t)m->particles + 1, sizeof *nearest);
   for (long b = 0; b < m->bonds; b++)
     for (int e = 0; e < 2; e++) {
       double *known = &nearest[m->pairs[2 * b + e]];
       const double length = bond_length(m, b);
-      if (has_no_damage(m, b)) continue;
+      if (damaging && has_no_damage(m, b)) continue;
       if (*known == 0 || length < *known) *known = length;
     }
   return nearest;
@@ -54,7 +55,7 @@ static double *nearest_of(const plot_frame *m) {
 
 /* Mean over the particles: on a lattice its spacing. */
 static double spacing_of(const plot_frame *m) {
-  double *nearest = nearest_of(m), sum = 0;
+  double *nearest = nearest_of(m, false), sum = 0;
   long count = 0;
   for (long p = 0; p < m->particles; p++) {
     count += nearest[p] > 0;
@@ -444,7 +445,7 @@ static double *means_of_bonds(const plot_frame *m, const double *values, int com
 
 /* Bonds that reach past the nearest neighbours hide each other when all are drawn. */
 static bool has_crowded_bonds(const plot_frame *m) {
-  double *nearest = nearest_of(m);
+  double *nearest = nearest_of(m, true);
   bool crowded = false;
   for (long b = 0; b < m->bonds && !crowded; b++)
     crowded =

@@ -91,8 +91,9 @@ bool ledger_sample(ledger *g, const ledger_laws *of, const body *state, const lo
 /* The same of a contact: it stores that much (J), and `work` is done on it by the ways of its
    particles. */
 void ledger_sample_contact(ledger *g, double stored, double work, double terms[LEDGER_COUNT]);
-/* Of one of several laws at work on a body, in the state observed last: J stored in its bonds; taken
-   by its states and damage since the start. NaN where the law does not say it, or it was not kept. */
+/* Of one of several laws at work on a body, in the state observed last: J stored in its bonds;
+   taken by its states and damage since the start. NaN where the law does not say it, or it was not
+   kept. */
 double ledger_stored_by(const sweep *law);
 double ledger_taken_by(const sweep *law);
 /* The same of a link (run_link.h), whose particles are copies: what moves is the bodies'. `work`

@@ -12,6 +12,7 @@ typedef struct rates {    /* of the fastest mode */
 } rates;
 
 static rates rates_of(const step_limit *l) {
+  if (isinf(l->limit)) return (rates){0, 0}; /* nothing holds */
   const double p = 2 / l->limit, square = pl_fmin(l->omega_max * l->omega_max, p * p);
   return (rates){square, (p * p - square) / p};
 }

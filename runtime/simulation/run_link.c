@@ -88,7 +88,8 @@ run_link *run_links_new(run_body *bodies, int body_count, int *count) {
     take_copies(link, bodies);
     load_bodies(link, *count - 1, bodies);
   }
-  for (int b = 0; b<body_count && * count> 0; b++)
+  if (*count == 0) return links;
+  for (int b = 0; b < body_count; b++)
     loads_links_added(bodies[b].loads);
   return links;
 }
@@ -111,8 +112,9 @@ static double mean_of(const link_copy *c, double *const *values, int d) {
   return sum;
 }
 
-/* The bar's unit tangent in the reference state and now, and how quickly it turns now. */
-static void find_tangent(const link_copy *c, double then[3], double now[3], double spin[3]) {
+/* The bar's unit tangent in the reference state and now, and how quickly it turns now. Returns how
+   far apart the particles are now that it goes through. */
+static double find_tangent(const link_copy *c, double then[3], double now[3], double spin[3]) {
   double rate[3] = {0, 0, 0}, length = 0, before = 0;
   for (int a = 0; a < 3; a++)
     now[a] = c->tangent[a];
@@ -132,6 +134,7 @@ static void find_tangent(const link_copy *c, double then[3], double now[3], doub
     now[a] /= sqrt(length);
     then[a] = c->tangent[a] / sqrt(before);
   }
+  return sqrt(length);
 }
 
 double run_link_slip(const run_link *link, long particle) {
@@ -221,23 +224,20 @@ static void find_couples(run_link *link) {
   const sweep *law = law_of(link);
   for (long p = 0; p < g->particle_count; p++) {
     const link_copy *c = &link->copies[p];
-    double then[3], now[3], spin[3], r[3] = {0, 0, 0}, f[3] = {0, 0, 0}, m[3], length = 0;
+    double then[3], now[3], spin[3], r[3] = {0, 0, 0}, f[3] = {0, 0, 0}, m[3];
     if (!has_couple(c)) continue;
     for (int a = 0; a < law->body->dimensions; a++) {
-      const double way = c->bar->displacement[a][c->after] - c->bar->displacement[a][c->before],
-                   d = c->tangent[a] + way;
       r[a] = mean_of(c, c->of->displacement, a) - c->bar->displacement[a][c->at];
       f[a] = law->force[a][g->particle_site[p]];
-      length += d * d;
     }
-    find_tangent(c, then, now, spin);
+    const double length = find_tangent(c, then, now, spin);
     for (int a = 0; a < 3; a++) {
       const int b = (a + 1) % 3, e = (a + 2) % 3;
       m[a] = f[b] * r[e] - f[e] * r[b];
     }
     for (int a = 0; a < law->body->dimensions; a++) {
       const int b = (a + 1) % 3, e = (a + 2) % 3;
-      link->couple[a][p] = (m[b] * now[e] - m[e] * now[b]) / sqrt(length);
+      link->couple[a][p] = (m[b] * now[e] - m[e] * now[b]) / length;
     }
   }
 }

@@ -163,7 +163,7 @@ static void two_damages_have_two_colours_each(void **state) {
   expect(w, "plot two.h5 --map omega_t,omega_x", 1, "did you mean `omega_c`?");
 }
 
-/* A bar beside the sites, whose bonds and links are shorter than those of the lattice, hides none. */
+/* A bar beside the sites, whose bonds and links are shorter than the lattice's, hides none. */
 static void bars_hide_no_bonds(void **state) {
   workplace *w = *state;
   write_text(w, "bar.nml",

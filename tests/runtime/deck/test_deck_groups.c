@@ -13,6 +13,7 @@
 #include "runtime/deck/deck_groups.h"
 #include "runtime/deck/deck_read.h"
 #include "runtime/deck/deck_schema.h"
+#include "runtime/deck/group_bar.h"
 #include "runtime/deck/group_body.h"
 #include "runtime/deck/group_lattice.h"
 #include "runtime/deck/group_load.h"
@@ -25,6 +26,7 @@ static void each_group_stands_in_its_place(void **state) {
   const char *names[DECK_GROUP_COUNT];
   assert_ptr_equal(deck_groups[DECK_GROUP_simulation], &deck_group_simulation);
   assert_ptr_equal(deck_groups[DECK_GROUP_lattice], &deck_group_lattice);
+  assert_ptr_equal(deck_groups[DECK_GROUP_bar], &deck_group_bar);
   assert_ptr_equal(deck_groups[DECK_GROUP_body], &deck_group_body);
   assert_ptr_equal(deck_groups[DECK_GROUP_drive], &deck_group_drive);
   assert_ptr_equal(deck_groups[DECK_GROUP_stop], &deck_group_stop);

@@ -1,4 +1,4 @@
-#include "runtime/deck/text_table.h"
+#include "runtime/base/text_table.h"
 
 #include <ctype.h>
 #include <errno.h>

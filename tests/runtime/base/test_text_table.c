@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "runtime/deck/text_table.h"
+#include "runtime/base/text_table.h"
 
 typedef struct bench {
   source_set sources;
