@@ -71,7 +71,7 @@ enum { BASE_COUNT = 4, LARGEST_TWELFTHS = 12 * 100, DEEPEST_PARENTHESIS = 20 };
   X("an energy or moment", "N*m", 2, 1, -2, 0)                                                     \
   X("a power", "W", 2, 1, -3, 0)                                                                   \
   X("a bending rigidity", "N*m^2", 3, 1, -2, 0)                                                    \
-  X("a stiffness or fracture energy", "N/m", 0, 1, -2, 0)                                          \
+  X("a stiffness, load per length or fracture energy", "N/m", 0, 1, -2, 0)                                          \
   X("a damping coefficient", "N*s/m", 0, 1, -1, 0)                                                 \
   X("a stress", "Pa", -1, 1, -2, 0)                                                                \
   X("a stress rate", "Pa/s", -1, 1, -3, 0)                                                         \

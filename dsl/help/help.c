@@ -38,10 +38,12 @@ static int show_pages(const char *topic, FILE *out) {
 static void show_quantity(int q, FILE *out) {
   static const char *const laws[] = {[IN_CENTRAL] = "central bond laws",
                                      [IN_MICROPOLAR] = "micropolar bond laws",
-                                     [IN_PAIR] = "bond laws",
+                                     [IN_SLIP] = "slip bond laws",
+                                     [IN_BOND] = "bond laws",
                                      [IN_STATE] = "state laws",
                                      [IN_CENTRAL | IN_STATE] = "central bond and state laws",
                                      [IN_MICROPOLAR | IN_STATE] = "micropolar bond and state laws",
+                                     [IN_LATTICE] = "all laws but those of slip",
                                      [IN_ANY] = "all laws"};
   static const char *const shapes[] = {"number", "logical value", "bending quantity", "vector",
                                        "tensor"};

@@ -387,7 +387,6 @@ static void put_settings(const page *p) {
 }
 
 static void put_head(const page *p) {
-  static const char *const kinds[] = {"central bond", "micropolar bond", "state"};
   static const char preamble[] = "\\documentclass[11pt]{article}\n\\usepackage[utf8]{inputenc}\n"
                                  "\\usepackage[T1]{fontenc}\n\\usepackage{amsmath,amssymb}\n"
                                  "\\usepackage{longtable}\n\\usepackage[margin=25mm]{geometry}\n"
@@ -396,7 +395,7 @@ static void put_head(const page *p) {
   put_text(p, p->law->tree->name);
   fputs(p->latex ? "}\n\n" : "\n\n", p->out);
   fputs("Kind: ", p->out);
-  put_code(p, kinds[p->law->tree->law]);
+  put_code(p, law_kind_name(p->law->tree->law));
   fputs(".\n", p->out);
   if (p->law->tree->doc) {
     fputc('\n', p->out);

@@ -9,7 +9,15 @@
 C_LINKAGE_BEGIN
 
 /* Which kinds of law may read a quantity. */
-enum { IN_CENTRAL = 1, IN_MICROPOLAR = 2, IN_STATE = 4, IN_PAIR = 3, IN_ANY = 7 };
+enum {
+  IN_CENTRAL = 1,
+  IN_MICROPOLAR = 2,
+  IN_STATE = 4,
+  IN_SLIP = 8,
+  IN_BOND = IN_CENTRAL | IN_MICROPOLAR | IN_SLIP,
+  IN_LATTICE = IN_CENTRAL | IN_MICROPOLAR | IN_STATE,
+  IN_ANY = 15
+};
 
 /* Whether it is the same at all times. */
 enum { MOVES, FIXED };
@@ -18,19 +26,19 @@ enum { MOVES, FIXED };
 /* X(code, name, unit, shape, place, laws that may read it, does it change in time,
      a line of a law that reads it, meaning) */
 #define BUILTIN_QUANTITIES(X)                                                                      \
-  X(STRETCH, "stretch", "1", SCALAR, BOND, IN_ANY, MOVES, "x = stretch**2",                        \
+  X(STRETCH, "stretch", "1", SCALAR, BOND, IN_LATTICE, MOVES, "x = stretch**2",                    \
     "change of bond length over reference length")                                                 \
-  X(STRETCH_RATE, "stretch_rate", "1/s", SCALAR, BOND, IN_ANY, MOVES, "x = stretch_rate/10 [1/s]", \
-    "time derivative of the stretch")                                                              \
+  X(STRETCH_RATE, "stretch_rate", "1/s", SCALAR, BOND, IN_LATTICE, MOVES,                          \
+    "x = stretch_rate/10 [1/s]", "time derivative of the stretch")                                 \
   X(THETA_I, "theta_i", "1", BENDING, BOND, IN_MICROPOLAR, MOVES, "x = norm(2*theta_i + theta_j)", \
     "rotation of end i less the chord's")                                                          \
   X(THETA_J, "theta_j", "1", BENDING, BOND, IN_MICROPOLAR, MOVES, "x = norm(2*theta_j + theta_i)", \
     "rotation of end j less the chord's")                                                          \
   X(TWIST, "twist", "1", SCALAR, BOND, IN_MICROPOLAR, MOVES, "x = twist/s",                        \
     "rotation of end j about the bond less that of end i; 0 in the plane")                         \
-  X(LENGTH, "length", "m", SCALAR, BOND, IN_ANY, MOVES, "x = length/s - 1",                        \
+  X(LENGTH, "length", "m", SCALAR, BOND, IN_LATTICE, MOVES, "x = length/s - 1",                    \
     "present length of the bond")                                                                  \
-  X(S, "s", "m", SCALAR, BOND, IN_ANY, FIXED, "x = stretch*s", "reference length of the bond")     \
+  X(S, "s", "m", SCALAR, BOND, IN_ANY, FIXED, "x = 2*s", "reference length of the bond")           \
   X(SPACING, "spacing", "m", SCALAR, BODY, IN_ANY, FIXED, "x = s/spacing",                         \
     "distance of nearest sites of the lattice")                                                    \
   X(T, "t", "m", SCALAR, BODY, IN_ANY, FIXED, "x = s*t", "thickness used for stiffness")           \
@@ -42,11 +50,11 @@ enum { MOVES, FIXED };
     "mass of particle i")                                                                          \
   X(M_END_J, "m_j", "kg", SCALAR, BOND, IN_ANY, FIXED, "x = min(m_i, m_j)/m_j",                    \
     "mass of particle j")                                                                          \
-  X(AREA, "area", "m^2", SCALAR, BODY, IN_PAIR, FIXED, "x = area*length",                          \
+  X(AREA, "area", "m^2", SCALAR, BODY, IN_BOND, FIXED, "x = sqrt(area)",                           \
     "cross-section of a bar")                                                                      \
-  X(SHELL, "shell", "1", SCALAR, BOND, IN_ANY, FIXED, "x = | 1 when shell == 1 | 0.5 otherwise",   \
-    "shell of the neighbour: 1 nearest, 2 second, ...")                                            \
-  X(HORIZON, "horizon", "m", SCALAR, BODY, IN_ANY, FIXED, "x = s/horizon",                         \
+  X(SHELL, "shell", "1", SCALAR, BOND, IN_LATTICE, FIXED,                                          \
+    "x = | 1 when shell == 1 | 0.5 otherwise", "shell of the neighbour: 1 nearest, 2 second, ...") \
+  X(HORIZON, "horizon", "m", SCALAR, BODY, IN_LATTICE, FIXED, "x = s/horizon",                     \
     "distance up to which particles are neighbours")                                               \
   X(WEIGHT, "weight", "1", SCALAR, BOND, IN_STATE, FIXED, "x = sum(weight*stretch[j])",            \
     "part of the neighbour's volume that counts: 1 unless the lattice corrects volumes")           \
@@ -55,8 +63,14 @@ enum { MOVES, FIXED };
   X(RESOLVED, "resolved", "1", SCALAR, PARTICLE, IN_STATE, FIXED,                                  \
     "x = | 1 when resolved >= 1 | 0 otherwise",                                                    \
     "1 where the particle's bonds resolve all strains, else 0")                                    \
-  X(DIRECTION, "direction", "1", VECTOR, BOND, IN_ANY, FIXED, "x = norm(direction)",               \
-    "unit vector along the reference bond")
+  X(DIRECTION, "direction", "1", VECTOR, BOND, IN_LATTICE, FIXED, "x = norm(direction)",           \
+    "unit vector along the reference bond")                                                        \
+  X(SLIP, "slip", "m", SCALAR, BOND, IN_SLIP, MOVES, "x = slip/s",                                 \
+    "how far the place has moved along the bar, as its tangent is now")                            \
+  X(GAP, "gap", "m", BENDING, BOND, IN_SLIP, MOVES, "x = norm(gap)/s",                             \
+    "how far the place has moved across the bar, as its tangent is now")                           \
+  X(SLIP_RATE, "slip_rate", "m/s", SCALAR, BOND, IN_SLIP, MOVES, "x = slip_rate/1 [m/s]",          \
+    "time derivative of the slip while the gap is small against s")
 
 /* X(code, name, least arguments, most arguments, check of the arguments (calls.c), value, formula,
      a line of a law that calls it, meaning)

@@ -176,10 +176,17 @@ static value previous(checker *ck, expr *e) {
   return BROKEN;
 }
 
+/* Made of a bond's length and rotations. */
+static bool is_slip(const expr *e) {
+  return e->kind == EXPR_NAME && e->symbol && e->symbol->kind == SYMBOL_QUANTITY &&
+         builtin_quantities[e->symbol->index].kinds == IN_SLIP;
+}
+
 static bool is_variable(const expr *e) {
   if (e->kind != EXPR_NAME || !e->symbol) return false;
   switch (e->symbol->kind) {
   case SYMBOL_QUANTITY:
+    return !is_slip(e);
   case SYMBOL_PARAMETER:
   case SYMBOL_STATE:
   case SYMBOL_DAMAGE:
@@ -196,7 +203,13 @@ static value derivative(checker *ck, expr *e) {
   if (!is_variable(by)) {
     complain(ck, DIAG_ARGUMENTS, by->where,
              "`diff` differentiates by a quantity, a parameter, a state or a damage");
-    diag_hint(ck->d, "write a name such as `stretch`");
+    if (is_slip(by))
+      diag_hint(ck->d,
+                "`%s` follows from length and rotations of the bond: give `energy W` and no "
+                "forces, or write the derivative out",
+                by->name);
+    else
+      diag_hint(ck->d, "write a name such as `stretch`");
     return BROKEN;
   }
   value v = {.dim = dim_div(f.dim, x.dim),

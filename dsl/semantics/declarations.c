@@ -213,11 +213,12 @@ static const stmt_kind result_kinds[RESULT_COUNT] = {STMT_FORCE,  STMT_FORCE,  S
 
 static void report_result_name(checker *ck, const stmt *s) {
   const char *kind = stmt_kind_name(s->kind);
-  bool micropolar = ck->tree->law == LAW_MICROPOLAR_BOND;
+  const char *const forces[] = {[LAW_CENTRAL_BOND] = "`N`",
+                                [LAW_MICROPOLAR_BOND] = "`N` (along the bond) or `V` (across it)",
+                                [LAW_SLIP_BOND] = "`N` (along the bar) or `V` (across it)"};
   const char *names = s->kind == STMT_ENERGY   ? "`W`"
                       : s->kind == STMT_MOMENT ? "`M_i` or `M_j` (bending), or `T` (twisting)"
-                      : micropolar             ? "`N` (along the bond) or `V` (across it)"
-                                               : "`N`";
+                                               : forces[ck->tree->law];
   complain(ck, DIAG_LAW_KIND, s->name_where, "the %s of a bond law is called %s", kind, names);
   ck->result_refused = true;
 }
@@ -228,7 +229,13 @@ static void declare_bond_result(checker *ck, stmt *s) {
   while (which < RESULT_COUNT &&
          (result_kinds[which] != s->kind || strcmp(result_names[which], s->name) != 0))
     which++;
-  bool central = ck->tree->law == LAW_CENTRAL_BOND;
+  const bool central = ck->tree->law == LAW_CENTRAL_BOND, slip = ck->tree->law == LAW_SLIP_BOND;
+  if (slip && s->kind == STMT_MOMENT) {
+    complain(ck, DIAG_LAW_KIND, s->name_where, "a law of slip has no moments");
+    diag_hint(ck->d, "the moment of `N` and `V` is balanced on bar and body by itself");
+    ck->result_refused = true;
+    return;
+  }
   if (central && (s->kind == STMT_MOMENT || which == RESULT_V)) {
     complain(ck, DIAG_LAW_KIND, s->name_where, "a central law has no %s",
              which == RESULT_V ? "shear force" : "moments");

@@ -374,9 +374,12 @@ static void check_results_given(checker *ck) {
     diag_note(ck->d, moment->where, "a moment is given here");
     diag_hint(ck->d, "with `force V` both moments are V*length/2; remove the one or the other");
   }
-  if (r[RESULT_W] || ck->result_refused) return;
+  if (ck->result_refused) return;
+  const bool slip = ck->tree->law == LAW_SLIP_BOND;
+  if (r[RESULT_W] && !(slip && (r[RESULT_N] || r[RESULT_V]))) return;
   if (!r[RESULT_N]) report_missing(ck, "force N", "N");
-  if (ck->tree->law == LAW_CENTRAL_BOND || r[RESULT_V]) return;
+  if (slip && !r[RESULT_V]) report_missing(ck, "force V", "V");
+  if (slip || ck->tree->law == LAW_CENTRAL_BOND || r[RESULT_V]) return;
   if (!r[RESULT_M_I]) report_missing(ck, "moment M_i", "M_i");
   if (!r[RESULT_M_J]) report_missing(ck, "moment M_j", "M_j");
 }

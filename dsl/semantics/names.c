@@ -51,10 +51,16 @@ entry *names_add(checker *ck, name_space space, const char *key, symbol what) {
   return added;
 }
 
+/* Slip and gap are a law's own names where they are no quantities. */
+static bool is_free_here(const checker *ck, const builtin_quantity_info *q) {
+  return q->kinds == IN_SLIP && ck->tree->law != LAW_SLIP_BOND;
+}
+
 static void add_builtins(checker *ck) {
   ck->now = -1;
   for (int i = 0; i < QUANTITY_COUNT; i++) {
     const builtin_quantity_info *q = &builtin_quantities[i];
+    if (is_free_here(ck, q)) continue;
     dimension dim = dimension_of(q->unit);
     const placement on = is_pairwise(ck) && q->place == ON_PARTICLE ? ON_BODY : q->place;
     entry *e = names_add(ck, SPACE_QUANTITIES, q->name,
@@ -118,8 +124,31 @@ void names_suggest(checker *ck, name_space space, const char *name) {
 
 /* --- reading ---------------------------------------------------------------------------------- */
 
+static const char *law_that_has(int kinds) {
+  const law_kind kind = kinds & IN_MICROPOLAR ? LAW_MICROPOLAR_BOND
+                        : kinds & IN_STATE    ? LAW_STATE
+                        : kinds & IN_SLIP     ? LAW_SLIP_BOND
+                                              : LAW_CENTRAL_BOND;
+  return law_kind_name(kind);
+}
+
+static void report_other_kind(checker *ck, const expr *e, const builtin_quantity_info *q) {
+  static const char *const laws[] = {[LAW_CENTRAL_BOND] = "a central law",
+                                     [LAW_MICROPOLAR_BOND] = "a micropolar law",
+                                     [LAW_STATE] = "a state law",
+                                     [LAW_SLIP_BOND] = "a law of slip"};
+  complain(ck, DIAG_LAW_KIND, e->name_where, "%s does not have `%s` (%s)", laws[ck->tree->law],
+           e->name, q->meaning);
+  diag_hint(ck->d, "a law that begins with `law %s` has it", law_that_has(q->kinds));
+}
+
 static void report_unknown(checker *ck, const expr *e) {
   const char *name = e->name;
+  const int quantity = ck->alone ? -1 : builtin_quantity_find(name);
+  if (quantity >= 0) {
+    report_other_kind(ck, e, &builtin_quantities[quantity]);
+    return;
+  }
   const entry *choice = names_find(ck, SPACE_CHOICES, name);
   if (choice) {
     complain(ck, DIAG_OPTION, e->name_where, "`%s` is a choice of option `%s`, not a quantity",
@@ -145,20 +174,10 @@ bool is_fixed(const symbol *s) {
   return s->kind == SYMBOL_CONSTANT || s->kind == SYMBOL_PARAMETER;
 }
 
-static const char *law_that_has(int kinds) {
-  if (kinds & IN_MICROPOLAR) return "micropolar bond";
-  return kinds & IN_STATE ? "state" : "central bond";
-}
-
 static bool quantity_is_here(checker *ck, const expr *e, const symbol *s) {
-  int kinds = builtin_quantities[s->index].kinds;
-  if (!(kinds & (1 << ck->tree->law))) {
-    complain(ck, DIAG_LAW_KIND, e->name_where, "%s does not have `%s` (%s)",
-             ck->tree->law == LAW_CENTRAL_BOND      ? "a central law"
-             : ck->tree->law == LAW_MICROPOLAR_BOND ? "a micropolar law"
-                                                    : "a state law",
-             e->name, s->doc);
-    diag_hint(ck->d, "a law that begins with `law %s` has it", law_that_has(kinds));
+  const builtin_quantity_info *q = &builtin_quantities[s->index];
+  if (!(q->kinds & (1 << ck->tree->law))) {
+    report_other_kind(ck, e, q);
     return false;
   }
   if (ck->context == IN_CONSTANT && !is_fixed(s)) {

@@ -69,16 +69,18 @@ void line_end(parsing *p, word of, word name, span where) {
 }
 
 static bool find_law(const char *first, const char *second, law_kind *kind) {
-  static const struct {
-    const char *first, *second;
-    law_kind kind;
-  } laws[] = {{"central", "bond", LAW_CENTRAL_BOND},
-              {"micropolar", "bond", LAW_MICROPOLAR_BOND},
-              {"state", NULL, LAW_STATE}};
-  for (size_t i = 0; i < sizeof laws / sizeof laws[0]; i++) {
-    if (strcmp(first, laws[i].first) != 0 || !laws[i].second != !second) continue;
-    if (second && strcmp(second, laws[i].second) != 0) continue;
-    *kind = laws[i].kind;
+  static const law_kind kinds[] = {
+#define X(code, words) code,
+      LAW_KINDS(X)
+#undef X
+  };
+  const size_t length = strlen(first);
+  for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
+    const char *name = law_kind_name(kinds[i]);
+    if (strncmp(name, first, length) != 0) continue;
+    if (second ? name[length] != ' ' || strcmp(name + length + 1, second) != 0 : name[length])
+      continue;
+    *kind = kinds[i];
     return true;
   }
   return false;
@@ -96,7 +98,7 @@ void line_law(parsing *p, word first, word second, span where) {
   p->model->law_where = where;
   if (!find_law(first.text, second.text, &p->model->law))
     complain(p, where, "there is no such kind of law",
-             "write `law central bond`, `law micropolar bond` or `law state`");
+             "write `law central bond`, `law micropolar bond`, `law slip bond` or `law state`");
 }
 
 void line_settings(parsing *p, const words *list, span where) {

@@ -276,12 +276,18 @@ static void dump_stmt(const stmt *s, FILE *out) {
   dump_labelled("when", s->when, 2, out);
 }
 
+const char *law_kind_name(law_kind kind) {
+#define X(code, words) [code] = words,
+  static const char *const names[] = {LAW_KINDS(X)};
+#undef X
+  return names[kind];
+}
+
 void tree_dump(const tree *t, FILE *out) {
-  static const char *const laws[] = {"central bond", "micropolar bond", "state"};
   fprintf(out, "model %s\n", t->name);
   dump_doc(t->doc, 1, out);
   indent(1, out);
-  fprintf(out, "law %s\n", laws[t->law]);
+  fprintf(out, "law %s\n", law_kind_name(t->law));
   for (int i = 0; i < t->setting_count; i++)
     fprintf(out, "%s%s%s", i ? ", " : "  for ", t->settings[i],
             i + 1 == t->setting_count ? "\n" : "");

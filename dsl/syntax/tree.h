@@ -169,7 +169,25 @@ struct stmt {
   struct symbol *symbol; /* what the statement declares or defines */
 };
 
-typedef enum law_kind { LAW_CENTRAL_BOND, LAW_MICROPOLAR_BOND, LAW_STATE } law_kind;
+/* What stands in the line `law`. */
+#define LAW_KINDS(X)                                                                               \
+  X(LAW_CENTRAL_BOND, "central bond")                                                              \
+  X(LAW_MICROPOLAR_BOND, "micropolar bond")                                                        \
+  X(LAW_STATE, "state")                                                                            \
+  X(LAW_SLIP_BOND, "slip bond")
+
+typedef enum law_kind {
+#define X(code, words) code,
+  LAW_KINDS(X)
+#undef X
+} law_kind;
+
+const char *law_kind_name(law_kind kind);
+
+/* Whether the ends of its bonds turn, so that particles have rotations. */
+static inline bool law_kind_turns(law_kind kind) {
+  return kind == LAW_MICROPOLAR_BOND || kind == LAW_SLIP_BOND;
+}
 
 typedef struct tree {
   const char *name;

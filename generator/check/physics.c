@@ -175,7 +175,7 @@ static void check_families(family_bench *b) {
 /* What single bonds have said already is not said again. */
 static void check_twisting_bonds(const physics *p, physics_report *report) {
   const law *l = p->b.law;
-  if (l->tree->law != LAW_MICROPOLAR_BOND || l->setting != SETTING_SPACE) return;
+  if (!law_kind_turns(l->tree->law) || l->setting != SETTING_SPACE) return;
   family_bench *b = family_bench_new(l, p->b.options, p->said);
   if (!b) return;
   memcpy(b->failed, p->failed, sizeof b->failed);

@@ -127,7 +127,7 @@ bool bench_open(bench *b, const law *l, const physics_options *o, diagnostics *d
   b->parameter_count = l->parameters.count;
   b->field_count = l->fields.count;
   b->width = b->parameter_count + QUANTITY_COUNT + b->field_count + LAW_CHORD;
-  b->micropolar = l->tree->law == LAW_MICROPOLAR_BOND;
+  b->micropolar = law_kind_turns(l->tree->law);
   const size_t longest = (size_t)b->width + ENDS_COUNT; /* as long as any of the parts */
   b->strides = arena_alloc(b->memory, longest);
   memset(b->strides, 1, longest);

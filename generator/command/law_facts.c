@@ -5,8 +5,7 @@
 #include "dsl/base/arena.h"
 
 const char *law_kind_text(const law *l) {
-  static const char *const kinds[] = {"central bond", "micropolar bond", "state"};
-  return kinds[l->tree->law];
+  return law_kind_name(l->tree->law);
 }
 
 bool law_facts_of_families(const law_facts *f) {

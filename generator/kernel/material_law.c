@@ -210,9 +210,26 @@ static bool suits_link(const deck_material *m, const law *of, diagnostics *said)
   return false;
 }
 
+/* A bond with slip and gap lies along a bar, as those of links to places do. Without a deck, where
+   a law is looked at alone, a lattice has no keys and only stands for one. */
+static bool can_slip(const deck_material *m, const deck_lattice *l, const law *of,
+                     diagnostics *said) {
+  if (!l->item.keys || (deck_lattice_is_link(l) && l->area > 0)) return true;
+  diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),
+              "the law `%s` is one of slip and gap, which links to places alone have",
+              of->tree->name);
+  diag_hint(
+      said,
+      deck_lattice_is_link(l)
+          ? "give the link `to = 'place'`, or take another law, such as `bar_bond`"
+          : "take a law that begins with `law central bond`, `law micropolar bond` or `law state`");
+  return false;
+}
+
 static bool suits_section(const deck_material *m, const deck_lattice *l, const law *of,
                           diagnostics *said) {
   if (!l) return true;
+  if (of->tree->law == LAW_SLIP_BOND && !can_slip(m, l, of, said)) return false;
   if (deck_lattice_is_link(l) && !suits_link(m, of, said)) return false;
   if (deck_lattice_is_chain(l) || l->area > 0) return suits_chain(m, l, of, said);
   if (!law_reads(of, QUANTITY_AREA)) return true;

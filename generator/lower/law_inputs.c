@@ -25,9 +25,10 @@ void law_state_inputs(pl_input out[PL_STATE_INPUTS]) {
   }
 }
 
-/* Motion, class, and what a law has in other ways: TWIST, RESOLVED, DIRECTION. */
+/* Motion, class, and what a law has in other ways: TWIST, RESOLVED, DIRECTION, and what is made
+   of the motion: SLIP, GAP, SLIP_RATE. */
 #define X(code, value) +1
-_Static_assert(PL_STATE_INPUTS CLASS_QUANTITIES(X) + 3 == QUANTITY_COUNT,
+_Static_assert(PL_STATE_INPUTS CLASS_QUANTITIES(X) + 6 == QUANTITY_COUNT,
                "each quantity has a place where a law finds it");
 #undef X
 

@@ -10,6 +10,7 @@
 #include "generator/lower/lower_energy.h"
 #include "generator/lower/lower_family.h"
 #include "generator/lower/lower_inputs.h"
+#include "generator/lower/lower_slip.h"
 #include "generator/lower/lower_value.h"
 
 /* --- rules ------------------------------------------------------------------------------------ */
@@ -250,13 +251,32 @@ static void lower_moments(lowering *c, lowered_law *out) {
   if (c->law->twists) out->T = twisting_moment(c, out->W);
 }
 
+/* N along the bar and V across it, as the axial force and the end moments of the bond. */
+static void lower_forces_of_slip(lowering *c, ir_node N, lowered_law *out) {
+  ir *g = c->graph;
+  const components V = components_of(c, c->law->results[RESULT_V]);
+  const slip_work w = lower_slip_work(c, N, &V);
+  out->N = lower_slip_settle(g, &w, force_of_energy(c, w.energy));
+  for (int k = 0; k < lower_bending_axes(c->law); k++) {
+    const ir_node by_i = lower_bending(g, c->law, QUANTITY_THETA_I, k),
+                  by_j = lower_bending(g, c->law, QUANTITY_THETA_J, k);
+    out->M_i[k] = lower_slip_settle(g, &w, ir_derivative(g, w.energy, by_i));
+    out->M_j[k] = lower_slip_settle(g, &w, ir_derivative(g, w.energy, by_j));
+  }
+  if (c->law->twists) out->T = ir_constant(g, 0);
+}
+
+static void lower_forces_of_bond(lowering *c, ir_node N, lowered_law *out) {
+  out->N = N != IR_NONE        ? N
+           : out->W != IR_NONE ? force_of_energy(c, out->W)
+                               : lower_fail(c, c->law->tree->name_where, "the law gives no force");
+  if (law_kind_turns(c->law->tree->law)) lower_moments(c, out);
+}
+
 static void lower_bond_results(lowering *c, lowered_law *out) {
-  out->N = result_node(c, RESULT_N);
-  if (out->N == IR_NONE && out->W == IR_NONE)
-    out->N = lower_fail(c, c->law->tree->name_where, "the law gives no force");
-  else if (out->N == IR_NONE)
-    out->N = force_of_energy(c, out->W);
-  if (c->law->tree->law == LAW_MICROPOLAR_BOND) lower_moments(c, out);
+  const ir_node N = result_node(c, RESULT_N);
+  const bool slips = c->law->tree->law == LAW_SLIP_BOND && N != IR_NONE;
+  (slips ? lower_forces_of_slip : lower_forces_of_bond)(c, N, out);
   static const char *const of_i[] = {"M_ix", "M_iy", "M_iz"}, *const of_j[] = {"M_jx", "M_jy",
                                                                                "M_jz"};
   const bool space = c->law->bends_in_space;

@@ -7,6 +7,7 @@
 #include "generator/ir/rewrite.h"
 #include "generator/lower/lower_family.h"
 #include "generator/lower/lower_inputs.h"
+#include "generator/lower/lower_slip.h"
 #include "generator/lower/lower_tensor.h"
 
 /* --- names ------------------------------------------------------------------------------------ */
@@ -21,6 +22,7 @@ static components lower_bending_quantity(const lowering *c, builtin_quantity q) 
 static components lower_quantity_name(lowering *c, builtin_quantity q) {
   if (q == QUANTITY_V) return scalar(lower_volume(c->graph, c->law));
   if (q == QUANTITY_RESOLVED) return scalar(lower_resolved(c->graph, c->law));
+  if (builtin_quantities[q].kinds == IN_SLIP) return lower_slip_quantity(c, q);
   if (builtin_quantities[q].shape == SHAPE_BENDING) return lower_bending_quantity(c, q);
   if (q == QUANTITY_TWIST && !c->law->twists) return scalar(ir_constant(c->graph, 0));
   if (q == QUANTITY_N_FAMILY && lower_is_state_law(c)) return scalar(lower_family_size(c->graph));

@@ -52,7 +52,7 @@ static kernel_plan *plan_families(const law *l, const law_variation *v, kernel_f
    only where they change. So are end rotations, which are dear. */
 static bool is_for_pairs(const law *l) {
   enum { WRITTEN_OUT_FASTER = 12 };
-  bool on_bonds = l->tree->law == LAW_MICROPOLAR_BOND;
+  bool on_bonds = law_kind_turns(l->tree->law);
   for (int k = 0; k < l->fields.count; k++)
     on_bonds = on_bonds || l->fields.items[k]->place == ON_BOND;
   return on_bonds || l->neighbours > WRITTEN_OUT_FASTER;
@@ -72,7 +72,7 @@ kernel_plan *plan_kernel_of_families(const law *l, const law_variation *v, diagn
 
 kernel_plan *plan_kernel_varying(const law *l, const law_variation *v, diagnostics *d) {
   if (l->tree->law == LAW_STATE) return plan_kernel_of_families(l, v, d);
-  bool micropolar = l->tree->law == LAW_MICROPOLAR_BOND;
+  bool micropolar = law_kind_turns(l->tree->law);
   bool twists = micropolar && l->setting == SETTING_SPACE;
   kernel_plan *plan = plan_begin(twists ? law_twisting(l) : l, FORM_STRIPS);
   keep_variation(plan, v);

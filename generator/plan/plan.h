@@ -83,7 +83,7 @@ typedef struct kernel_plan {
 /* PL_CENTRAL, PL_MICROPOLAR over strips; else PL_STATE, of families. */
 static inline int plan_kind(const kernel_plan *p) {
   if (p->form != FORM_STRIPS) return PL_STATE;
-  return p->law->tree->law == LAW_MICROPOLAR_BOND ? PL_MICROPOLAR : PL_CENTRAL;
+  return law_kind_turns(p->law->tree->law) ? PL_MICROPOLAR : PL_CENTRAL;
 }
 
 /* The segment of a program that has but one. */

@@ -487,7 +487,7 @@ static bool reads_thickness(const family_planner *p) {
 }
 
 void plan_axes(kernel_plan *plan) {
-  const bool turns = plan->law->tree->law == LAW_MICROPOLAR_BOND;
+  const bool turns = law_kind_turns(plan->law->tree->law);
   plan->dimensions = lower_dimensions(plan->law);
   plan->rotations = !turns ? 0 : plan->dimensions == 2 ? 1 : 3;
   plan->dof = plan->dimensions + plan->rotations;

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "dsl/base/elementary.h"
 #include "generator/drive/explain_bad.h"
@@ -320,6 +321,37 @@ static void announce_lattice(const run *r, int lattice) {
       1e3 * w->height, depth);
 }
 
+/* "mass       0.2 kg on 3 particles of `tip`" */
+static void announce_point_mass(const run *r, int index) {
+  long particles;
+  const double mass = simulation_point_mass(r->simulation, index, &particles);
+  printf("  mass       %.6g kg on %ld particle%s of `%s`\n", mass, particles,
+         particles == 1 ? "" : "s", r->deck->point_masss[index].region);
+}
+
+static bool is_written(const deck_item *item, const char *key) {
+  for (int k = 0; k < item->key_count; k++)
+    if (strcasecmp(item->keys[k].name, key) == 0) return true;
+  return false;
+}
+
+/* "load       -42 kN/m on 1.2 m of `top`, 60 particles: -50.4 kN along y" */
+static void announce_line_load(const run *r, int force) {
+  const deck_force *f = &r->deck->forces[force];
+  const int region = deck_find_region(r->deck, f->region);
+  const int lattice = deck_find_lattice(r->deck, r->deck->regions[region].lattice);
+  const int dimensions = simulation_rows(r->simulation, lattice)->dimensions;
+  long particles;
+  const double length = simulation_loaded_length(r->simulation, force, &particles);
+  const bool known = is_written(&f->item, "per_length");
+  fputs("  load      ", stdout);
+  if (known) print_quantity(" ", f->force.value, "N/m");
+  printf("%s %.6g m of `%s`, %ld particles", known ? " on" : " by length on", length, f->region,
+         particles);
+  if (known) print_quantity(": ", f->force.value * length, "N");
+  printf(" along %s\n", deck_component_name(dimensions, f->component));
+}
+
 /* Loads come in the deck's time, which has nothing to do with that of the steps. */
 static void announce_increments(const run *r) {
   const deck_relaxation *k = &r->deck->relaxation;
@@ -357,6 +389,10 @@ void announce(const run *r) {
     announce_notches(r, k);
     announce_laws(r, k);
   }
+  for (int p = 0; p < r->deck->point_mass_count; p++)
+    announce_point_mass(r, p);
+  for (int f = 0; f < r->deck->force_count; f++)
+    if (r->deck->forces[f].per_length) announce_line_load(r, f);
   if (r->deck->relaxation.increments > 0)
     announce_increments(r);
   else

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/base/elementary.h"
+#include "runtime/analysis/bar_force.h"
 #include "runtime/analysis/crack_tip.h"
 #include "runtime/analysis/particle_tensors.h"
 #include "runtime/analysis/section.h"
@@ -17,13 +18,15 @@ struct watched_part {
   long count;
   /* of the kind that they are for */
   section section;
+  bar_force bar;
   tensor_region region;
   crack_tip *tips; /* [tip_count] of each law that has damage */
   int tip_count;
 };
 
 bool watched_needs_forces(const deck_monitor *m) {
-  return m->kind == MONITOR_FORCE || m->kind == MONITOR_MOMENT || m->kind == MONITOR_STRESS;
+  return m->kind == MONITOR_FORCE || m->kind == MONITOR_MOMENT || m->kind == MONITOR_STRESS ||
+         m->kind == MONITOR_BAR_FORCE;
 }
 
 /* --- set-up ----------------------------------------------------------------------------------- */
@@ -34,31 +37,37 @@ static double distance_to(const rows *g, long site, const double at[3]) {
   return bravais_distance(here, at);
 }
 
-static void report_far(const watched_part *w, long nearest, diagnostics *d) {
-  const rows *g = w->of->lattice;
-  double here[3];
+static bool is_near(const deck_monitor *m, const rows *g, const char *what, const double here[3],
+                    diagnostics *d) {
+  const double distance = bravais_distance(here, m->at);
   char text[ROWS_PLACE_TEXT];
-  rows_place(g, nearest, here);
-  diag_report(d, DIAG_EMPTY_REGION, deck_where(&w->deck->item, "at"),
-              "no particle stands within a spacing of `at`");
-  diag_hint(d, "the nearest particle stands %.4g mm away at %s",
-            1e3 * distance_to(g, nearest, w->deck->at), rows_place_text(g->dimensions, here, text));
+  if (distance <= g->spacing) return true;
+  diag_report(d, DIAG_EMPTY_REGION, deck_where(&m->item, "at"),
+              "no %s stands within a spacing of `at`", what);
+  diag_hint(d, "the nearest %s stands %.4g mm away at %s", what, 1e3 * distance,
+            rows_place_text(g->dimensions, here, text));
+  return false;
 }
 
-/* The particle nearest to `at`, the first of several. */
+long watched_nearest(const deck_monitor *m, const rows *g, const int32_t *sites, long count,
+                     diagnostics *d) {
+  long best = 0;
+  double here[3];
+  for (long p = 1; p < count; p++) {
+    const double gain = distance_to(g, sites[best], m->at) - distance_to(g, sites[p], m->at);
+    if (gain > 1e-6 * g->spacing) best = p;
+  }
+  rows_place(g, sites[best], here);
+  return is_near(m, g, "particle", here, d) ? best : -1;
+}
+
 static bool take_nearest(watched_part *w, diagnostics *d) {
   const rows *g = w->of->lattice;
-  long best = g->particle_site[0];
-  for (long p = 1; p < g->particle_count; p++) {
-    const double gain =
-        distance_to(g, best, w->deck->at) - distance_to(g, g->particle_site[p], w->deck->at);
-    if (gain > 1e-6 * g->spacing) best = g->particle_site[p];
-  }
-  w->sites[0] = (int32_t)best;
+  const long best = watched_nearest(w->deck, g, g->particle_site, g->particle_count, d);
+  if (best < 0) return false;
+  w->sites[0] = g->particle_site[best];
   w->count = 1;
-  if (distance_to(g, best, w->deck->at) <= g->spacing) return true;
-  report_far(w, best, d);
-  return false;
+  return true;
 }
 
 /* NULL where all particles are meant. */
@@ -79,6 +88,17 @@ static bool open_section(watched_part *w, diagnostics *d) {
               "no bond crosses this section");
   diag_hint(d, "`at` is a place of the section, `normal` stands across it%s",
             w->deck->region ? "; both ends of a bond must belong to the region" : "");
+  return false;
+}
+
+static bool open_bar(watched_part *w, diagnostics *d) {
+  unsigned char *inside = inside_of(w);
+  w->bar = bar_force_new(w->of, w->deck->placed ? w->deck->at : NULL, inside);
+  free(inside);
+  if (w->bar.count > 0)
+    return !w->deck->placed || is_near(w->deck, w->of->lattice, "bond", w->bar.middle, d);
+  diag_report(d, DIAG_EMPTY_REGION, deck_where(&w->deck->item, "region"),
+              "no bond of the bar has both ends in this region");
   return false;
 }
 
@@ -118,6 +138,8 @@ static bool open_kind(watched_part *w, const damage_law *laws, int count, diagno
   case MONITOR_FORCE:
   case MONITOR_MOMENT:
     return open_section(w, d);
+  case MONITOR_BAR_FORCE:
+    return open_bar(w, d);
   case MONITOR_TIP:
   case MONITOR_TIP_SPEED:
     return open_tips(w, laws, count, d);
@@ -149,6 +171,7 @@ watched_part *watched_new(const deck_monitor *m, const int32_t *sites, long coun
 void watched_free(watched_part *w) {
   if (!w) return;
   section_free(&w->section);
+  bar_force_free(&w->bar);
   tensor_region_free(&w->region);
   for (int n = 0; n < w->tip_count; n++)
     crack_tip_free(&w->tips[n]);
@@ -228,6 +251,8 @@ double watched_value(const watched_part *w, const watch_instant *at) {
   case MONITOR_FORCE:
   case MONITOR_MOMENT:
     return through_section(w, at->forces);
+  case MONITOR_BAR_FORCE:
+    return bar_force_largest(&w->bar, at->forces);
   case MONITOR_TIP:
   case MONITOR_TIP_SPEED:
     return way_of_tip(w, at->late);
@@ -271,6 +296,12 @@ static char *tip_words(const watched_part *w, arena *a) {
                       w->deck->above, place_words(w, w->deck->at, a));
 }
 
+static char *bar_words(const watched_part *w, arena *a) {
+  return w->deck->placed
+             ? arena_printf(a, "tension along the bond at %s", place_words(w, w->bar.middle, a))
+             : arena_printf(a, "largest tension along the bonds %s", part_words(w, a));
+}
+
 char *watched_words(const watched_part *w, arena *a) {
   static const char *const axes[] = {"x", "y", "z"};
   const char *of = part_words(w, a);
@@ -293,6 +324,8 @@ char *watched_words(const watched_part *w, arena *a) {
     return arena_printf(a, "moment about %s through the section at %s",
                         w->deck->component < 0 ? "the normal" : axes[w->deck->component],
                         place_words(w, w->deck->at, a));
+  case MONITOR_BAR_FORCE:
+    return bar_words(w, a);
   case MONITOR_TIP:
   case MONITOR_TIP_SPEED:
     return tip_words(w, a);

@@ -1,5 +1,5 @@
 /* What a monitor watches of a part of a body: accelerations, momenta, energies, stresses, strains,
-   the force through a section, the tip of a crack. */
+   the force through a section, that along a bar, the tip of a crack. */
 #ifndef PERILAT_RUNTIME_WATCHED_H
 #define PERILAT_RUNTIME_WATCHED_H
 
@@ -20,6 +20,10 @@ typedef struct watch_instant { /* the state looked at, which was observed */
   double *scratch;     /* [size] */
 } watch_instant;
 
+/* Which of the sites is the nearest to `at`, the first of several; -1 with a diagnostic where it is
+   further than a spacing. */
+long watched_nearest(const deck_monitor *m, const rows *g, const int32_t *sites, long count,
+                     diagnostics *d);
 /* Whether the bonds' forces are asked for. */
 bool watched_needs_forces(const deck_monitor *m);
 /* Sites of the region, or of all particles; `laws`: all at work on these. NULL with a diagnostic

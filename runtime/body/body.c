@@ -51,18 +51,29 @@ static void new_motion(body *w) {
   w->row_stuck = must_calloc((size_t)g->row_count, sizeof *w->row_stuck);
 }
 
+/* A mass for each particle. */
 static void new_masses(body *w) {
   const rows *g = w->lattice;
   const int kinds = w->dof > w->dimensions ? 2 : 1;
-  for (int turns = 0; turns < kinds && g->site_mass; turns++) {
+  for (int turns = 0; turns < kinds; turns++) {
     w->relative_mass[turns] = body_doubles(w, g->size);
     w->mobility[turns] = body_doubles(w, g->size);
     for (long q = 0; q < g->size; q++) {
       if (!g->present[q]) continue;
       const double square = turns ? rows_radius_square(g, q) : 1;
-      w->relative_mass[turns][q] = g->site_mass[q] / g->mass * square;
-      w->mobility[turns][q] = g->mass / g->site_mass[q] / square;
+      const double mass = g->site_mass ? g->site_mass[q] : g->mass;
+      w->relative_mass[turns][q] = mass / g->mass * square;
+      w->mobility[turns][q] = g->mass / mass / square;
     }
+  }
+}
+
+void body_add_mass(body *w, long site, double mass, double inertia) {
+  const double more[] = {mass / w->mass[0], inertia / w->mass[w->dof - 1]};
+  if (!w->relative_mass[0]) new_masses(w);
+  for (int turns = 0; turns < 2 && w->relative_mass[turns]; turns++) {
+    w->relative_mass[turns][site] += more[turns];
+    w->mobility[turns][site] = 1 / w->relative_mass[turns][site];
   }
 }
 
@@ -105,7 +116,7 @@ body *body_new(const rows *lattice, int dof, double time_step, int threads, body
   w->time_step = time_step;
   w->decay = 1;
   find_spans(w);
-  new_masses(w);
+  if (lattice->site_mass) new_masses(w);
   new_motion(w);
   new_blocks(w, threads, share);
   return w;

@@ -61,7 +61,7 @@ typedef struct deck_lattice {
   bool closed;     /* the last corner is joined to the first */
   int copies;      /* of this line, */
   double shift[3]; /* m: each from the one before */
-  double diameter; /* m; 0: the area is given */
+  double diameter; /* m; where the area is given, of the round one */
   /* of a link: names and numbers of the bar and of the lattice around it */
   const char *bar, *around;
   int of_bar, of_around;
@@ -162,6 +162,14 @@ typedef struct deck_region {
   deck_shape shape;
 } deck_region;
 
+typedef struct deck_point_mass { /* carried by the particles of a region, without stiffness */
+  deck_item item;
+  const char *region;
+  double mass;    /* kg: of each particle; 0: `total` is given */
+  double total;   /* kg: of all, shared equally */
+  double inertia; /* kg m^2: of each particle, about any axis */
+} deck_point_mass;
+
 /* Components in a deck are degrees of freedom of a particle: in the plane 0 x, 1 y, 2 rotation; in
    space 0 x, 1 y, 2 z, and 3, 4, 5 rotation about x, y, z. Bits of `fix` are 1 << component. */
 enum { FIX_X = 1, FIX_Y = 2, FIX_ROTATION = 4, FIX_Z = 4 };
@@ -180,11 +188,12 @@ typedef struct deck_drive { /* prescribed motion: velocity or displacement; free
   time_function motion; /* m/s or m (rad/s, rad) */
 } deck_drive;
 
-typedef struct deck_force { /* total force on the region, shared equally by its particles */
+typedef struct deck_force { /* on the region, shared equally by its particles */
   deck_item item;
   const char *region;
   int component;       /* a rotation: moment in N*m */
-  time_function force; /* N */
+  bool per_length;     /* by the particles' parts of their row */
+  time_function force; /* N; per length N/m */
 } deck_force;
 
 typedef struct deck_end_moment { /* horizontal forces, linear in y over the region, without
@@ -259,7 +268,10 @@ typedef enum monitor_kind {
   MONITOR_STRESS,           /* Pa */
   MONITOR_STRAIN,           /* 1 */
   MONITOR_APPLIED,          /* N, N m */
-  MONITOR_REACTIONS         /* N, `between`: half of the second's reaction less the first's */
+  MONITOR_BAR_FORCE,     /* N: along a bar, in the bond nearest to `at`, or the largest tension */
+  MONITOR_SLIP,          /* m: of a link to places, nearest to `at`, or the largest in size */
+  MONITOR_CONTACT_FORCE, /* N: of all contacts, on the region's or on all particles */
+  MONITOR_REACTIONS      /* N, `between`: half of the second's reaction less the first's */
 } monitor_kind;
 
 enum { MONITOR_KINETIC, MONITOR_STORED }; /* components of MONITOR_ENERGY */
@@ -339,6 +351,7 @@ typedef struct deck_file { /* a table that a load was read from */
   LIST(body)                                                                                       \
   LIST(notch)                                                                                      \
   LIST(region)                                                                                     \
+  LIST(point_mass)                                                                                 \
   LIST(support)                                                                                    \
   LIST(drive)                                                                                      \
   LIST(force)                                                                                      \

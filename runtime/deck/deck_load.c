@@ -273,6 +273,17 @@ static bool read_formula(arena *a, const namelist_group *g, const deck_load_kind
   return false;
 }
 
+/* "`total`, `moment` or `per_length`"; with their units "`total` (N) or `moment` (N*m)". */
+static const char *names_of(arena *a, const deck_load_kind *kinds, int count, bool units) {
+  const char *text = "";
+  for (int k = 0; k < count; k++) {
+    const char *join = k == 0 ? "" : k < count - 1 ? ", " : " or ";
+    text = arena_printf(a, "%s%s`%s`", text, join, kinds[k].key);
+    if (units) text = arena_printf(a, "%s (%s)", text, kinds[k].unit);
+  }
+  return text;
+}
+
 /* The one whose unit the formula has. */
 static int kind_by_formula(arena *a, const namelist_group *g, const deck_load_kind *kinds,
                            int count, diagnostics *d) {
@@ -284,19 +295,16 @@ static int kind_by_formula(arena *a, const namelist_group *g, const deck_load_ki
       return k;
   dim_describe(formula_dimension(f), words, sizeof words);
   diag_report(d, DIAG_UNITS, namelist_find(g, "formula")->value_where,
-              "without `%s`%s%s%s in the deck the formula is the load itself, but this is %s",
-              kinds[0].key, count > 1 ? " or `" : "", count > 1 ? kinds[1].key : "",
-              count > 1 ? "`" : "", words);
-  diag_hint(d, "its unit is that of `%s` (%s)%s%s%s%s%s", kinds[0].key, kinds[0].unit,
-            count > 1 ? " or `" : "", count > 1 ? kinds[1].key : "", count > 1 ? "` (" : "",
-            count > 1 ? kinds[1].unit : "", count > 1 ? ")" : "");
+              "without %s in the deck the formula is the load itself, but this is %s",
+              names_of(a, kinds, count, false), words);
+  diag_hint(d, "its unit is that of %s", names_of(a, kinds, count, true));
   return -1;
 }
 
 /* --- loads ------------------------------------------------------------------------------------ */
 
 /* The one whose unit the file's column has. */
-static int kind_by_unit(const namelist_group *g, const deck_load_kind *kinds, int count,
+static int kind_by_unit(arena *a, const namelist_group *g, const deck_load_kind *kinds, int count,
                         diagnostics *d) {
   load_file l;
   unit given, of_kind;
@@ -309,20 +317,18 @@ static int kind_by_unit(const namelist_group *g, const deck_load_kind *kinds, in
     if (unit_parse(kinds[k].unit, strlen(kinds[k].unit), &of_kind, &bad, &bad_length) &&
         dim_equal(given.dim, of_kind.dim))
       found = k;
-  if (good && found < 0) {
+  if (good && found < 0)
     diag_report(d, DIAG_UNITS, text_table_title(&l.text, l.column[VALUE], d),
-                "the unit of `%s` is one of `%s`%s%s%s", name_of(&l, VALUE), kinds[0].unit,
-                count > 1 ? " (" : "", count > 1 ? kinds[0].key : "", count > 1 ? ")" : "");
-    if (count > 1) diag_hint(d, "or one of `%s` (%s)", kinds[1].unit, kinds[1].key);
-  }
+                "the unit of `%s` is that of %s", name_of(&l, VALUE),
+                names_of(a, kinds, count, true));
   text_table_free(&l.text);
   return found;
 }
 
-static int report_none(const namelist_group *g, const deck_load_kind *kinds, int count,
+static int report_none(arena *a, const namelist_group *g, const deck_load_kind *kinds, int count,
                        diagnostics *d) {
-  diag_report(d, DIAG_MISSING_KEY, g->where, "`&%s` needs `%s`%s%s%s", g->name, kinds[0].key,
-              count > 1 ? " or `" : "", count > 1 ? kinds[1].key : "", count > 1 ? "`" : "");
+  diag_report(d, DIAG_MISSING_KEY, g->where, "`&%s` needs %s", g->name,
+              names_of(a, kinds, count, false));
   diag_hint(d,
             "or a `file` with times and values in two columns, with their units, or a `formula`");
   return -1;
@@ -344,8 +350,8 @@ int deck_load_kind_of(arena *a, const namelist_group *g, const deck_load_kind *k
   }
   if (found >= 0) return found;
   if (namelist_find(g, "formula")) return kind_by_formula(a, g, kinds, count, d);
-  return namelist_find(g, "file") ? kind_by_unit(g, kinds, count, d)
-                                  : report_none(g, kinds, count, d);
+  return namelist_find(g, "file") ? kind_by_unit(a, g, kinds, count, d)
+                                  : report_none(a, g, kinds, count, d);
 }
 
 static bool read_times(arena *a, const namelist_group *g, const deck_load_kind *kind, double full,

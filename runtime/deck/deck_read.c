@@ -461,6 +461,17 @@ static bool has_regional(const deck *k, const char *lattice) {
   return false;
 }
 
+/* A law that suits a bar, or a link. */
+static void hint_law(deck_reader *r, const deck_lattice *l, const char *name) {
+  const bool link = deck_lattice_is_link(l);
+  if (!link && !deck_lattice_is_bar(l)) return;
+  const char *law = !link                             ? "steel_bar"
+                    : l->to == LINK_TO_PLACE          ? "bond_slip"
+                    : deck_lattice_dimensions(l) == 3 ? "mplm_space"
+                                                      : "bar_bond";
+  diag_hint(r->d, "such as: &material %s = '%s' model = '%s' /", deck_lattice_word(l), name, law);
+}
+
 static void check_whole(deck_reader *r) {
   const deck *k = r->k;
   const deck_item *simulation = &k->simulation.item;
@@ -475,10 +486,12 @@ static void check_whole(deck_reader *r) {
     const deck_lattice *lattice = &k->lattices[i];
     if (!lattice->name) continue;
     const char *name = deck_shown(r->memory, lattice->name);
-    if (!has_material(k, lattice->name))
+    if (!has_material(k, lattice->name)) {
       diag_report(r->d, DIAG_MISSING_KEY, lattice->item.where, "the %s `%s` has no `&material`%s",
                   deck_lattice_word(lattice), name,
                   has_regional(k, lattice->name) ? " without `region`" : "");
+      hint_law(r, lattice, name);
+    }
     if (deck_misses_body(k, i))
       diag_report(r->d, DIAG_MISSING_KEY, lattice->item.where, "the lattice `%s` has no `&body`",
                   name);

@@ -375,3 +375,44 @@ static void check_region(deck_reader *r, const namelist_group *from, void *into)
 
 DECK_LIST(region, .identity = "name", .check = check_region,
           .doc = "Names the particles inside or on a shape, for loads and monitors.");
+
+static const deck_key_info point_mass_keys[] = {
+    {.name = "region",
+     .type = DECK_NAME,
+     .required = true,
+     DECK_AT(point_mass, region),
+     .doc = "what carries it"},
+    {.name = "mass",
+     .type = DECK_REAL,
+     .unit = "kg",
+     .bound = BOUND_POSITIVE,
+     DECK_AT(point_mass, mass),
+     .doc = "on each particle; or give the `total`"},
+    {.name = "total",
+     .type = DECK_REAL,
+     .unit = "kg",
+     .bound = BOUND_POSITIVE,
+     DECK_AT(point_mass, total),
+     .doc = "of all particles together, which have equal shares; or give the `mass`"},
+    {.name = "inertia",
+     .type = DECK_REAL,
+     .unit = "kg*m^2",
+     .bound = BOUND_POSITIVE,
+     .fallback = "= 0",
+     DECK_AT(point_mass, inertia),
+     .doc = "moment of inertia on each particle, in space about any axis; for particles that "
+            "rotate"},
+};
+
+static void check_point_mass(deck_reader *r, const namelist_group *from, void *into) {
+  const deck_point_mass *item = into;
+  deck_moving_region_known(r, &item->item, item->region);
+  deck_refuse_both(r, from, "mass", "total");
+  if (namelist_find(from, "mass") || namelist_find(from, "total")) return;
+  diag_report(r->d, DIAG_MISSING_KEY, item->item.where, "`&point_mass` needs `mass` or `total`");
+  diag_hint(r->d, "mass = '0.2 kg' puts this on each particle, total = '0.2 kg' on all together");
+}
+
+DECK_LIST(point_mass, .identity = "region", .check = check_point_mass,
+          .doc = "Mass that particles carry beside their own, without stiffness; several add up. "
+                 "See [Point masses](#point-masses).");

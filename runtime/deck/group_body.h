@@ -1,9 +1,11 @@
-/* Groups that have a shape: bodies, notches, and the regions that name particles. */
+/* Groups that have a shape: bodies, notches, and the regions that name particles; masses that these
+   carry. */
 #ifndef PERILAT_RUNTIME_GROUP_BODY_H
 #define PERILAT_RUNTIME_GROUP_BODY_H
 
 #include "runtime/deck/deck_schema.h"
 
-extern const deck_group_info deck_group_body, deck_group_notch, deck_group_region;
+extern const deck_group_info deck_group_body, deck_group_notch, deck_group_region,
+    deck_group_point_mass;
 
 #endif

@@ -166,6 +166,13 @@ static const deck_key_info force_keys[] = {
      .doc =
          "full moment, of all particles together (`rotation`; in space about an axis): a couple on "
          "each, see [Rotations](#rotations); `&end_moment` bends a section as a whole"},
+    {.name = "per_length",
+     .type = DECK_LATER,
+     .unit = "N/m",
+     DECK_NOT_KEPT,
+     .doc = "full force per length of a row of particles or of a bar (`x`, `y`, `z`): each bears "
+            "its part of the line, half way to its neighbours, see [Loads along a "
+            "line](#loads-along-a-line)"},
     DECK_TIME_KEYS,
 };
 
@@ -187,48 +194,55 @@ static bool lacks_component(deck_reader *r, const namelist_group *from, const ch
   return true;
 }
 
+enum { TOTAL, MOMENT, PER_LENGTH, FORCE_KINDS };
+
+static const deck_load_kind force_kinds[FORCE_KINDS] = {
+    [TOTAL] = {"total", "N", false, &deck_formula_of_all},
+    [MOMENT] = {"moment", "N*m", false, &deck_formula_of_all},
+    [PER_LENGTH] = {"per_length", "N/m", false, &deck_formula_of_all}};
+
 /* What says it is the key, or the unit of the formula or file alone. */
-static void report_kind(deck_reader *r, const namelist_group *from, const char *given,
-                        const char *component, bool rotates) {
-  const namelist_key *key = namelist_find(from, given);
+static void report_kind(deck_reader *r, const namelist_group *from, int kind, const char *component,
+                        bool rotates) {
+  const namelist_key *key = namelist_find(from, force_kinds[kind].key);
   if (key) {
     diag_report(r->d, DIAG_CONFLICT, key->name_where, "`%s` does not go with component = '%s'",
-                given, component);
-    diag_hint(r->d, "write `%s`", rotates ? "total" : "moment");
+                force_kinds[kind].key, component);
+    diag_hint(r->d, rotates ? "write `total` or `per_length`" : "write `moment`");
     return;
   }
-  diag_report(r->d, DIAG_UNITS, source_of(from)->value_where,
-              rotates ? "a force along %s is in N, this is in N*m"
-                      : "a moment, component = '%s', is in N*m, this is in N",
-              component);
+  const char *expected =
+      rotates ? arena_printf(r->memory, "a force along %s is in N or N/m", component)
+              : arena_printf(r->memory, "a moment, component = '%s', is in N*m", component);
+  diag_report(r->d, DIAG_UNITS, source_of(from)->value_where, "%s, this is in %s", expected,
+              force_kinds[kind].unit);
 }
 
 static void check_force(deck_reader *r, const namelist_group *from, void *into) {
   deck_force *item = into;
-  static const deck_load_kind kinds[] = {{"total", "N", false, &deck_formula_of_all},
-                                         {"moment", "N*m", false, &deck_formula_of_all}};
   deck_moving_region_known(r, &item->item, item->region);
-  const int kind = deck_load_kind_of(r->memory, from, kinds, 2, r->d);
+  const int kind = deck_load_kind_of(r->memory, from, force_kinds, FORCE_KINDS, r->d);
   const namelist_key *component = namelist_find(from, "component");
   if (kind < 0) return;
-  const bool rotates = kind == 1;
+  const bool rotates = kind == MOMENT;
+  item->per_length = kind == PER_LENGTH;
   item->component = rotates ? DECK_WRITTEN_ROTATION : 0;
   if (component) item->component = deck_choice_read(r->memory, component, DECK_COMPONENTS, r->d);
   if (!component && lacks_component(r, from, item->region, rotates)) return;
   if (item->component < 0 || !deck_take_component(r, &item->item, item->region, &item->component))
     return;
   if (rotates != deck_is_rotation(r, item->region, item->component)) {
-    report_kind(r, from, kinds[kind].key, deck_component_of(r, item->region, item->component),
-                rotates);
+    report_kind(r, from, kind, deck_component_of(r, item->region, item->component), rotates);
     return;
   }
-  if (!deck_load_read(r->memory, from, &kinds[kind], &item->force, r->d)) return;
+  if (!deck_load_read(r->memory, from, &force_kinds[kind], &item->force, r->d)) return;
   deck_warn_late(r, &item->item, "start", item->force.start);
   spread(r, from, &item->force);
 }
 
 DECK_LIST(force, .identity = "region", .check = check_force,
-          .doc = "Force on a region, shared equally by its particles. Give `total` or `moment`.");
+          .doc = "Force on a region, shared equally by its particles, or by length along a row of "
+                 "them. Give `total`, `moment` or `per_length`.");
 
 /* --- end moment ------------------------------------------------------------------------------- */
 

@@ -6,6 +6,7 @@
 #include "runtime/base/symmetric_tensor.h"
 #include "runtime/deck/deck_check.h"
 #include "runtime/deck/deck_value.h"
+#include "runtime/deck/lattice_kind.h"
 
 /* --- monitors --------------------------------------------------------------------------------- */
 
@@ -22,7 +23,7 @@ static const deck_key_info monitor_keys[] = {
      .type = DECK_CHOICE,
      .choices = "reaction|displacement|velocity|opening|damaged|broken|field|acceleration|"
                 "momentum|angular_momentum|energy|force|moment|tip|tip_speed|stress|"
-                "strain|applied",
+                "strain|applied|bar_force|slip|contact_force",
      .required = true,
      DECK_AT(monitor, kind),
      .doc = "decides which of the next ten keys are needed"},
@@ -34,17 +35,16 @@ static const deck_key_info monitor_keys[] = {
          "the couples on its particles, without the moments r x F of forces; applied: sum of what "
          "`&force` and `&end_moment` exert on its particles; displacement, velocity, "
          "acceleration, field, stress, strain: mean; momentum, angular_momentum, "
-         "energy: of its particles, without it of all; force, moment: only bonds between its "
-         "particles; "
-         "tip, tip_speed: only bonds of its particles"},
+         "energy, contact_force: of its particles, without it of all; force, moment, bar_force: "
+         "only bonds between its particles; tip, tip_speed: only bonds of its particles"},
     {.name = "lattice",
      .type = DECK_NAME,
      .fallback = "= the only one; damaged, broken: all",
      DECK_AT(monitor, lattice),
-     .doc = "in place of `region`: the lattice that is watched. Where the deck has several, "
-            "momentum, angular_momentum, energy, force, moment, tip, tip_speed, and what is asked "
-            "`at` a "
-            "place, need one of the two; energies in sum over all are in `energy/...`"},
+     .doc = "in place of `region`: the lattice that is watched; bar_force: a bar, slip: a link to "
+            "places. Where the deck has several, momentum, angular_momentum, energy, force, "
+            "moment, bar_force, contact_force, tip, tip_speed, and what is asked `at` a place, "
+            "need one of the two; energies in sum over all are in `energy/...`"},
     {.name = "between",
      .type = DECK_NAMES,
      DECK_AT(monitor, between),
@@ -55,9 +55,9 @@ static const deck_key_info monitor_keys[] = {
      .type = DECK_CHOICE,
      .choices = COMPONENTS,
      DECK_AT(monitor, component),
-     .doc = "reaction, applied, displacement, velocity, opening, acceleration, momentum: "
-            "direction; force: "
-            "direction, without it along the normal; moment, angular_momentum: axis, in the plane "
+     .doc = "reaction, applied, displacement, velocity, opening, acceleration, momentum, "
+            "contact_force: direction; force: direction, without it along the normal; moment, "
+            "angular_momentum: axis, in the plane "
             "`z`, which need not be said; moment in space without it about the normal; energy: "
             "`kinetic` or `stored`; stress, strain: `xx`, `yy`, "
             "`xy`, in space `zz`, `yz`, `xz`, too"},
@@ -70,8 +70,9 @@ static const deck_key_info monitor_keys[] = {
      .unit = "m",
      DECK_AT(monitor, at),
      .doc = "acceleration, stress, strain: in place of `region`, of the particle nearest to it; "
-            "force, moment: a place of the section, which the moment is about; tip, tip_speed: "
-            "where the crack begins"},
+            "bar_force: of the bond, slip: of the tied particle nearest to it; force, moment: a "
+            "place of the section, which the moment is about; tip, tip_speed: where the crack "
+            "begins"},
     {.name = "normal",
      .type = DECK_PLACE,
      .unit = "1",
@@ -136,38 +137,36 @@ enum {
   OF_TIP = 1 << MONITOR_TIP | 1 << MONITOR_TIP_SPEED,
   OF_TURNS = 1 << MONITOR_ANGULAR_MOMENTUM,
   OF_ENERGY = 1 << MONITOR_ENERGY,
-  OF_PART = OF_TURNS | OF_ENERGY | 1 << MONITOR_MOMENTUM, /* of a region or of all */
-  OF_WHOLE = OF_PLACE | OF_PART | OF_SECTION | OF_TIP,    /* of a lattice without a region */
+  OF_BAR = 1 << MONITOR_BAR_FORCE,
+  OF_LINK = 1 << MONITOR_SLIP,
+  OF_CONTACT = 1 << MONITOR_CONTACT_FORCE,
+  OF_SUMS = OF_CONTACT | 1 << MONITOR_MOMENTUM, /* along an axis, in sum */
+  OF_PART = OF_TURNS | OF_ENERGY | OF_SUMS,     /* of a region or of all */
+  /* of a lattice without a region */
+  OF_WHOLE = OF_PLACE | OF_PART | OF_SECTION | OF_TIP | OF_BAR | OF_LINK,
   OF_LATTICE = OF_WHOLE | OF_DAMAGE,
   OF_MOVING = OF_MOTION | OF_PAIR | OF_PLACE | OF_TURNS | 1 << MONITOR_MOMENTUM,
-  ALONG_AXIS = OF_MOTION | OF_PAIR | 1 << MONITOR_ACCELERATION | 1 << MONITOR_MOMENTUM
+  ALONG_AXIS = OF_MOTION | OF_PAIR | 1 << MONITOR_ACCELERATION | OF_SUMS
 };
-static const char *const monitor_words[] = {"a reaction monitor",
-                                            "a displacement monitor",
-                                            "a velocity monitor",
-                                            "an opening monitor",
-                                            "a damaged monitor",
-                                            "a broken monitor",
-                                            "a field monitor",
-                                            "an acceleration monitor",
-                                            "a momentum monitor",
-                                            "an angular_momentum monitor",
-                                            "an energy monitor",
-                                            "a force monitor",
-                                            "a moment monitor",
-                                            "a tip monitor",
-                                            "a tip_speed monitor",
-                                            "a stress monitor",
-                                            "a strain monitor",
-                                            "an applied monitor",
-                                            "a reaction monitor with `between`"};
+static const char *const monitor_words[] = {
+    "a reaction monitor",      "a displacement monitor",
+    "a velocity monitor",      "an opening monitor",
+    "a damaged monitor",       "a broken monitor",
+    "a field monitor",         "an acceleration monitor",
+    "a momentum monitor",      "an angular_momentum monitor",
+    "an energy monitor",       "a force monitor",
+    "a moment monitor",        "a tip monitor",
+    "a tip_speed monitor",     "a stress monitor",
+    "a strain monitor",        "an applied monitor",
+    "a bar_force monitor",     "a slip monitor",
+    "a contact_force monitor", "a reaction monitor with `between`"};
 static const deck_key_use monitor_uses[] = {
-    {"region", OF_MOTION | OF_FIELD | OF_PLACE | OF_PART | OF_SECTION | OF_TIP, false},
+    {"region", OF_MOTION | OF_FIELD | OF_PLACE | OF_PART | OF_SECTION | OF_TIP | OF_BAR, false},
     {"lattice", OF_LATTICE, false},
     {"between", OF_PAIR, true},
     {"component", ALONG_AXIS | OF_ENERGY | OF_TENSOR | OF_TURNS | OF_SECTION, false},
     {"field", OF_FIELD, true},
-    {"at", OF_PLACE | OF_SECTION | OF_TIP, false},
+    {"at", OF_PLACE | OF_SECTION | OF_TIP | OF_BAR | OF_LINK, false},
     {"normal", OF_SECTION, true},
     {"direction", OF_TIP, true},
     {"about", OF_TURNS, false},
@@ -300,6 +299,45 @@ static bool check_place(deck_reader *r, const namelist_group *from, const deck_m
   return !item->region != !item->placed;
 }
 
+/* The lattice that it watches; NULL: several, or it is not known which. */
+static const deck_lattice *watched_lattice(const deck_reader *r, const deck_monitor *item) {
+  const int only = r->k->lattice_count == 1 ? 0 : -1;
+  const int found = item->region    ? deck_lattice_of_region(r, item->region)
+                    : item->lattice ? deck_find_lattice(r->k, item->lattice)
+                                    : only;
+  return found < 0 ? NULL : &r->k->lattices[found];
+}
+
+static bool some_contact_touches(const deck *k, const deck_lattice *l) {
+  for (int n = 0; n < k->contact_count; n++)
+    if (deck_lattice_touches(l, &k->contacts[n])) return true;
+  return deck_lacks(k, "contact");
+}
+
+/* Some kinds are of bars, of links or of what touches alone. */
+static bool check_sort(deck_reader *r, const deck_monitor *item) {
+  const deck_lattice *l = watched_lattice(r, item);
+  if (!l || !is_kind(item, OF_BAR | OF_LINK | OF_CONTACT)) return true;
+  const span where = deck_where(&item->item, item->region ? "region" : "lattice");
+  const char *name = deck_shown(r->memory, l->name), *word = deck_lattice_word(l);
+  if (is_kind(item, OF_BAR) && !deck_lattice_is_chain(l)) {
+    diag_report(r->d, DIAG_CONFLICT, where, "`%s` is a %s: a bar_force is that of a bar", name,
+                word);
+    diag_hint(r->d, "through a section of a lattice acts a `force`");
+  } else if (is_kind(item, OF_LINK) && !deck_lattice_is_link(l)) {
+    diag_report(r->d, DIAG_CONFLICT, where, "`%s` is a %s: what slips is a link", name, word);
+    diag_hint(r->d, "name the link of a bar to the lattice around it");
+  } else if (is_kind(item, OF_LINK) && l->to == LINK_TO_SITES) {
+    diag_report(r->d, DIAG_CONFLICT, where, "the link `%s` joins sites: it has no slip", name);
+    diag_hint(r->d, "with `to = 'place'` the bar slips along the place where it is");
+  } else if (is_kind(item, OF_CONTACT) && !some_contact_touches(r->k, l)) {
+    diag_report(r->d, DIAG_CONFLICT, where, "this is always 0: by no `&contact` does `%s` touch",
+                name);
+  } else
+    return true;
+  return false;
+}
+
 static bool has_length(deck_reader *r, const deck_item *item, const char *key, const double v[3]) {
   if (v[0] != 0 || v[1] != 0 || v[2] != 0) return true;
   diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(item, key), "`%s` has no direction: it is 0",
@@ -364,7 +402,7 @@ static bool take_axis(deck_reader *r, const namelist_group *from, const namelist
 
 static bool take_direction(deck_reader *r, const namelist_key *key, deck_monitor *item) {
   const bool turns = item->component >= DECK_WRITTEN_ROTATION,
-             in_sum = is_kind(item, OF_SECTION | 1 << MONITOR_MOMENTUM);
+             in_sum = is_kind(item, OF_SECTION | OF_SUMS);
   if (item->component >= DECK_WRITTEN_COUNT || (turns && in_sum))
     return refuse_component(r, key, item,
                             in_sum ? "'x', 'y' and, in space, 'z'"
@@ -410,7 +448,7 @@ static void check_monitor(deck_reader *r, const namelist_group *from, void *into
   const int dimensions = dimensions_of(r, item);
   if (dimensions) deck_check_places(r, from, &deck_group_monitor, dimensions);
   if (is_kind(item, OF_SECTION) && !has_length(r, &item->item, "normal", item->normal)) return;
-  if (!take_component(r, from, item)) return;
+  if (!check_sort(r, item) || !take_component(r, from, item)) return;
   check_moves(r, item);
   if (item->kind == MONITOR_REACTION || item->kind == MONITOR_REACTIONS) check_reaction(r, item);
 }
@@ -426,10 +464,13 @@ const char *deck_monitor_unit(const deck_monitor *m, bool rotates) {
   case MONITOR_REACTIONS:
   case MONITOR_APPLIED:
   case MONITOR_FORCE:
+  case MONITOR_BAR_FORCE:
+  case MONITOR_CONTACT_FORCE:
     return rotates ? "N*m" : "N";
   case MONITOR_DISPLACEMENT:
   case MONITOR_OPENING:
   case MONITOR_TIP:
+  case MONITOR_SLIP:
     return rotates ? "rad" : "m";
   case MONITOR_VELOCITY:
   case MONITOR_TIP_SPEED:

@@ -75,6 +75,8 @@ bool deck_lattice_is_irregular(const deck_lattice *l);
 bool deck_lattice_is_bar(const deck_lattice *l);
 /* True for the copies of particles that a &link joins. */
 bool deck_lattice_is_link(const deck_lattice *l);
+/* By the contact its particles touch: its own, or those of others, or both. */
+bool deck_lattice_touches(const deck_lattice *l, const deck_contact *by);
 /* What messages call it: "bar", "link", or "lattice". */
 const char *deck_lattice_word(const deck_lattice *l);
 /* 2 or 3: by the kind, where particles stand on no lattice by the setting; 0 for an unknown

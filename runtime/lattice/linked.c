@@ -188,6 +188,20 @@ static bool has_first(const deck_link *link, const bar_line *line, const deck_ba
   return false;
 }
 
+/* A bar lies in a body, and is thinner than that. */
+static bool is_thinner(const linker *l, const deck_bar *bar, diagnostics *d) {
+  const rows *g = l->body;
+  double least = pl_fmin(g->width, g->height);
+  if (g->dimensions == 3) least = pl_fmin(least, g->depth);
+  least += g->spacing;
+  if (bar->diameter < least) return true;
+  diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&l->link->item, "bar"),
+              "the bar `%s` is %.4g mm thick, but `%s`, in which it lies, only %.4g mm", bar->name,
+              1e3 * bar->diameter, l->link->around, 1e3 * least);
+  diag_hint(d, "are the bar's `diameter` or `area` and the bodies in the units that they say?");
+  return false;
+}
+
 static void say_missed(const linker *l, long missed, long chosen, int32_t first, diagnostics *d) {
   const int copies = l->deck->lattices[l->link->of_bar].copies;
   char text[ROWS_PLACE_TEXT];
@@ -242,9 +256,9 @@ rows *linked_build(const deck *k, int lattice, rows *const *built, diagnostics *
   linker l = {.deck = k, .link = link, .bar = built[link->of_bar], .body = built[link->of_around]};
   if (!l.bar || !l.body) return NULL; /* what is wrong with these has been said */
   l.line = bar_line_of(bar, link, l.bar);
-  rows *w = !has_first(link, &l.line, bar, d) ? NULL
-            : link->to == LINK_TO_PLACE       ? tied_build(k, link, &l.line, l.bar, l.body, d)
-                                              : join_sites(&l, d);
+  rows *w = !has_first(link, &l.line, bar, d) || !is_thinner(&l, bar, d) ? NULL
+            : link->to == LINK_TO_PLACE ? tied_build(k, link, &l.line, l.bar, l.body, d)
+                                        : join_sites(&l, d);
   if (w) warn_of_missed(&l, w, d);
   linker_free(&l);
   return w;

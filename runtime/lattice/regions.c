@@ -64,6 +64,7 @@ static bool *find_used_regions(const deck *k) {
   USED(material, region)
   USED(material, between[0])
   USED(material, between[1])
+  USED(point_mass, region)
   USED(support, region)
   USED(drive, region)
   USED(force, region)

@@ -7,6 +7,7 @@
 #include "dsl/base/arena.h"
 #include "runtime/lattice/placed_values.h"
 #include "runtime/lattice/rows_select.h"
+#include "runtime/loads/tributary.h"
 
 /* NULL: a region of another lattice. */
 static const region_sites *region_of(const loads *l, const char *name) {
@@ -150,14 +151,40 @@ static void add_force(loads *l, int32_t particle, int component, int cause, doub
                                           .share = share};
 }
 
-static void add_forces(loads *l, const motions *m) {
+/* [at->count] what each particle has of the force: of a total an equal part, of one per length its
+   own length, m. False after a message. */
+static bool find_shares(const loads *l, int lattice, const deck_force *f, const region_sites *at,
+                        double *share, diagnostics *d) {
+  if (f->per_length)
+    return at->count == 0 || tributary_lengths(l->deck, lattice, l->lattice, at, f->region,
+                                               deck_where(&f->item, "region"), share, d);
+  for (long p = 0; p < at->count; p++)
+    share[p] = 1.0 / (double)at->count;
+  return true;
+}
+
+static void add_forces(loads *l, int lattice, const motions *m) {
   for (int i = 0; i < l->deck->force_count; i++) {
     const deck_force *f = &l->deck->forces[i];
     const region_sites *at = region_of(l, f->region);
     if (!at || !has_component(m, f->component, deck_where(&f->item, "component"))) continue;
-    for (long p = 0; p < at->count; p++)
-      add_force(l, at->particles[p], f->component, i, 1.0 / (double)at->count);
+    double *share = must_alloc(((size_t)at->count + 1) * sizeof *share);
+    if (find_shares(l, lattice, f, at, share, m->said))
+      for (long p = 0; p < at->count; p++)
+        add_force(l, at->particles[p], f->component, i, share[p]);
+    free(share);
   }
+}
+
+double loads_shares_of(const loads *l, int force, long *particles) {
+  double sum = 0;
+  *particles = 0;
+  for (long i = 0; i < l->force_count; i++) {
+    if (l->forces[i].link || l->forces[i].cause != force) continue;
+    sum += l->forces[i].share;
+    ++*particles;
+  }
+  return sum;
 }
 
 /* Moment about z of horizontal forces f at heights y: -sum y f. Without resultant and linear in y,
@@ -249,6 +276,38 @@ void loads_links_added(loads *l) {
     l->forces[i].holder = holder_of(l, &l->forces[i]);
 }
 
+/* --- point masses ----------------------------------------------------------------------------- */
+
+static void check_point_masses(const loads *l, const motions *m) {
+  const int turning = l->lattice->dimensions;
+  for (int i = 0; i < l->deck->point_mass_count; i++) {
+    const deck_point_mass *p = &l->deck->point_masss[i];
+    if (p->inertia > 0 && region_of(l, p->region))
+      has_component(m, turning, deck_where(&p->item, "inertia"));
+  }
+}
+
+static double mass_of_each(const deck_point_mass *p, const region_sites *at) {
+  return p->mass > 0 ? p->mass : p->total / (double)at->count;
+}
+
+void loads_point_masses(const loads *l, body *w) {
+  for (int i = 0; i < l->deck->point_mass_count; i++) {
+    const deck_point_mass *p = &l->deck->point_masss[i];
+    const region_sites *at = region_of(l, p->region);
+    for (long n = 0; at && n < at->count; n++)
+      body_add_mass(w, l->lattice->particle_site[at->particles[n]], mass_of_each(p, at),
+                    p->inertia);
+  }
+}
+
+double loads_point_mass_of(const loads *l, int index, long *particles) {
+  const deck_point_mass *p = &l->deck->point_masss[index];
+  const region_sites *at = region_of(l, p->region);
+  *particles = at ? at->count : 0;
+  return at ? mass_of_each(p, at) * (double)at->count : 0;
+}
+
 /* --- motion at the start ---------------------------------------------------------------------- */
 
 typedef struct initial_list { /* of one kind */
@@ -332,7 +391,7 @@ loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, 
   motions m = {.dof = dof, .law = law, .said = d};
   m.holder = must_calloc((size_t)dof * (size_t)w->particle_count + 1, sizeof *m.holder);
   add_motions(l, &m);
-  add_forces(l, &m);
+  add_forces(l, lattice, &m);
   for (int i = 0; i < k->end_moment_count; i++)
     add_end_moment(l, i, d);
   put_in_order(l, &m);
@@ -340,6 +399,7 @@ loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, 
   check_initials(l, &m, velocities_of(k));
   check_initials(l, &m, displacements_of(k));
   check_formulas(l, d);
+  check_point_masses(l, &m);
   protect(l, w);
   free(m.holder);
   if (d->errors == before) return l;

@@ -1,5 +1,6 @@
 /* This room: loads. What acts on a few particles from outside: supports, drives, forces, end
-   moments, collected from a deck; load_steps.h says what they do in a step. */
+   moments, collected from a deck; load_steps.h says what they do in a step. And the masses that
+   particles carry. */
 #ifndef PERILAT_RUNTIME_LOADS_H
 #define PERILAT_RUNTIME_LOADS_H
 
@@ -64,11 +65,21 @@ typedef struct loads {
 loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, diagnostics *d);
 void loads_free(loads *l);
 
+/* The shares of the deck's force of that number in sum, of a load per length its length in m, and
+   on how many particles. */
+double loads_shares_of(const loads *l, int force, long *particles);
+
 /* A share of a force of the run's link of that number, which stands at `force` (N, N m) when it is
    known; the last one is to be followed by loads_links_added. */
 void loads_add_link(loads *l, int64_t site, int component, int link, double share,
                     const double *force);
 void loads_links_added(loads *l);
+
+/* Puts the deck's point masses on the particles. */
+void loads_point_masses(const loads *l, body *w);
+/* kg: the deck's point mass of that number on all of its particles, and how many these are; 0 of
+   another lattice's. */
+double loads_point_mass_of(const loads *l, int index, long *particles);
 
 /* Displacements and velocities that regions begin with. False with diagnostics where a velocity is
    too large for a step. */

@@ -23,7 +23,8 @@ static bool has_component(const deck_monitor *m) {
   return m->kind == MONITOR_REACTION || m->kind == MONITOR_REACTIONS ||
          m->kind == MONITOR_APPLIED || m->kind == MONITOR_DISPLACEMENT ||
          m->kind == MONITOR_VELOCITY || m->kind == MONITOR_OPENING ||
-         m->kind == MONITOR_ACCELERATION || m->kind == MONITOR_MOMENTUM;
+         m->kind == MONITOR_ACCELERATION || m->kind == MONITOR_MOMENTUM ||
+         m->kind == MONITOR_CONTACT_FORCE;
 }
 
 static bool follows_tip(const deck_monitor *m) {
@@ -46,14 +47,17 @@ static const run_body *body_of(const deck *k, const run_body *bodies, int count,
   return !lattice && !end && count == 1 ? bodies : NULL;
 }
 
+/* Of a region, or all (NULL). */
 static void take_sites(monitor *m, int list, const monitors *all, const char *name) {
   const run_body *of = m->of[list];
   if (!of) return;
-  const region_sites *at = &of->loads->regions[deck_find_region(all->deck, name)];
-  m->indices[list] = must_calloc((size_t)at->count + 1, sizeof(int32_t));
-  m->index_count[list] = at->count;
-  for (long p = 0; p < at->count; p++)
-    m->indices[list][p] = of->lattice_rows->particle_site[at->particles[p]];
+  const rows *g = of->lattice_rows;
+  const region_sites *at = name ? &of->loads->regions[deck_find_region(all->deck, name)] : NULL;
+  const long count = at ? at->count : g->particle_count;
+  m->indices[list] = must_calloc((size_t)count + 1, sizeof(int32_t));
+  m->index_count[list] = count;
+  for (long p = 0; p < count; p++)
+    m->indices[list][p] = g->particle_site[at ? at->particles[p] : p];
 }
 
 static void take_reactions(monitor *m, int list, const monitors *all, const char *name) {
@@ -72,6 +76,27 @@ static void take_forces(monitor *m, const monitors *all, diagnostics *d) {
               "this is always 0: no `&force` or `&end_moment` acts %s `%s` on particles of `%s`",
               m->deck->component < of->body->dimensions ? "along" : "in",
               deck_component_name(of->body->dimensions, m->deck->component), m->deck->region);
+}
+
+/* Particles of a link to places that are copies of places: all, or the one nearest to `at`. */
+static void take_places(monitor *m, const monitors *all, diagnostics *d) {
+  const rows *g = m->of[0]->lattice_rows;
+  int32_t *sites = must_calloc((size_t)g->particle_count + 1, sizeof *sites);
+  long count = 0;
+  for (int k = 0; k < all->link_count; k++)
+    if (all->links[k].own == m->of[0]) m->link = &all->links[k];
+  m->indices[0] = must_calloc((size_t)g->particle_count + 1, sizeof(int32_t));
+  for (long n = 0; n < g->bond_count; n++) { /* the bar's particle, then the place */
+    sites[count] = g->particle_site[2 * n];
+    m->indices[0][count++] = (int32_t)(2 * n + 1);
+  }
+  const long best = m->deck->placed ? watched_nearest(m->deck, g, sites, count, d) : 0;
+  if (m->deck->placed && best >= 0) {
+    m->indices[0][0] = m->indices[0][best];
+    count = 1;
+  }
+  m->index_count[0] = count;
+  free(sites);
 }
 
 static bool check_component(const deck_monitor *m, const pl_law *law, diagnostics *d) {
@@ -185,6 +210,7 @@ static monitor_time when_known(const monitor *m, const monitors *all) {
   case MONITOR_ENERGY:
   case MONITOR_FORCE:
   case MONITOR_MOMENT:
+  case MONITOR_BAR_FORCE:
   case MONITOR_STRESS:
     return KNOWN_WHEN_OBSERVED;
   default:
@@ -195,13 +221,10 @@ static monitor_time when_known(const monitor *m, const monitors *all) {
 /* What watched.h watches, of a region or of all particles. */
 static void watch(monitor *m, monitors *all, diagnostics *d) {
   const run_body *of = m->of[0];
-  const rows *g = of->lattice_rows;
-  if (m->deck->region) take_sites(m, 0, all, m->deck->region);
-  const bool whole = !m->deck->region;
+  take_sites(m, 0, all, m->deck->region);
   damage_law *laws = run_body_damages(of);
   m->own =
-      watched_new(m->deck, whole ? g->particle_site : m->indices[0],
-                  whole ? g->particle_count : m->index_count[0], of->state, laws, of->law_count, d);
+      watched_new(m->deck, m->indices[0], m->index_count[0], of->state, laws, of->law_count, d);
   free(laws);
   bond_forces **forces = &all->forces[of - all->bodies];
   if (watched_needs_forces(m->deck) && !*forces) *forces = bond_forces_new(of->state);
@@ -265,6 +288,12 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
   case MONITOR_VELOCITY:
     take_sites(m, 0, all, m->deck->region);
     break;
+  case MONITOR_SLIP:
+    take_places(m, all, d);
+    break;
+  case MONITOR_CONTACT_FORCE:
+    take_sites(m, 0, all, m->deck->region);
+    break;
   case MONITOR_FIELD:
     take_sites(m, 0, all, m->deck->region);
     m->law = law_watched(m);
@@ -288,15 +317,17 @@ static size_t largest_size(const run_body *bodies, int count) {
   return (size_t)most;
 }
 
-monitors *monitors_new(const deck *k, const run_body *bodies, int count, double interval,
-                       diagnostics *d) {
+monitors *monitors_new(const deck *k, const run_body *bodies, int count, const run_link *links,
+                       int link_count, double interval, diagnostics *d) {
   const int before = d->errors;
   monitors *m = must_calloc(1, sizeof *m);
   *m = (monitors){.interval = interval,
                   .count = k->monitor_count,
                   .deck = k,
                   .bodies = bodies,
-                  .body_count = count};
+                  .body_count = count,
+                  .links = links,
+                  .link_count = link_count};
   m->items = must_calloc((size_t)m->count + 1, sizeof *m->items);
   m->forces = must_calloc((size_t)count, sizeof *m->forces);
   for (int i = 0; i < m->count; i++) {
@@ -381,6 +412,16 @@ static char *field_words(const monitor *m, arena *a) {
   return f->doc && *f->doc ? arena_printf(a, "%s (%s)", words, f->doc) : words;
 }
 
+static char *slip_words(const monitors *all, const monitor *m, arena *a) {
+  const rows *g = m->of[0]->lattice_rows;
+  double here[3];
+  char text[ROWS_PLACE_TEXT];
+  if (!m->deck->placed) return arena_printf(a, "largest slip along `%s`", m->of[0]->name);
+  rows_place(g, g->particle_site[m->indices[0][0] - 1], here);
+  return arena_printf(a, "slip along `%s` at %s", m->of[0]->name,
+                      rows_place_text(all->bodies[0].body->dimensions, here, text));
+}
+
 static char *quantity_words(const monitors *all, const monitor *m, arena *a) {
   switch (m->deck->kind) {
   case MONITOR_REACTION:
@@ -395,6 +436,12 @@ static char *quantity_words(const monitors *all, const monitor *m, arena *a) {
     return region_words(all, m, "mean displacement", a);
   case MONITOR_VELOCITY:
     return region_words(all, m, "mean velocity", a);
+  case MONITOR_SLIP:
+    return slip_words(all, m, a);
+  case MONITOR_CONTACT_FORCE:
+    return arena_printf(a, "%s of `%s`",
+                        component_words(all, m, "force of contact on particles", a),
+                        m->deck->region ? m->deck->region : m->of[0]->name);
   case MONITOR_FIELD:
     return field_words(m, a);
   case MONITOR_DAMAGED:
@@ -437,6 +484,23 @@ static double applied_sum(const monitor *m) {
   for (long c = 0; c < m->index_count[0]; c++)
     sum += m->of[0]->loads->forces[m->indices[0][c]].now;
   return sum;
+}
+
+static double contact_sum(const monitor *m) {
+  double sum = 0;
+  for (long p = 0; p < m->index_count[0]; p++)
+    sum += body_outer(m->of[0]->body, m->deck->component, m->indices[0][p]);
+  return sum;
+}
+
+/* The largest in size. */
+static double slip_now(const monitor *m) {
+  double largest = 0;
+  for (long n = 0; n < m->index_count[0]; n++) {
+    const double slip = run_link_slip(m->link, m->indices[0][n]);
+    if (fabs(slip) > fabs(largest)) largest = slip;
+  }
+  return largest;
 }
 
 static bool is_counted(const monitor *m, double damage) {
@@ -555,6 +619,10 @@ static double value_now(const monitors *all, const monitor *m, long step) {
     return velocity_mean(m, step);
   case MONITOR_OPENING:
     return displacement_mean(m, 1) - displacement_mean(m, 0);
+  case MONITOR_SLIP:
+    return slip_now(m);
+  case MONITOR_CONTACT_FORCE:
+    return contact_sum(m);
   case MONITOR_FIELD:
     return field_mean(all, m, false);
   case MONITOR_DAMAGED:

@@ -1,5 +1,5 @@
-/* What is watched: reactions, displacements, openings, counts of damaged bonds, the law's values on
-   particles, and what watched.h has; their running means, zeros and peaks, and the &stop conditions
+/* What is watched: reactions, displacements, openings, slips, forces of contact, counts of damaged
+   bonds, the law's values on particles, and what watched.h has; their running means, zeros and peaks, and the &stop conditions
    on them. All values at a sample are of one instant: the state observed (sweep.h).
 
    A value is (mean over the window - value at zero_at, from then on) times scale. The window holds
@@ -14,6 +14,7 @@
 #include "runtime/analysis/watched.h"
 #include "runtime/deck/deck.h"
 #include "runtime/simulation/run_body.h"
+#include "runtime/simulation/run_link.h"
 
 typedef struct monitor_state { /* what a later step depends on */
   double zero;                 /* value subtracted */
@@ -34,13 +35,15 @@ typedef struct monitor {
   const run_body *of[2];
   const char *unit;
   monitor_state state;
-  int32_t *indices[2]; /* sites, or constraints of a reaction (second list: of the second region) */
+  /* sites, constraints of a reaction, or places of a link (second list: of the second region) */
+  int32_t *indices[2];
   long index_count[2];
-  const run_law *law; /* of a field monitor: that whose field it is */
-  int field;          /* of a field monitor: the law's field, or field_count + output */
-  watched_part *own;  /* NULL of kinds that are not watched.h's */
-  double *ring;       /* [window] the last values, value of push k at k % window */
-  long window;        /* steps; 1: no averaging */
+  const run_law *law;   /* of a field monitor: that whose field it is */
+  int field;            /* of a field monitor: the law's field, or field_count + output */
+  const run_link *link; /* of a slip monitor */
+  watched_part *own;    /* NULL of kinds that are not watched.h's */
+  double *ring;         /* [window] the last values, value of push k at k % window */
+  long window;          /* steps; 1: no averaging */
   monitor_time known;
   long zero_step; /* -1: never */
 } monitor;
@@ -52,6 +55,8 @@ typedef struct monitors {
   const deck *deck;
   const run_body *bodies; /* [body_count] */
   int body_count;
+  const run_link *links; /* [link_count] */
+  int link_count;
   double *values;       /* of the largest body: an output while it is looked at */
   bond_forces **forces; /* [body_count] NULL unless some monitor asks for them */
   double *ring_memory;  /* all rings in one */
@@ -60,10 +65,10 @@ typedef struct monitors {
 
 /* False with diagnostics where the deck watches what particles of the laws do not have. */
 bool monitors_check(const deck *k, const run_body *bodies, int count, diagnostics *d);
-/* Of a deck that was checked; the bodies must stay. NULL with a diagnostic when a mean does not fit
+/* Of a deck that was checked; bodies and links must stay. NULL with a diagnostic when a mean does not fit
    into memory. */
-monitors *monitors_new(const deck *k, const run_body *bodies, int count, double interval,
-                       diagnostics *d);
+monitors *monitors_new(const deck *k, const run_body *bodies, int count, const run_link *links,
+                       int link_count, double interval, diagnostics *d);
 void monitors_free(monitors *m);
 /* "reaction along y of `loader`, times -1, mean over 0.0001 s": what a monitor watches. */
 char *monitor_words(const monitors *m, int index, arena *a);

@@ -261,6 +261,7 @@ bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d) {
   }
   open_state(b, k, step);
   b->body = b->state->body;
+  loads_point_masses(b->loads, b->body);
   if (k->gravity_count > 0) body_add_gravity(b->body);
   return loads_initial_motion(b->loads, b->body, d);
 }

@@ -12,18 +12,11 @@
 
 /* --- which bodies ----------------------------------------------------------------------------- */
 
-static bool is_of(const deck_contact *k, const deck_lattice *lattice) {
-  if (k->lattice_count == 0) return !deck_lattice_is_bar(lattice) && !deck_lattice_is_link(lattice);
-  for (int n = 0; n < k->lattice_count; n++)
-    if (strcmp(k->lattices[n], lattice->name) == 0) return true;
-  return false;
-}
-
 static void take_bodies(run_contact *c, const deck *k) {
   c->of = must_calloc((size_t)k->lattice_count + 1, sizeof *c->of);
   c->stiffness = must_calloc((size_t)k->lattice_count + 1, sizeof *c->stiffness);
   for (int b = 0; b < k->lattice_count; b++)
-    if (is_of(c->from, &k->lattices[b])) c->of[c->count++] = b;
+    if (deck_lattice_touches(&k->lattices[b], c->from)) c->of[c->count++] = b;
 }
 
 /* --- stiffness -------------------------------------------------------------------------------- */

@@ -144,6 +144,15 @@ static void find_tangent(link_copy *c, double then[3], double spin[3]) {
   }
 }
 
+double run_link_slip(const run_link *link, long particle) {
+  const link_copy *c = &link->copies[particle];
+  double then[3], now[3], spin[3], slip = 0;
+  find_tangent(c, then, now, spin);
+  for (int a = 0; a < c->bar->dimensions; a++)
+    slip += now[a] * (mean_of(c, c->of->displacement, a) - c->bar->displacement[a][c->at]);
+  return slip;
+}
+
 /* By the shortest turn that takes the tangent from what it was to what it is. */
 static void turn_copy(body *copy, long here, const double then[3], const double now[3],
                       const double spin[3]) {

@@ -87,7 +87,7 @@ static void open_clock(simulation *s) {
 
 static bool open_monitors(simulation *s, diagnostics *d) {
   const deck *k = s->deck;
-  s->monitors = monitors_new(k, s->bodies, s->body_count,
+  s->monitors = monitors_new(k, s->bodies, s->body_count, s->links, s->link_count,
                              s->relaxation ? s->relaxation->interval : s->limit.step, d);
   if (!s->monitors) return false;
   s->history = history_new(s->monitors, &s->contacts, s->relaxation, k->output.energy,
@@ -218,6 +218,28 @@ double simulation_memory(const simulation *s) {
     const run_body *of = &s->bodies[b];
     const double looks = s->relaxation ? (double)sizeof(double) * (2 * of->body->dof + 1) : 0;
     sum += run_body_memory(of) + looks * (double)of->lattice_rows->size;
+  }
+  return sum;
+}
+
+double simulation_loaded_length(const simulation *s, int force, long *particles) {
+  double sum = 0;
+  *particles = 0;
+  for (int b = 0; b < s->body_count; b++) {
+    long here;
+    sum += loads_shares_of(s->bodies[b].loads, force, &here);
+    *particles += here;
+  }
+  return sum;
+}
+
+double simulation_point_mass(const simulation *s, int index, long *particles) {
+  double sum = 0;
+  *particles = 0;
+  for (int b = 0; b < s->body_count; b++) {
+    long here;
+    sum += loads_point_mass_of(s->bodies[b].loads, index, &here);
+    *particles += here;
   }
   return sum;
 }

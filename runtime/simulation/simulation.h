@@ -79,6 +79,13 @@ struct sweep *simulation_state(simulation *s, int body);
 /* With the fields of the law of an interaction. */
 struct sweep *simulation_law_state(simulation *s, int interaction);
 
+/* Of the deck's force of that number, per length: the length that it acts on, m, and on how many
+   particles. */
+double simulation_loaded_length(const simulation *s, int force, long *particles);
+
+/* kg: the deck's point mass of that number in all, and on how many particles. */
+double simulation_point_mass(const simulation *s, int index, long *particles);
+
 /* The &stop of the deck that ended the run (STEP_STOPPED), or NULL. */
 const deck_stop *simulation_stopped_by(const simulation *s);
 

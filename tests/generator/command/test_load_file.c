@@ -92,6 +92,24 @@ static void units_tell_velocity_from_displacement(void **state) {
          "with `velocity` in the deck `u` holds factors on it, which have no unit");
 }
 
+/* The report says what a load per length amounts to; the unit of the load alone says that it is
+   one. */
+static void lengths_and_totals_are_told(void **state) {
+  workplace *w = *state;
+  static const char row[] =
+      "&region name = 'row' shape = 'rectangle' corner = -1, -0.001 size = 2, 0.002 /\n"
+      "&force region = 'row' component = 'y' ";
+  char load[1000];
+  snprintf(load, sizeof load, "%sper_length = '-2 kN/m' rise = 1e-4 /", row);
+  write_deck(w, "a.nml", load);
+  expect(w, "check a.nml", 0,
+         "load       -2 kN/m on 0.0381 m of `row`, 7 particles: -76.2 N along y\n");
+  snprintf(load, sizeof load, "%sfile = 'pulse.csv' /", row);
+  write_text(w, "pulse.csv", "t [ms], q [kN/m]\n0, 0\n1, 3\n");
+  write_deck(w, "a.nml", load);
+  expect(w, "check a.nml", 0, "load       by length on 0.0381 m of `row`, 7 particles along y\n");
+}
+
 static void moments_come_from_files_too(void **state) {
   workplace *w = *state;
   write_text(w, "m.csv", "t [ms], M [N*m]\n0, 0\n0.2, 3\n");
@@ -171,7 +189,8 @@ static void messages_show_the_line(void **state) {
        "pulse.csv:2:7: error: `w` has no unit: it is a load with one, or a factor on `total`"},
       {PULSE, FORCE "file = 'pulse.csv' /", "hint: write `w [N]`, or give `total`"},
       {"t, F [m]\n0, 1\n1, 2\n", FORCE "file = 'pulse.csv' /",
-       "pulse.csv:1:4: error: the unit of `F` is one of `N` (total) [units]\n  1 | t, F [m]"},
+       "pulse.csv:1:4: error: the unit of `F` is that of `total` (N), `moment` (N*m) or "
+       "`per_length` (N/m) [units]\n  1 | t, F [m]"},
       {"t, F [kN]\n0, 1\n1, 2\n", FORCE "force = 1 file = 'pulse.csv' /",
        "leave `total` out where the column is the load itself"},
       {"t [mm], w\n0, 1\n1, 2\n", FORCE "force = 1 file = 'pulse.csv' /",
@@ -200,7 +219,7 @@ static void messages_show_the_line(void **state) {
       {PULSE, FORCE "force = 1 file = 7 /", "`file` is the name of a table in quotes"},
       {PULSE, "&end_moment region = 'loader' /", "`&end_moment` needs `moment`"},
       {"t, M [N*m]\n0, 1\n1, 2\n", FORCE "file = 'pulse.csv' /",
-       "a force along y is in N, this is in N*m"},
+       "a force along y is in N or N/m, this is in N*m"},
       {"t, u [mm]\n0, 1\n1, 2\n", "&drive region = 'loader' component = 'y' file = 'pulse.csv' /",
        "warning: this displacement begins with a jump"},
       {"t, a [m/s^2]\n0, 1\n1, 2\n", "&gravity acceleration = 0, 1 file = 'pulse.csv' /",
@@ -221,6 +240,7 @@ int main(void) {
       IN_WORKPLACE(factors_are_those_of_the_deck),
       IN_WORKPLACE(a_unit_makes_it_the_load),
       IN_WORKPLACE(units_tell_velocity_from_displacement),
+      IN_WORKPLACE(lengths_and_totals_are_told),
       IN_WORKPLACE(moments_come_from_files_too),
       IN_WORKPLACE(the_result_holds_the_table),
       IN_WORKPLACE(a_changed_table_is_another_run),

@@ -420,9 +420,53 @@ static void viscous_moments_take_the_rate_of_their_end(void **state) {
   close_law(t);
 }
 
+/* Of a bond of length L whose bar is turned by theta against it: slip = L cos(theta) - s, gap = -L
+   sin(theta). N and V are what their work gives, at any angle. */
+static void slip_and_gap_are_those_of_the_bar(void **state) {
+  (void)state;
+  static const char head[] = "model m\n  law slip bond\n  parameter a = 3 [MN/m] in (0, inf)\n"
+                             "  parameter b = 7 [MN/m] in (0, inf)\n";
+  static const char *const given[] = {
+      "  force N = a*slip\n  force V = b*gap\nend model\n",
+      "  energy W = a/2*slip**2 + b/2*(gap:gap)\nend model\n",
+      "  force N = a*slip\n  force V = b*gap\n  energy W = a/2*slip**2 + b/2*norm(gap)**2\n"
+      "end model\n"};
+  const double s = tested_bond().s, angles[] = {0, 1e-7, 0.02, -0.7, 2};
+  for (size_t k = 0; k < sizeof given / sizeof *given; k++) {
+    char text[1024];
+    snprintf(text, sizeof text, "%s%s", head, given[k]);
+    tested_law *t = must_open(text);
+    for (size_t n = 0; n < sizeof angles / sizeof *angles; n++) {
+      const double theta = angles[n], stretch = 0.01 * (1 + (double)n), L = s * (1 + stretch);
+      const double along = 3e6 * (s * stretch - 2 * L * pow(sin(theta / 2), 2)),
+                   across = -7e6 * L * sin(theta);
+      /* end j has turned further than end i: the bar's tangent is the mean */
+      tested_state x = {.stretch = stretch, .theta_i = 0.8 * theta, .theta_j = 1.2 * theta};
+      evaluate_law(t, &x, 0);
+      assert_close(x.N, along * cos(theta) - across * sin(theta));
+      assert_close(x.M_i, -0.5 * L * (along * sin(theta) + across * cos(theta)));
+      assert_close(x.M_j, x.M_i);
+    }
+    close_law(t);
+  }
+}
+
+/* Its rate is that of the bond's length. */
+static void slip_has_a_rate(void **state) {
+  (void)state;
+  tested_law *t = must_open("model m\n  law slip bond\n  parameter c = 4 [kN*s/m] in (0, inf)\n"
+                            "  force N = c*slip_rate\n  force V = 0*gap*1 [N/m]\nend model\n");
+  tested_state x = {.stretch = 0.1, .rate = 30};
+  evaluate_law(t, &x, 0);
+  assert_close(x.N, 4000 * 30 * tested_bond().s);
+  close_law(t);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_first_true_case_wins),
+      cmocka_unit_test(slip_and_gap_are_those_of_the_bar),
+      cmocka_unit_test(slip_has_a_rate),
       cmocka_unit_test(functions_are_expanded),
       cmocka_unit_test(built_in_functions_mean_what_they_say),
       cmocka_unit_test(damage_grows_and_stays_below_one),

@@ -216,6 +216,10 @@ static void copies_stand_in_report_and_results(void **state) {
       w, "check copies.nml --set bar[s].copies=4", 0,
       "4 of the 16 particles of the bar `s` that the link `ks` chooses are not joined to `plate`");
   assert_non_null(strstr(w->said, "the first is at (263, 23.2857) mm, in copy 4 of 4"));
+  expect(w,
+         "check copies.nml --set link[ks].to=place --set material[ks].model=bond_slip --set "
+         "material[ks].f_cm=30",
+         1, "`f_cm` = 30 Pa is not in [1000000, inf), the range of the law `bond_slip`");
   expect(w, "check copies.nml --set link[ks].first=8", 1,
          "each copy of the bar `s` has 8 particles");
 }

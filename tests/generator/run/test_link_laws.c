@@ -230,6 +230,12 @@ static void laws_that_do_not_suit_are_named(void **state) {
          "the law `lps` reads whole families, but a link has bonds between two bodies alone");
   expect(w, "check linked.nml --set material[l].model=beam", 1,
          "take another law, such as `bar_bond`");
+  expect(w, "check linked.nml --set material[l].model=bond_slip", 1,
+         "the law `bond_slip` is one of slip and gap, which links to places alone have");
+  expect(w, "check linked.nml --set material[l].model=bond_slip", 1,
+         "give the link `to = 'place'`");
+  expect(w, "check linked.nml --set material[b].model=bond_slip", 1,
+         "take a law that begins with `law central bond`");
   expect(w, "check linked.nml --set material[b].model=bar", 1,
          "the law `bar_bond` of the link `l` bends bonds, but the particles of `b` do not rotate");
   expect(w, "check linked.nml --set material[c].model=elastic_central", 1,

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "runtime/analysis/bar_force.h"
 #include "runtime/simulation/run_link.h"
 #include "runtime/simulation/simulation_state.h"
 #include "tests/verification/case.h"
@@ -90,6 +91,42 @@ static void a_linear_bond_holds_as_its_closed_form(void **state) {
   }
   assert_true(error[0] < 2e-2);
   assert_true(error[1] < 0.27 * error[0] && error[2] < 0.27 * error[1]);
+}
+
+/* What monitors say of it: with u(x) = u cosh(lambda (l - x))/cosh(lambda l) the slip, the tension is
+   E A u', in the bond whose middle is there. */
+static void slip_and_tension_are_the_closed_form(void **state) {
+  (void)state;
+  static const double spacings[] = {0.02, 0.01, 0.005};
+  const double K = 200e9, u = 1e-7, lambda = sqrt(4 * K / (E * diameter)),
+               scale = u / cosh(lambda * length);
+  double before[3] = {0, 0, 0};
+  for (int n = 0; n < 3; n++) {
+    const double s = spacings[n], middle = (floor(0.103 / s) + 0.5) * s,
+                 exact[3] = {scale * cosh(lambda * (length - 0.1)),
+                             E * area() * lambda * scale * sinh(lambda * (length - middle)),
+                             E * area() * lambda * scale * sinh(lambda * (length - s / 2))};
+    deck_case c;
+    char text[4096];
+    snprintf(text, sizeof text,
+             AT_REST "&monitor name = 's' kind = 'slip' lattice = 'l' at = 0.1, 0.003 /\n"
+                     "&monitor name = 's_most' kind = 'slip' lattice = 'l' /\n"
+                     "&monitor name = 'N' kind = 'bar_force' lattice = 'b' at = 0.103, 0.003 /\n"
+                     "&monitor name = 'N_most' kind = 'bar_force' lattice = 'b' /\n" PULL,
+             1e3 * s, STEEL, 1);
+    open_text(&c, text);
+    assert_int_equal(deck_case_go(&c), STEP_END);
+    const double found[3] = {last_of(&c, "s"), last_of(&c, "N"), last_of(&c, "N_most")};
+    assert_true(fabs(last_of(&c, "s_most") / u - 1) < 1e-9);
+    deck_case_close(&c);
+    for (int k = 0; k < 3; k++) {
+      const double error = fabs(found[k] / exact[k] - 1);
+      print_message("spacing %g mm: %.6g, closed form %.6g, %.1e\n", 1e3 * s, found[k], exact[k],
+                    error);
+      assert_true(error < 0.1 && (n == 0 || error < 0.3 * before[k]));
+      before[k] = error;
+    }
+  }
 }
 
 /* The power law along a bar that is long enough: F^2 = 2 E A pi d * integral of tau over slip. */
@@ -263,6 +300,7 @@ static void the_step_is_stable(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_linear_bond_holds_as_its_closed_form),
+                                     cmocka_unit_test(slip_and_tension_are_the_closed_form),
                                      cmocka_unit_test(the_model_code_holds_as_its_closed_form),
                                      cmocka_unit_test(a_short_bar_slips_as_a_whole),
                                      cmocka_unit_test(rigid_motions_cause_no_force),

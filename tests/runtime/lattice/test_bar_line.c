@@ -20,7 +20,7 @@ typedef struct built_line {
 static void build_line(built_line *l, const char *bar, int first, int every) {
   char text[1000];
   snprintf(text, sizeof text,
-           "&simulation end_time = 1 /\n&bar name = 'b' area = 1 %s /\n"
+           "&simulation end_time = 1 /\n&bar name = 'b' area = 1e-4 %s /\n"
            "&material bar = 'b' model = 'beam' /\n",
            bar);
   build_rows(&l->b, text);

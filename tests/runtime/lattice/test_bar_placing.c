@@ -26,7 +26,7 @@
   "&material lattice = 'l' model = 'm' /\n"                                                        \
   "&body lattice = 'l' shape = 'disc' centre = 0, 0 radius = 0.2 /\n"
 #define BAR(keys)                                                                                  \
-  "&bar name = 'b' area = 1 spacing = 0.02 points = " keys " /\n&material bar = 'b' model = 'm' "  \
+  "&bar name = 'b' area = 1e-4 spacing = 0.02 points = " keys " /\n&material bar = 'b' model = 'm' "  \
   "/\n"
 
 static bar_placing by_looking(const rows *bar, const rows *of) {

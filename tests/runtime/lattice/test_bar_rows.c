@@ -169,8 +169,8 @@ static void bars_in_space(void **state) {
   assert_true(b.rows->stiffness_thickness == 0 && b.rows->area == area);
   built_end(&b);
   read_deck(&b, "&simulation end_time = 1 /\n"
-                "&bar name = 'b' area = 1 points = 6*0, 1, 1, 1 spacing = 0.1 /\n"
-                "&bar name = 'c' diameter = 2 points = 3*0, 1, 1, 1 spacing = 0.1 /\n"
+                "&bar name = 'b' area = 0.01 points = 6*0, 1, 1, 1 spacing = 0.1 /\n"
+                "&bar name = 'c' diameter = 0.2 points = 3*0, 1, 1, 1 spacing = 0.1 /\n"
                 "&lattice name = 'a' kind = 'cubic' spacing = 1 /\n"
                 "&body lattice = 'a' shape = 'sphere' centre = 3*0 radius = 2 /\n"
                 "&material lattice = 'a' model = 'lps' /\n&material bar = 'c' model = 'beam' /\n"

@@ -204,6 +204,34 @@ static void what_does_not_suit_is_said(void **state) {
   must_say(PLANE "&notch lattice = 'c' shape = 'rectangle' corner = 0.1, 0.05 size = 0.2, 0.1 /\n",
            "points = 0.12, 0.1, 0.2, 0.1", "within = 4", "each of its bonds would cross a notch",
            true);
+  must_say(PLANE, "points = 0.05, 0.05, 0.55, 0.05", "every = 5",
+           "2 of the 6 particles of the bar `b` that the link `l` chooses are not joined to `c`",
+           false);
+  must_say(PLANE, "points = 0.05, 0.05, 0.05, 0.15 copies = 5 shift = 0.1, 0", "",
+           "6 of the 30 particles of the bar `b` that the link `l` chooses are not joined to `c`",
+           false);
+  must_say(SPACE, "points = 0.03, 0.05, 0.05, 0.27, 0.05, 0.05", "first = 14 every = 3",
+           "the bar `b` has 13 particles: there is none with the number 14", true);
+  must_say(PLANE, "points = 0.05, 0.05, 0.05, 0.15 copies = 3 shift = 0.1, 0", "first = 6",
+           "each copy of the bar `b` has 6 particles: there is none with the number 6", true);
+}
+
+/* 11.3 mm in one row of particles every 10 mm, or in two. */
+#define THIN(height)                                                                               \
+  "&simulation end_time = 1 /\n"                                                                   \
+  "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.12 /\n"                     \
+  "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.4, " height " /\n"               \
+  "&material lattice = 'c' model = 'm' /\n&material bar = 'b' model = 'm' /\n"                     \
+  "&material link = 'l' model = 'm' /\n"
+
+static void a_bar_is_thinner_than_its_body(void **state) {
+  (void)state;
+  linked_rows b;
+  must_say(THIN("0.001"), "points = 0.05, 0.003, 0.35, 0.003", "",
+           "the bar `b` is 11.28 mm thick, but `c`, in which it lies, only 10 mm", true);
+  build_linked(&b, THIN("0.009"), "points = 0.05, 0.003, 0.35, 0.003", "");
+  assert_non_null(b.built[LINK]);
+  end_linked(&b);
 }
 
 int main(void) {
@@ -212,6 +240,7 @@ int main(void) {
       cmocka_unit_test(masses_are_those_of_the_particles),
       cmocka_unit_test(no_bond_crosses_a_notch),
       cmocka_unit_test(what_does_not_suit_is_said),
+      cmocka_unit_test(a_bar_is_thinner_than_its_body),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

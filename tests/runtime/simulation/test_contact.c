@@ -183,6 +183,33 @@ static void blocks_collide(void **state) {
   assert_true(of_contact[0] < 1e-3 && of_contact[1] < of_contact[0] / 100);
 }
 
+/* Means over the time between samples give the impulse; what one body bears is the other's. */
+static void the_force_of_contact_is_the_change_of_momentum(void **state) {
+  (void)state;
+  small_bodies b;
+  open_collision(&b, 4e-7, 1,
+                 "&contact /\n&monitor name = 'f' kind = 'contact_force' lattice = 'a' "
+                 "component = 'x' average = 2e-6 /\n"
+                 "&monitor name = 'now' kind = 'contact_force' lattice = 'a' component = 'x' /\n"
+                 "&monitor name = 'other' kind = 'contact_force' region = 'all b' "
+                 "component = 'x' /\n"
+                 "&monitor name = 'p' kind = 'momentum' lattice = 'a' component = 'x' /\n");
+  assert_int_equal(small_go(&b.run), STEP_END);
+  const double *f, *now, *other;
+  simulation_series(b.run.simulation, small_series(&b.run, "f"), NULL, &f);
+  simulation_series(b.run.simulation, small_series(&b.run, "now"), NULL, &now);
+  simulation_series(b.run.simulation, small_series(&b.run, "other"), NULL, &other);
+  const double p = small_last(&b.run, "p"), most = small_largest(&b.run, "now");
+  double impulse = 0;
+  for (long k = 0; k < simulation_history(b.run.simulation, NULL); k++) {
+    impulse += 2e-6 * f[k];
+    assert_true(fabs(now[k] + other[k]) < 1e-12 * most);
+  }
+  assert_true(p < -1 && most > 1e4); /* it is pushed on */
+  assert_true(fabs(impulse / p - 1) < 1e-12);
+  small_bodies_close(&b);
+}
+
 /* Three alike in a row: the last one goes on, the one in the middle stays. */
 static void a_middle_block_hands_the_blow_on(void **state) {
   (void)state;
@@ -508,6 +535,7 @@ int main(void) {
       cmocka_unit_test(two_particles_bounce),
       cmocka_unit_test(what_begins_pressed_together_parts),
       cmocka_unit_test(blocks_collide),
+      cmocka_unit_test(the_force_of_contact_is_the_change_of_momentum),
       cmocka_unit_test(a_middle_block_hands_the_blow_on),
       cmocka_unit_test(threads_and_stops_change_no_bit),
       cmocka_unit_test(contact_makes_the_stable_step_shorter),

@@ -36,6 +36,14 @@ static const misfit misfits[] = {
      DIAG_CONFLICT, "prescribed twice"},
     {RUN LAW BLOCK USE "&support region = 'edge' fix = 'rotation' /\n", DIAG_BAD_VALUE,
      "do not rotate"},
+    {RUN LAW BLOCK USE "&point_mass region = 'edge' mass = 3 inertia = 2 /\n", DIAG_BAD_VALUE,
+     "do not rotate"},
+    {RUN LAW BLOCK USE "&region name = 'far' shape = 'disc' centre = 9, 9 radius = 1 /\n"
+                       "&point_mass region = 'far' mass = 3 /\n",
+     DIAG_EMPTY_REGION, "region `far` holds no particle"},
+    {RUN LAW BLOCK USE "&force region = 'edge' component = 'x' per_length = 3 /\n"
+                       "&force region = 'corner' component = 'x' per_length = 3 /\n",
+     DIAG_BAD_VALUE, "region `corner` holds one particle"},
     {RUN LAW BLOCK USE "&end_moment region = 'edge' moment = 3 /\n", DIAG_BAD_VALUE,
      "lie at one height"},
     {RUN LAW BLOCK USE "&output fields = 'displacment' /\n", DIAG_BAD_VALUE,
