@@ -37,11 +37,14 @@ static bool take_stations(crack_line *l, const double from[3], const double to[3
                           double outside[3]) {
   const rows *g = l->of->lattice;
   rows *bar = bar_rows_between(g->dimensions, from, to, g->spacing / PARTS);
+  const deck_bar drawn = {.name = "", .copies = 1};
   const deck_link link = {.name = "", .bar = "", .around = "", .every = 1, .spacing = bar->spacing};
+  bar_line along = bar_line_of(&drawn, &link, bar);
   source_set none = {0};
   diagnostics unsaid;
   diag_begin(&unsaid, &none);
-  rows *tied = tied_build(&link, bar, g, &unsaid);
+  rows *tied = tied_build(NULL, &link, &along, bar, g, &unsaid);
+  bar_line_end(&along);
   diag_clear(&unsaid);
   const bool inside = tied && tied->bond_count == bar->particle_count;
   if (inside) {

@@ -71,6 +71,7 @@ static bool open_bodies(simulation *s, diagnostics *d) {
     s->bodies[b].first_block %= s->blocks;
   s->team = team_new(s->blocks);
   s->links = run_links_new(s->bodies, s->body_count, &s->link_count);
+  s->link_stages = s->link_count > 0 ? RUN_LINK_STAGES : 0;
   run_contacts_begin(&s->contacts);
   return good;
 }
