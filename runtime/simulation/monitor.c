@@ -287,13 +287,11 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
     break;
   case MONITOR_DISPLACEMENT:
   case MONITOR_VELOCITY:
+  case MONITOR_CONTACT_FORCE:
     take_sites(m, 0, all, m->deck->region);
     break;
   case MONITOR_SLIP:
     take_places(m, all, d);
-    break;
-  case MONITOR_CONTACT_FORCE:
-    take_sites(m, 0, all, m->deck->region);
     break;
   case MONITOR_FIELD:
     take_sites(m, 0, all, m->deck->region);

@@ -208,6 +208,26 @@ static void maps_of_space_have_axes(void **state) {
   expect(w, "plot block.h5 --map displacement", 0, "written block_displacement.png");
 }
 
+/* Of its particles alone edges are drawn: those of the block around it, which have no stress of that
+   name, are dots. */
+static void bars_in_a_block_are_seen(void **state) {
+  workplace *w = *state;
+  size_t size;
+  int edges = 0;
+  write_text(w, "block.nml", block);
+  assert_int_equal(shell(w, "echo \"&bar name = 'b' points = 0.01, 0.01, 0.01, 0.01, 0.01, 0.04 "
+                            "spacing = 0.005 diameter = 0.002 / &material bar = 'b' "
+                            "model = 'steel_bar' /\" >> block.nml"),
+                   0);
+  expect(w, "run block.nml --set \"output.fields='displacement', 'sigma'\"", 0, "written");
+  expect(w, "plot block.h5 --map sigma -o bar.svg", 0, "written bar.svg");
+  char *text = read_bytes(w, "bar.svg", &size);
+  for (const char *at = text; (at = strstr(at, "stroke:rgb(25%")); at++)
+    edges++;
+  free(text);
+  assert_int_equal(edges, 7);
+}
+
 /* Five rows of D3 are cut, nine are left (runtime/README.md); edges that lack bonds are named,
    others are not. */
 static void what_sites_make_of_shapes(void **state) {
@@ -316,6 +336,7 @@ int main(void) {
       ONE(quantities_are_told_in_words),
       ONE(maps_know_their_increment),
       ONE(maps_of_space_have_axes),
+      ONE(bars_in_a_block_are_seen),
       ONE(what_sites_make_of_shapes),
       ONE(blows_are_told),
       ONE(bodies_over_each_other_are_told),
