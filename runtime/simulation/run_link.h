@@ -45,15 +45,15 @@ typedef struct run_link {
 run_link *run_links_new(run_body *bodies, int body_count, int *count);
 void run_links_free(run_link *links, int count);
 
+/* m: how far the place that this particle of a link to places is a copy of has slid along the bar's
+   present tangent. */
+double run_link_slip(const run_link *link, long particle);
+
 /* Forces of the state that a run begins or goes on with; nothing where they are known. */
 void run_link_begin(run_link *link);
 /* Forces after a step of all bodies, and their work since the last state: all parts of a stage
    before the next one. The forces in the last one are known. */
 enum { RUN_LINK_STAGES = 4 };
 void run_link_step(run_link *link, int stage, int part, int parts);
-
-/* m: how far the place that this particle of a link to places is a copy of has slid along the bar's
-   present tangent in the state whose forces are known. */
-double run_link_slip(const run_link *link, long particle);
 
 #endif
