@@ -68,4 +68,19 @@ static inline bool bears(const char *deck_name, double kN, double held) {
   return bears_with(deck_name, kN, held, NULL, NULL);
 }
 
+/* The peak of a twin by displacement is what the page's row says; at the end at most a part `left` of
+   it is borne. */
+static inline void carries(const char *deck_name, const char *more, const char *row,
+                           const char *form, double left) {
+  deck_case c;
+  char figure[64];
+  run(&c, deck_name, (const char *[]){"simulation.threads=1", more, NULL});
+  const double most = deck_case_largest(&c, "load"), last = fabs(deck_case_last(&c, "load"));
+  print_message("%s: peak %.6g N, %.6g N left\n", deck_name, most, last);
+  snprintf(figure, sizeof figure, form, most / 1e3);
+  page_says(row, figure);
+  assert_true(last <= left * most);
+  deck_case_close(&c);
+}
+
 #endif

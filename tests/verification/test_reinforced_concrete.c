@@ -54,29 +54,13 @@ static void one_bar(void **state) {
 
 /* --- by displacement -------------------------------------------------------------------------- */
 
-static void carries(const char *deck_name, const char *more, const char *row, const char *form) {
-  deck_case c;
-  char figure[64];
-  run(&c, deck_name, (const char *[]){"simulation.threads=1", more, NULL});
-  const double *load = deck_case_series(&c, "load");
-  const long samples = simulation_history(c.simulation, NULL);
-  double most = 0;
-  for (long k = 0; k < samples; k++)
-    most = fmax(most, fabs(load[k]));
-  print_message("%s: peak %.6g N, %.6g N left\n", deck_name, most, fabs(load[samples - 1]));
-  snprintf(figure, sizeof figure, form, most / 1e3);
-  page_says(row, figure);
-  assert_true(fabs(load[samples - 1]) < 0.05 * most); /* it is in two */
-  deck_case_close(&c);
-}
-
 static void twins_by_displacement(void **state) {
   (void)state;
-  carries("tension_across_path", NULL, "| 5.1 tension, across", "| %.2f kN,");
-  carries("tension_along_path", NULL, "| 5.1 tension, along", "| %.2f kN,");
-  carries("compression_across_path", NULL, "| 5.2 compression, across", "| %.1f kN,");
-  carries("compression_along_path", NULL, "| 5.2 compression, along", "| %.0f kN,");
-  carries("plain_beam_path", "simulation.step=1.808 us", "| 5.3 plain beam", "| %.2f kN,");
+  carries("tension_across_path", NULL, "| 5.1 tension, across", "| %.2f kN,", 0.05);
+  carries("tension_along_path", NULL, "| 5.1 tension, along", "| %.2f kN,", 0.05);
+  carries("compression_across_path", NULL, "| 5.2 compression, across", "| %.1f kN,", 0.05);
+  carries("compression_along_path", NULL, "| 5.2 compression, along", "| %.0f kN,", 0.05);
+  carries("plain_beam_path", "simulation.step=1.808 us", "| 5.3 plain beam", "| %.2f kN,", 0.05);
 }
 
 /* Until the far end begins to move, the bar is as good as endless. */
