@@ -16,15 +16,10 @@
   START "&lattice name = 'l' kind = '" kind "' spacing = '5 mm' thickness = '10 mm' " more " /\n"  \
         "&body lattice = 'l' shape = 'disc' centre = 0, 0 radius = '40 mm' /\n"
 
-static inline void open_text(deck_case *c, const char *text) {
-  if (!deck_case_text(c, text)) diag_print(&c->model.said, stderr);
-  assert_non_null(c->simulation);
-}
-
 /* Forces after random displacements, [2 * particles]; to be freed. */
 static inline double *forces_of(const char *text, long *count) {
   deck_case c;
-  open_text(&c, text);
+  deck_case_open(&c, text);
   sweep *w = simulation_state(c.simulation, 0);
   const rows *g = w->body->lattice;
   double *forces = must_calloc((size_t)(2 * g->particle_count), sizeof *forces);
@@ -45,7 +40,7 @@ static inline double *forces_of(const char *text, long *count) {
    p; *borne is that force. Returns the largest force left on one, over that. */
 static inline double left_in_a_row(const char *text, const double *stretch, double *borne) {
   deck_case c;
-  open_text(&c, text);
+  deck_case_open(&c, text);
   sweep *w = simulation_state(c.simulation, 0);
   const rows *g = w->body->lattice;
   double u = 0, left = 0;

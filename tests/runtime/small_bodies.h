@@ -15,10 +15,7 @@ typedef struct small_bodies {
 static inline void small_bodies_open(small_bodies *b, const pl_law *law, const char *text) {
   small_run *r = &b->run;
   memset(b, 0, sizeof *b);
-  r->memory = arena_new();
-  diag_begin(&r->said, &r->sources);
-  const int file = source_add(&r->sources, "deck.nml", text, strlen(text));
-  r->deck = deck_read(r->memory, &r->sources, file, NULL, 0, &r->said);
+  small_read(r, text);
   for (int n = 0; r->deck && n < r->deck->lattice_count; n++) {
     assert_true(material_parameters(&r->deck->materials[n], law, b->parameters[n], &r->said));
     b->law[n] = (simulation_law){.law = law, .parameters = b->parameters[n]};

@@ -21,13 +21,18 @@ typedef struct small_run {
   simulation *simulation;
 } small_run;
 
-/* simulation stays NULL on errors; they are in r->said. The format takes the deck. */
-static inline void small_open(small_run *r, const pl_law *law, const char *text) {
+/* Only the deck: NULL with errors in r->said. */
+static inline void small_read(small_run *r, const char *text) {
   memset(r, 0, sizeof *r);
   r->memory = arena_new();
   diag_begin(&r->said, &r->sources);
   const int file = source_add(&r->sources, "deck.nml", text, strlen(text));
   r->deck = deck_read(r->memory, &r->sources, file, NULL, 0, &r->said);
+}
+
+/* simulation stays NULL on errors; they are in r->said. The format takes the deck. */
+static inline void small_open(small_run *r, const pl_law *law, const char *text) {
+  small_read(r, text);
   if (!r->deck || !material_parameters(&r->deck->materials[0], law, r->parameters, &r->said))
     return;
   r->law = (simulation_law){.law = law, .parameters = r->parameters};
@@ -52,11 +57,16 @@ static inline int small_series(const small_run *r, const char *name) {
   return -1;
 }
 
-/* Value of a series at the last sample. */
-static inline double small_last(const small_run *r, const char *name) {
+/* Its samples, [simulation_history]. */
+static inline const double *small_values(const small_run *r, const char *name) {
   const double *values;
   simulation_series(r->simulation, small_series(r, name), NULL, &values);
-  return values[simulation_history(r->simulation, NULL) - 1];
+  return values;
+}
+
+/* Value of a series at the last sample. */
+static inline double small_last(const small_run *r, const char *name) {
+  return small_values(r, name)[simulation_history(r->simulation, NULL) - 1];
 }
 
 static inline step_status small_go(small_run *r) {
@@ -69,9 +79,8 @@ static inline step_status small_go(small_run *r) {
 
 /* Largest size of a series in the history so far. */
 static inline double small_largest(const small_run *r, const char *name) {
-  const double *values;
+  const double *values = small_values(r, name);
   double most = 0;
-  simulation_series(r->simulation, small_series(r, name), NULL, &values);
   for (long k = 0; k < simulation_history(r->simulation, NULL); k++)
     most = fmax(most, fabs(values[k]));
   return most;

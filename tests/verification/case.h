@@ -166,6 +166,14 @@ static inline bool deck_case_text(deck_case *c, const char *text) {
          deck_case_start(c, SOURCE_DIR "/models/case.nml");
 }
 
+/* The same, or the test ends here. */
+static inline void deck_case_open(deck_case *c, const char *text) {
+  if (deck_case_text(c, text)) return;
+  diag_print(&c->model.said, stderr);
+  fprintf(stderr, "%s\n", text);
+  abort();
+}
+
 /* A deck of the repository, named from its root, with overrides as of --set. */
 static inline bool deck_case_run(deck_case *c, const char *name, const char *const *overrides,
                                  int count) {
@@ -214,6 +222,19 @@ static inline const double *deck_case_series(const deck_case *c, const char *nam
     if (strcmp(simulation_series(c->simulation, k, NULL, &values), name) == 0) return values;
   fprintf(stderr, "no series %s\n", name);
   abort();
+}
+
+static inline double deck_case_last(const deck_case *c, const char *name) {
+  return deck_case_series(c, name)[simulation_history(c->simulation, NULL) - 1];
+}
+
+/* The largest size of a series so far. */
+static inline double deck_case_largest(const deck_case *c, const char *name) {
+  const double *values = deck_case_series(c, name);
+  double most = 0;
+  for (long k = 0; k < simulation_history(c->simulation, NULL); k++)
+    most = fmax(most, fabs(values[k]));
+  return most;
 }
 
 /* Index of the largest value. */

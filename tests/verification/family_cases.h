@@ -9,10 +9,6 @@ static inline void run_of(deck_case *c, const char *name, const char *const *ove
   assert_int_equal(deck_case_go(c), STEP_END);
 }
 
-static inline double last_of(const deck_case *c, const char *name) {
-  return deck_case_series(c, name)[simulation_history(c->simulation, NULL) - 1];
-}
-
 static inline void is_within(const char *what, double value, double low, double high) {
   print_message("%s: %.6g\n", what, value);
   if (!(value >= low && value <= high))
@@ -24,9 +20,9 @@ static inline void is_within(const char *what, double value, double low, double 
 static inline void check_cube(const char *spacing) {
   deck_case c;
   run_of(&c, "examples/fcc_cube/cube.nml", &spacing, 1);
-  const double strain = last_of(&c, "strain");
-  is_within("E/25 GPa", last_of(&c, "stress") / strain / 25e9, 0.99, 1.01);
-  is_within("nu", -last_of(&c, "lateral") / strain, 0.185, 0.215);
+  const double strain = deck_case_last(&c, "strain");
+  is_within("E/25 GPa", deck_case_last(&c, "stress") / strain / 25e9, 0.99, 1.01);
+  is_within("nu", -deck_case_last(&c, "lateral") / strain, 0.185, 0.215);
   deck_case_close(&c);
 }
 
@@ -91,8 +87,8 @@ static inline void check_crack(const char *const overrides[2]) {
   const double rayleigh = (0.862 + 1.14 / 3) / (4. / 3) * sqrt(27e9 / 2440);
   is_within("crack speed over Rayleigh's",
             0.04 / (passes_at(&c, "b85") - passes_at(&c, "b45")) / rayleigh, 0.4, 1);
-  is_within("bonds broken above the crack", last_of(&c, "above"), 0, 0.2);
-  is_within("bonds broken below the crack", last_of(&c, "below"), 0, 0.2);
+  is_within("bonds broken above the crack", deck_case_last(&c, "above"), 0, 0.2);
+  is_within("bonds broken below the crack", deck_case_last(&c, "below"), 0, 0.2);
   deck_case_close(&c);
 }
 
@@ -102,9 +98,9 @@ static inline void check_beam(const char *spacing) {
   const double *load = deck_case_series(&c, "load");
   const double peak = load[largest_of(load, simulation_history(c.simulation, NULL))];
   is_within("peak, N", peak, 3500, 5500);
-  is_within("load at the end over the peak", last_of(&c, "load") / peak, 0, 0.5);
+  is_within("load at the end over the peak", deck_case_last(&c, "load") / peak, 0, 0.5);
   is_within("energy of the crack over G_f times the ligament",
-            last_of(&c, "energy/dissipated_damage") / (80 * 50.8e-3 * 76.2e-3), 0.5, 1.3);
+            deck_case_last(&c, "energy/dissipated_damage") / (80 * 50.8e-3 * 76.2e-3), 0.5, 1.3);
   deck_case_close(&c);
 }
 

@@ -38,12 +38,15 @@ static inline double largest_in(const double *values, const double *time, long s
 
 /* Under the force `kN` held from `held`, s, on: the deflection of the second half of the hold is
    that of the first, within 5 %. */
-static inline bool bears_with(const char *deck_name, double kN, double held, const char *more,
-                              const char *again) {
+static inline bool bears_with(const char *deck_name, double kN, double held,
+                              const char *const *more) {
   deck_case c;
   char total[64];
+  const char *overrides[8] = {"simulation.threads=1", total};
+  for (int k = 2; k < 7 && *more; k++)
+    overrides[k] = *more++;
   snprintf(total, sizeof total, "force.total=%.9g kN", kN);
-  run(&c, deck_name, (const char *[]){"simulation.threads=1", total, more, again, NULL});
+  run(&c, deck_name, overrides);
   const double *time, *deflection = deck_case_series(&c, "deflection"),
                       *load = deck_case_series(&c, "load");
   const long samples = simulation_history(c.simulation, &time);
@@ -57,7 +60,22 @@ static inline bool bears_with(const char *deck_name, double kN, double held, con
 }
 
 static inline bool bears(const char *deck_name, double kN, double held) {
-  return bears_with(deck_name, kN, held, NULL, NULL);
+  return bears_with(deck_name, kN, held, (const char *[]){NULL});
+}
+
+/* The peak of a twin by displacement is what the page's row says; at the end at most a part `left` of
+   it is borne. */
+static inline void carries(const char *deck_name, const char *more, const char *row,
+                           const char *form, double left) {
+  deck_case c;
+  char figure[64];
+  run(&c, deck_name, (const char *[]){"simulation.threads=1", more, NULL});
+  const double most = deck_case_largest(&c, "load"), last = fabs(deck_case_last(&c, "load"));
+  print_message("%s: peak %.6g N, %.6g N left\n", deck_name, most, last);
+  snprintf(figure, sizeof figure, form, most / 1e3);
+  page_says(row, figure);
+  assert_true(last <= left * most);
+  deck_case_close(&c);
 }
 
 #endif

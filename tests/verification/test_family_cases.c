@@ -77,7 +77,7 @@ static void a_crack_through_the_crystal_costs_G_f(void **state) {
   assert_true(deck_case_text(&c, layers));
   assert_int_equal(deck_case_go(&c), STEP_END);
   is_within("cost over that of the bonds cut",
-            last_of(&c, "energy/dissipated_damage") /
+            deck_case_last(&c, "energy/dissipated_damage") /
                 ((double)crossing[0] * g_1 + (double)crossing[1] * g_2),
             0.999, 1.001);
   deck_case_close(&c);

@@ -61,7 +61,8 @@ static void cracks_at_the_bar(void **state) {
   const frame_field *fields;
   double values[512], sum = 0, least = 1, most = 0;
   long cracks = 0;
-  run(&c, "one_bar", "simulation.end_time=10.95 ms", "force.total=-100.8 kN");
+  run(&c, "one_bar",
+      (const char *[]){"simulation.threads=1", "simulation.end_time=10.95 ms", NULL});
   const int count = simulation_frame_fields(c.simulation, &fields);
   for (int k = 0; k < count; k++) {
     if (!fields[k].of_cracks) continue;
@@ -99,29 +100,13 @@ static void cracks_at_the_bar(void **state) {
 
 /* --- by displacement -------------------------------------------------------------------------- */
 
-static void carries(const char *deck_name, const char *more, const char *row, const char *form) {
-  deck_case c;
-  char figure[64];
-  run(&c, deck_name, (const char *[]){"simulation.threads=1", more, NULL});
-  const double *load = deck_case_series(&c, "load");
-  const long samples = simulation_history(c.simulation, NULL);
-  double most = 0;
-  for (long k = 0; k < samples; k++)
-    most = fmax(most, fabs(load[k]));
-  print_message("%s: peak %.6g N, %.6g N left\n", deck_name, most, fabs(load[samples - 1]));
-  snprintf(figure, sizeof figure, form, most / 1e3);
-  page_says(row, figure);
-  assert_true(fabs(load[samples - 1]) < 0.05 * most); /* it is in two */
-  deck_case_close(&c);
-}
-
 static void twins_by_displacement(void **state) {
   (void)state;
-  carries("tension_across_path", NULL, "| 5.1 tension, across", "| %.2f kN,");
-  carries("tension_along_path", NULL, "| 5.1 tension, along", "| %.2f kN,");
-  carries("compression_across_path", NULL, "| 5.2 compression, across", "| %.1f kN,");
-  carries("compression_along_path", NULL, "| 5.2 compression, along", "| %.0f kN,");
-  carries("plain_beam_path", "simulation.step=1.808 us", "| 5.3 plain beam", "| %.2f kN,");
+  carries("tension_across_path", NULL, "| 5.1 tension, across", "| %.2f kN,", 0.05);
+  carries("tension_along_path", NULL, "| 5.1 tension, along", "| %.2f kN,", 0.05);
+  carries("compression_across_path", NULL, "| 5.2 compression, across", "| %.1f kN,", 0.05);
+  carries("compression_along_path", NULL, "| 5.2 compression, along", "| %.0f kN,", 0.05);
+  carries("plain_beam_path", "simulation.step=1.808 us", "| 5.3 plain beam", "| %.2f kN,", 0.05);
 }
 
 /* Until the far end begins to move, the bar is as good as endless. */

@@ -11,6 +11,7 @@
 #include "runtime/plot/plot_frame.h"
 #include "tests/generator/command_tools.h"
 #include "tests/runtime/hand_over.h"
+#include "tests/runtime/same_runs.h"
 #include "tests/verification/case.h"
 
 /* A plate that tears; a straight bar that yields, and a stirrup that is struck. */
@@ -43,26 +44,7 @@
 static void open_deck(deck_case *c, const char *text, int threads) {
   char whole[8000];
   snprintf(whole, sizeof whole, text, threads);
-  if (!deck_case_text(c, whole)) diag_print(&c->model.said, stderr);
-  assert_non_null(c->simulation);
-}
-
-/* Places, velocities and fields of two bodies, to the last bit. */
-static void same_bodies(const deck_case *a, int i, const deck_case *b, int j) {
-  const sweep *x = simulation_state(a->simulation, i), *y = simulation_state(b->simulation, j);
-  const rows *w = x->body->lattice;
-  const size_t sites = (size_t)w->size * sizeof(double);
-  assert_int_equal(w->size, y->body->lattice->size);
-  for (int d = 0; d < x->body->dof; d++) {
-    assert_memory_equal(x->body->displacement[d], y->body->displacement[d], sites);
-    assert_memory_equal(x->body->velocity[d], y->body->velocity[d], sites);
-  }
-  for (int f = 0; f < x->law->field_count; f++)
-    for (long p = 0; p < w->particle_count; p++)
-      for (int k = 0; k < w->directions; k++) {
-        const long slot = k * w->size + w->particle_site[p];
-        assert_true(x->field[f][slot] == y->field[f][slot]);
-      }
+  deck_case_open(c, whole);
 }
 
 /* The largest value of the law's first field. */
@@ -91,10 +73,8 @@ static void threads_and_a_resume_give_the_same_bits(void **state) {
   open_deck(&second, START PLATE BARS, 2);
   hand_over(first.simulation, simulation_step_count(one.simulation) / 3, second.simulation);
   assert_int_equal(deck_case_go(&second), STEP_END);
-  for (int b = 0; b < 3; b++) {
-    same_bodies(&one, b, &more, b);
-    same_bodies(&one, b, &second, b);
-  }
+  same_runs(one.simulation, more.simulation);
+  same_runs(one.simulation, second.simulation);
   deck_case_close(&one);
   deck_case_close(&more);
   deck_case_close(&first);
@@ -111,9 +91,9 @@ static void bars_do_not_act_on_what_they_touch(void **state) {
   assert_int_equal(deck_case_go(&all), STEP_END);
   assert_int_equal(deck_case_go(&plate), STEP_END);
   assert_int_equal(deck_case_go(&bars), STEP_END);
-  same_bodies(&all, 0, &plate, 0);
-  same_bodies(&all, 1, &bars, 0);
-  same_bodies(&all, 2, &bars, 1);
+  same_states(simulation_state(all.simulation, 0), simulation_state(plate.simulation, 0));
+  same_states(simulation_state(all.simulation, 1), simulation_state(bars.simulation, 0));
+  same_states(simulation_state(all.simulation, 2), simulation_state(bars.simulation, 1));
   deck_case_close(&all);
   deck_case_close(&plate);
   deck_case_close(&bars);
@@ -188,8 +168,7 @@ static void copies_have_the_same_bits_whatever_the_threads(void **state) {
   assert_int_equal(deck_case_go(&one), STEP_END);
   hand_over(more.simulation, simulation_step_count(one.simulation) / 3, rest.simulation);
   assert_int_equal(deck_case_go(&rest), STEP_END);
-  for (int b = 0; b < 2; b++)
-    same_bodies(&one, b, &rest, b);
+  same_runs(one.simulation, rest.simulation);
   deck_case_close(&one);
   deck_case_close(&more);
   deck_case_close(&rest);

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "tests/runtime/hand_over.h"
+#include "tests/runtime/same_runs.h"
 #include "tests/verification/case.h"
 
 typedef struct blow {
@@ -50,7 +51,7 @@ static void open_blow(deck_case *c, const blow *of, int threads) {
            "&initial_velocity region = 'all' component = 'x' value = -20 /\n",
            threads, of->bodies, space ? "'box'" : "'rectangle'", space ? ", -1" : "",
            space ? ", 2" : "");
-  if (!deck_case_text(c, text)) fail_msg("%s", text);
+  deck_case_open(c, text);
 }
 
 static double momentum(const deck_case *c, int component) {
@@ -64,26 +65,6 @@ static double momentum(const deck_case *c, int component) {
   return sum;
 }
 
-static double largest(const deck_case *c, const char *name) {
-  const double *values = deck_case_series(c, name);
-  double most = 0;
-  for (long k = 0; k < simulation_history(c->simulation, NULL); k++)
-    most = fmax(most, fabs(values[k]));
-  return most;
-}
-
-static void same_motion(const deck_case *a, const deck_case *b) {
-  for (int n = 0; n < simulation_bodies(a->simulation); n++) {
-    const body *x = simulation_state(a->simulation, n)->body,
-               *y = simulation_state(b->simulation, n)->body;
-    for (int d = 0; d < x->dof; d++)
-      assert_memory_equal(x->displacement[d], y->displacement[d],
-                          (size_t)x->lattice->size * sizeof(double));
-  }
-  assert_memory_equal(deck_case_series(a, "contact/stored"), deck_case_series(b, "contact/stored"),
-                      (size_t)simulation_history(a->simulation, NULL) * sizeof(double));
-}
-
 static void blows_keep_momentum_and_energy(void **state) {
   (void)state;
   for (size_t n = 0; n < sizeof blows / sizeof *blows; n++) {
@@ -92,21 +73,21 @@ static void blows_keep_momentum_and_energy(void **state) {
     const double before = momentum(&one, 0);
     assert_int_equal(deck_case_go(&one), STEP_END);
     const double drift = fabs(momentum(&one, 0) / before - 1),
-                 kinetic = largest(&one, "energy/kinetic");
+                 kinetic = deck_case_largest(&one, "energy/kinetic");
     print_message("%-20s momentum %.1e, contact %.2f, imbalance %.1e of the kinetic energy\n",
-                  blows[n].name, drift, largest(&one, "contact/stored") / kinetic,
-                  largest(&one, "energy/imbalance") / kinetic);
+                  blows[n].name, drift, deck_case_largest(&one, "contact/stored") / kinetic,
+                  deck_case_largest(&one, "energy/imbalance") / kinetic);
     assert_true(drift < 1e-12 && fabs(momentum(&one, 1)) < 1e-12 * fabs(before));
-    assert_true(largest(&one, "contact/stored") > 0.01 * kinetic);
-    assert_true(largest(&one, "contact/imbalance") < 1e-3 * kinetic);
-    assert_true(largest(&one, "energy/imbalance") < 1e-2 * kinetic);
+    assert_true(deck_case_largest(&one, "contact/stored") > 0.01 * kinetic);
+    assert_true(deck_case_largest(&one, "contact/imbalance") < 1e-3 * kinetic);
+    assert_true(deck_case_largest(&one, "energy/imbalance") < 1e-2 * kinetic);
     open_blow(&two, &blows[n], 3);
     open_blow(&resumed, &blows[n], 2);
     hand_over(two.simulation, simulation_step_count(two.simulation) / 2, resumed.simulation);
     assert_int_equal(deck_case_go(&two), STEP_END);
     assert_int_equal(deck_case_go(&resumed), STEP_END);
-    same_motion(&one, &two);
-    same_motion(&one, &resumed);
+    same_runs(one.simulation, two.simulation);
+    same_runs(one.simulation, resumed.simulation);
     deck_case_close(&one);
     deck_case_close(&two);
     deck_case_close(&resumed);
@@ -132,11 +113,11 @@ static double pressed_strip(const char *more, double *stored) {
       "&monitor name = 'F' kind = 'reaction' region = 'left' component = 'x' /\n%s",
       more);
   deck_case c;
-  if (!deck_case_text(&c, text)) fail_msg("%s", text);
+  deck_case_open(&c, text);
   assert_int_equal(deck_case_go(&c), STEP_END);
   const long last = simulation_history(c.simulation, NULL) - 1;
   const double force = deck_case_series(&c, "F")[last];
-  *stored = *more ? largest(&c, "contact/stored") : 0;
+  *stored = *more ? deck_case_largest(&c, "contact/stored") : 0;
   deck_case_close(&c);
   return force;
 }

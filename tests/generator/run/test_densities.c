@@ -42,7 +42,7 @@ static halves run_joint(const char *kind, const char *more, const char *name, in
   deck_case c;
   halves h = {.energy = {0, 0}, .centre = {0, 0}};
   snprintf(text, sizeof text, JOINT, kind, spacing, more, 0.5 * spacing, name, name, speed);
-  open_text(&c, text);
+  deck_case_open(&c, text);
   assert_int_equal(deck_case_go(&c), STEP_END);
   const body *w = simulation_state(c.simulation, 0)->body;
   for (long p = 0; p < w->lattice->particle_count; p++) {
@@ -64,7 +64,7 @@ static double speed_along(const char *kind, const char *more, const char *name) 
   char text[2048];
   deck_case c;
   snprintf(text, sizeof text, JOINT, kind, 4, more, 2.0, name, name, 0.0);
-  open_text(&c, text);
+  deck_case_open(&c, text);
   sweep *w = simulation_state(c.simulation, 0);
   const rows *g = w->body->lattice;
   const long first = g->particle_site[0];
@@ -151,7 +151,7 @@ static void bodies_bear_the_step_and_no_more(void **state) {
       PLATE("blue_noise", "thickness = '10 mm'", "splm_elastic", "rho = 300")};
   for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
     deck_case c;
-    open_text(&c, texts[k]);
+    deck_case_open(&c, texts[k]);
     const double below = growth(&c, 0.999), above = growth(&c, 1.001);
     print_message(
         "%s %zu: limit %.6g us, velocities grow by %.3g at 0.999 of it, by %.3g at 1.001\n",
@@ -181,7 +181,7 @@ static void dampers_count_as_in_the_lightest_lattice(void **state) {
            whole, whole);
   snprintf(text[1], sizeof text[1], CHAIN("hexagonal") "%s rho = 600 /\n", whole);
   for (int k = 0; k < 2; k++)
-    open_text(&c[k], text[k]);
+    deck_case_open(&c[k], text[k]);
   assert_true(simulation_step_limit(c[0].simulation)->limit ==
               simulation_step_limit(c[1].simulation)->limit);
   for (int k = 0; k < 2; k++)
@@ -221,7 +221,7 @@ static void open_pushed(deck_case *c, const struct body_kind *b, int threads,
   char text[4096];
   int length = snprintf(text, sizeof text, PUSHED, threads, b->kind, b->more);
   snprintf(text + length, sizeof text - (size_t)length, material, b->law, b->law);
-  open_text(c, text);
+  deck_case_open(c, text);
 }
 
 static double mass_of(const body *w) {

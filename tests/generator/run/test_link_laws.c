@@ -13,14 +13,10 @@
 #include "runtime/simulation/simulation_state.h"
 #include "tests/generator/command_tools.h"
 #include "tests/runtime/hand_over.h"
+#include "tests/runtime/same_runs.h"
 #include "tests/verification/case.h"
 
 enum { CONCRETE, BAR, LINK };
-
-static void open_text(deck_case *c, const char *text) {
-  if (!deck_case_text(c, text)) diag_print(&c->model.said, stderr);
-  if (!c->simulation) fail_msg("%s", text);
-}
 
 /* --- the elastic link ------------------------------------------------------------------------- */
 
@@ -39,7 +35,7 @@ static void open_text(deck_case *c, const char *text) {
    lattice, after a motion of its own. */
 static void bond_after(double x, double y, double turn, double f[3]) {
   deck_case c;
-  open_text(&c, ONE_BOND);
+  deck_case_open(&c, ONE_BOND);
   run_link *link = &c.simulation->links[0];
   const rows *g = link->own->lattice_rows;
   assert_int_equal(g->bond_count, 1);
@@ -97,16 +93,12 @@ static void an_elastic_link_is_as_stiff_as_a_bond_of_the_lattice(void **state) {
 static void open_beam(deck_case *c, const char *link, double safety, int threads, double speed) {
   char text[4096];
   snprintf(text + snprintf(text, sizeof text, BEAM, safety, threads, speed), 1000, "%s", link);
-  open_text(c, text);
+  deck_case_open(c, text);
 }
 
 typedef struct balance {
   double imbalance, own, external, lost, links;
 } balance;
-
-static double last_of(const deck_case *c, const char *name) {
-  return deck_case_series(c, name)[simulation_history(c->simulation, NULL) - 1];
-}
 
 /* All over the work from outside. */
 static balance balance_of(const char *link, const char *lost, double safety, double speed) {
@@ -114,7 +106,7 @@ static balance balance_of(const char *link, const char *lost, double safety, dou
   char own[64];
   open_beam(&c, link, safety, 0, speed);
   assert_int_equal(deck_case_go(&c), STEP_END);
-  balance b = {.external = last_of(&c, "energy/external")};
+  balance b = {.external = deck_case_last(&c, "energy/external")};
   const double *imbalance = deck_case_series(&c, "energy/imbalance"),
                *of_link = deck_case_series(&c, "l/imbalance");
   for (long k = 0; k < simulation_history(c.simulation, NULL); k++) {
@@ -122,9 +114,9 @@ static balance balance_of(const char *link, const char *lost, double safety, dou
     b.own = fmax(b.own, fabs(of_link[k]) / b.external);
   }
   snprintf(own, sizeof own, "energy/%s", lost);
-  b.lost = last_of(&c, own) / b.external;
+  b.lost = deck_case_last(&c, own) / b.external;
   snprintf(own, sizeof own, "l/%s", lost);
-  b.links = last_of(&c, own) / b.external;
+  b.links = deck_case_last(&c, own) / b.external;
   deck_case_close(&c);
   return b;
 }
@@ -150,53 +142,27 @@ static void what_links_lose_is_booked(void **state) {
 
 /* --- the same bits ---------------------------------------------------------------------------- */
 
-static void assert_same(const deck_case *a, const deck_case *b) {
-  for (int n = CONCRETE; n <= LINK; n++) {
-    const sweep *x = simulation_law_state(a->simulation, n),
-                *y = simulation_law_state(b->simulation, n);
-    const rows *g = x->lattice;
-    for (long p = 0; p < g->particle_count; p++) {
-      const long q = g->particle_site[p];
-      for (int d = 0; d < x->body->dof; d++) {
-        assert_true(x->body->displacement[d][q] == y->body->displacement[d][q]);
-        assert_true(x->body->velocity[d][q] == y->body->velocity[d][q]);
-      }
-      for (int f = 0; f < x->law->field_count; f++)
-        for (long k = 0; k < sweep_planes(x, x->law->fields[f].place); k++)
-          assert_true(x->field[f][k * g->size + q] == y->field[f][k * g->size + q]);
-    }
-  }
-  const long samples = simulation_history(a->simulation, NULL);
-  assert_int_equal(simulation_history(b->simulation, NULL), samples);
-  for (int k = 0; k < simulation_series_count(a->simulation); k++) {
-    const double *p, *q;
-    simulation_series(a->simulation, k, NULL, &p);
-    simulation_series(b->simulation, k, NULL, &q);
-    assert_memory_equal(p, q, (size_t)samples * sizeof(double));
-  }
-}
-
 /* Links that break and damp, with what they lose; restored twice. */
 static void threads_and_stops_do_not_change_a_bit(void **state) {
   (void)state;
   deck_case straight;
   open_beam(&straight, BREAKS, 0.8, 1, 1);
   assert_int_equal(deck_case_go(&straight), STEP_END);
-  assert_true(last_of(&straight, "l/dissipated_damage") > 0);
-  assert_true(last_of(&straight, "l/dissipated_damping") > 0);
+  assert_true(deck_case_last(&straight, "l/dissipated_damage") > 0);
+  assert_true(deck_case_last(&straight, "l/dissipated_damping") > 0);
   const long steps = simulation_step_count(straight.simulation);
   for (int threads = 2; threads <= 3; threads++) {
     deck_case whole, first, second, third;
     open_beam(&whole, BREAKS, 0.8, threads, 1);
     assert_int_equal(deck_case_go(&whole), STEP_END);
-    assert_same(&straight, &whole);
+    same_runs(straight.simulation, whole.simulation);
     open_beam(&first, BREAKS, 0.8, threads, 1);
     open_beam(&second, BREAKS, 0.8, 1, 1);
     open_beam(&third, BREAKS, 0.8, threads, 1);
     hand_over(first.simulation, steps / 2, second.simulation);
     hand_over(second.simulation, 2 * steps / 3, third.simulation);
     assert_int_equal(deck_case_go(&third), STEP_END);
-    assert_same(&straight, &third);
+    same_runs(straight.simulation, third.simulation);
     deck_case_close(&whole);
     deck_case_close(&first);
     deck_case_close(&second);

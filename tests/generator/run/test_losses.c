@@ -65,8 +65,7 @@ static void open_run(deck_case *c, const lossy_run *r, double safety, int thread
            r->end, safety, threads, keeps_energy ? "T" : "F");
   snprintf(text + snprintf(text, sizeof text, "%s", head), sizeof text - strlen(head), r->text,
            r->velocity);
-  if (!deck_case_text(c, text)) diag_print(&c->model.said, stderr);
-  if (!c->simulation) fail_msg("%s", text);
+  deck_case_open(c, text);
 }
 
 static const char *const lost_to[] = {"energy/dissipated_damage", "energy/dissipated_damping"};

@@ -111,7 +111,7 @@ static void other_files_are_told_from_each_other(void **state) {
     for (int p = 0; p < 20; p++)
       fprintf(out, "%d, 0, %.17g\n", 5 * p, 30 + (k == 2 && p == 7 ? 1e-9 : 0));
     fclose(out);
-    open_text(&c, CHAIN("hexagonal") GRADED("E = 'stiffness.csv'"));
+    deck_case_open(&c, CHAIN("hexagonal") GRADED("E = 'stiffness.csv'"));
     prints[k] = parameter_planes_fingerprint(simulation_planes(c.simulation, 0));
     deck_case_close(&c);
   }

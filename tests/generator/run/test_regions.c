@@ -89,7 +89,7 @@ static void forces_are_slopes_of_the_energy(void **state) {
                   "horizon = 2.015") "&material lattice = 'l' model = '%s' /\n"
                                      "&field parameter = 'E' distribution = 'uniform' cv = 0.3 /\n",
              laws[l]);
-    open_text(&c, text);
+    deck_case_open(&c, text);
     sweep *w = simulation_state(c.simulation, 0);
     const rows *g = w->body->lattice;
     const long site = g->particle_site[g->particle_count / 3];
@@ -133,7 +133,7 @@ static void forces_are_slopes_of_the_energy(void **state) {
 static void open_torn(deck_case *c, const char *kind, int threads) {
   char text[2048];
   snprintf(text, sizeof text, TORN, threads, kind);
-  open_text(c, text);
+  deck_case_open(c, text);
 }
 
 static void threads_and_a_resume_give_the_same_bits(void **state) {

@@ -64,7 +64,7 @@ static void a_section_carries_what_acts_on_its_near_part(void **state) {
                                       SPACE("fcc", "shells = 2", "mplm_space")};
   for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
     deck_case c;
-    open_text(&c, texts[k]);
+    deck_case_open(&c, texts[k]);
     sweep *w = simulation_state(c.simulation, 0);
     const body *b = w->body;
     uint64_t seed = 3;
@@ -134,7 +134,7 @@ static void a_cantilever_carries_the_moment_of_its_tip(void **state) {
   static const double places[] = {0.015, 0.052, 0.095};
   for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
     deck_case c;
-    open_text(&c, texts[k]);
+    deck_case_open(&c, texts[k]);
     assert_int_equal(deck_case_go(&c), STEP_END);
     const body *w = simulation_state(c.simulation, 0)->body;
     const long last = simulation_history(c.simulation, NULL) - 1;
@@ -154,7 +154,7 @@ static void a_cantilever_carries_the_moment_of_its_tip(void **state) {
 static void a_twisted_bar_carries_its_torque(void **state) {
   (void)state;
   deck_case c;
-  open_text(
+  deck_case_open(
       &c, RELAXED
       "&lattice name = 'l' kind = 'cubic' shells = 2 spacing = '10 mm' /\n"
       "&material lattice = 'l' model = 'mplm_space' /\n"

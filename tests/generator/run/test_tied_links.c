@@ -16,15 +16,6 @@
 
 enum { CONCRETE, BAR, LINK };
 
-static void open_text(deck_case *c, const char *text) {
-  if (!deck_case_text(c, text)) diag_print(&c->model.said, stderr);
-  if (!c->simulation) fail_msg("%s", text);
-}
-
-static double last_of(const deck_case *c, const char *name) {
-  return deck_case_series(c, name)[simulation_history(c->simulation, NULL) - 1];
-}
-
 /* --- pulled out ------------------------------------------------------------------------------- */
 
 static const double length = 0.3;
@@ -61,9 +52,9 @@ static double pull_of(const char *motion, double spacing, int every, const char 
   char text[4096];
   const int head = snprintf(text, sizeof text, "%s", motion);
   snprintf(text + head, sizeof text - (size_t)head, PULL, 1e3 * spacing, bar, every);
-  open_text(&c, text);
+  deck_case_open(&c, text);
   assert_int_equal(deck_case_go(&c), STEP_END);
-  const double force = last_of(&c, "F");
+  const double force = deck_case_last(&c, "F");
   deck_case_close(&c);
   return force;
 }
@@ -95,14 +86,14 @@ static void a_linear_bond_holds_as_its_closed_form(void **state) {
 static void slip_and_tension_are_the_closed_form(void **state) {
   (void)state;
   static const double spacings[] = {0.02, 0.01, 0.005};
-  const double K = 200e9, u = 1e-7, lambda = sqrt(4 * K / (bar_E * bar_diameter)),
-               scale = u / cosh(lambda * length);
+  const double u = 1e-7, lambda = sqrt(4 * bond_line / (bar_E * bar_diameter)),
+               scale = u / cosh(lambda * length), EA = bar_E * bar_area();
   double before[3] = {0, 0, 0};
   for (int n = 0; n < 3; n++) {
     const double s = spacings[n], middle = (floor(0.103 / s) + 0.5) * s,
                  exact[3] = {scale * cosh(lambda * (length - 0.1)),
-                             bar_E * bar_area() * lambda * scale * sinh(lambda * (length - middle)),
-                             bar_E * bar_area() * lambda * scale * sinh(lambda * (length - s / 2))};
+                             EA * lambda * scale * sinh(lambda * (length - middle)),
+                             EA * lambda * scale * sinh(lambda * (length - s / 2))};
     deck_case c;
     char text[4096];
     snprintf(text, sizeof text,
@@ -111,10 +102,11 @@ static void slip_and_tension_are_the_closed_form(void **state) {
                      "&monitor name = 'N' kind = 'bar_force' lattice = 'b' at = 0.103, 0.003 /\n"
                      "&monitor name = 'N_most' kind = 'bar_force' lattice = 'b' /\n" PULL,
              1e3 * s, STEEL, 1);
-    open_text(&c, text);
+    deck_case_open(&c, text);
     assert_int_equal(deck_case_go(&c), STEP_END);
-    const double found[3] = {last_of(&c, "s"), last_of(&c, "N"), last_of(&c, "N_most")};
-    assert_true(fabs(last_of(&c, "s_most") / u - 1) < 1e-9);
+    const double found[3] = {deck_case_last(&c, "s"), deck_case_last(&c, "N"),
+                             deck_case_last(&c, "N_most")};
+    assert_true(fabs(deck_case_last(&c, "s_most") / u - 1) < 1e-9);
     deck_case_close(&c);
     for (int k = 0; k < 3; k++) {
       const double error = fabs(found[k] / exact[k] - 1);
@@ -186,7 +178,7 @@ static void rigid_motions_cause_no_force(void **state) {
   deck_case c;
   char text[4096];
   snprintf(text, sizeof text, FREE, 0.3, 0.5, 0.0);
-  open_text(&c, text);
+  deck_case_open(&c, text);
   run_link *link = &c.simulation->links[0];
   const sweep *bond = simulation_law_state(c.simulation, LINK);
   const double scale = bar_E * bar_area(); /* N: E A, or of the bond K pi d l times a spacing */
@@ -235,14 +227,6 @@ static double spin_in(const deck_case *c) {
   return sum;
 }
 
-static double largest_energy(const deck_case *c, const char *name) {
-  const double *values = deck_case_series(c, name);
-  double most = 0;
-  for (long k = 0; k < simulation_history(c->simulation, NULL); k++)
-    most = fmax(most, fabs(values[k]));
-  return most;
-}
-
 /* Slips on the way: what they take is booked, and the sum closes better with the square of the
    step. */
 static void momentum_and_energies_balance(void **state) {
@@ -254,7 +238,7 @@ static void momentum_and_energies_balance(void **state) {
     char text[4096];
     double before[2], after[2];
     snprintf(text, sizeof text, FREE, 0.3, safety[n], 20.0);
-    open_text(&c, text);
+    deck_case_open(&c, text);
     assert_int_equal(simulation_advance(c.simulation, 1, NULL), STEP_OK);
     momentum_in(&c, before);
     const double spin = spin_in(&c);
@@ -263,11 +247,11 @@ static void momentum_and_energies_balance(void **state) {
     for (int d = 0; d < 2; d++)
       assert_true(fabs(after[d] - before[d]) < 1e-12 * scale);
     assert_true(fabs(spin_in(&c) - spin) < 1e-12 * scale * 0.3);
-    const double kinetic = largest_energy(&c, "energy/kinetic");
-    imbalance[n] = largest_energy(&c, "energy/imbalance") / kinetic;
+    const double kinetic = deck_case_largest(&c, "energy/kinetic");
+    imbalance[n] = deck_case_largest(&c, "energy/imbalance") / kinetic;
     print_message("at %g: imbalance %.1e, slip took %.1e of the energy\n", safety[n], imbalance[n],
-                  last_of(&c, "l/dissipated_damage") / kinetic);
-    assert_true(last_of(&c, "l/dissipated_damage") > 1e-3 * kinetic);
+                  deck_case_last(&c, "l/dissipated_damage") / kinetic);
+    assert_true(deck_case_last(&c, "l/dissipated_damage") > 1e-3 * kinetic);
     deck_case_close(&c);
   }
   assert_true(imbalance[0] < 1e-2);
@@ -280,7 +264,7 @@ static void the_step_is_stable(void **state) {
   deck_case c;
   char text[4096];
   snprintf(text, sizeof text, FREE, 30.0, 0.999, 1e-5);
-  open_text(&c, text);
+  deck_case_open(&c, text);
   assert_int_equal(deck_case_go(&c), STEP_END);
   const double *kinetic = deck_case_series(&c, "energy/kinetic"),
                *stored = deck_case_series(&c, "energy/stored");

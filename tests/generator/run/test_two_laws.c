@@ -17,6 +17,7 @@
 #include "runtime/simulation/ledger.h"
 #include "tests/generator/command_tools.h"
 #include "tests/runtime/hand_over.h"
+#include "tests/runtime/same_runs.h"
 #include "tests/verification/case.h"
 
 #define START "&simulation end_time = '0.05 ms' /\n&output frames = 0 energy = .false. /\n"
@@ -42,18 +43,13 @@
 #define COPY(model)   RIGHT(SOURCE_DIR "/models/" model ".plm")
 #define ACROSS(model) "&material lattice = 'l' between = 'a', 'b' model = '" model "' /\n"
 
-static void open_text(deck_case *c, const char *text) {
-  if (!deck_case_text(c, text)) diag_print(&c->model.said, stderr);
-  if (!c->simulation) fail_msg("%s", text);
-}
-
 /* --- a law is the sum of its copies ----------------------------------------------------------- */
 
 /* Forces after random motions, [dof * particles]; to be freed. */
 static double *forces_of(const char *text, int laws, long *count) {
   deck_case c;
   int parts = 1;
-  open_text(&c, text);
+  deck_case_open(&c, text);
   sweep *w = simulation_state(c.simulation, 0);
   const rows *g = w->body->lattice;
   const int dof = w->body->dof;
@@ -108,7 +104,7 @@ static void two_copies_of_a_law_are_the_law(void **state) {
 static void check_row(const char *text, const double softness[3], const int beside[2]) {
   enum { LEFT = 10, PARTICLES = 20 };
   deck_case c;
-  open_text(&c, text);
+  deck_case_open(&c, text);
   sweep *w = simulation_state(c.simulation, 0);
   const rows *g = w->body->lattice;
   double u = 0, left = 0;
@@ -151,7 +147,7 @@ static void a_bond_has_the_law_of_both_ends_or_none(void **state) {
 /* Also of a particle at the border, whose bonds are of both laws. */
 static void check_slope(const char *text, double size) {
   deck_case c;
-  open_text(&c, text);
+  deck_case_open(&c, text);
   sweep *w = simulation_state(c.simulation, 0);
   const rows *g = w->body->lattice;
   uint64_t seed = 5;
@@ -192,7 +188,7 @@ static void forces_are_slopes_of_the_energy(void **state) {
 /* Each particle has the density of its own law, whose bonds read its mass where they ask for it. */
 static void check_masses(const char *text) {
   deck_case c;
-  open_text(&c, text);
+  deck_case_open(&c, text);
   const sweep *w = simulation_state(c.simulation, 0);
   const rows *g = w->body->lattice;
   for (long p = 0; p < g->particle_count; p++) {
@@ -231,7 +227,7 @@ static void the_step_is_that_of_both(void **state) {
     char text[2048];
     deck_case c;
     snprintf(text, sizeof text, texts[k], "", "region = 'a'");
-    open_text(&c, text);
+    deck_case_open(&c, text);
     limit[k] = simulation_step_limit(c.simulation)->limit;
     if (k == 2) {
       assert_int_equal(deck_case_go(&c), STEP_END);
@@ -266,23 +262,7 @@ static void the_step_is_that_of_both(void **state) {
 static void open_torn(deck_case *c, const char *kind, const char *materials, int threads) {
   char text[4096];
   snprintf(text, sizeof text, TORN, threads, kind, materials);
-  open_text(c, text);
-}
-
-static void assert_same_run(const deck_case *a, const deck_case *b) {
-  const sweep *x = simulation_state(a->simulation, 0), *y = simulation_state(b->simulation, 0);
-  const rows *g = x->body->lattice;
-  for (int d = 0; d < x->body->dof; d++)
-    for (long p = 0; p < g->particle_count; p++)
-      assert_true(x->body->displacement[d][g->particle_site[p]] ==
-                  y->body->displacement[d][g->particle_site[p]]);
-  for (int n = 0; n < 2; n++) {
-    const sweep *of = simulation_law_state(a->simulation, n),
-                *and = simulation_law_state(b->simulation, n);
-    for (int f = 0; f < of->law->field_count; f++)
-      for (long p = 0; p < g->particle_count; p++)
-        assert_true(of->field[f][g->particle_site[p]] == and->field[f][g->particle_site[p]]);
-  }
+  deck_case_open(c, text);
 }
 
 static void threads_and_a_resume_give_the_same_bits(void **state) {
@@ -298,12 +278,12 @@ static void threads_and_a_resume_give_the_same_bits(void **state) {
     assert_int_equal(deck_case_go(&one), STEP_END);
     open_torn(&more, runs[k].kind, runs[k].materials, 3);
     assert_int_equal(deck_case_go(&more), STEP_END);
-    assert_same_run(&one, &more);
+    same_runs(one.simulation, more.simulation);
     open_torn(&first, runs[k].kind, runs[k].materials, 1);
     open_torn(&second, runs[k].kind, runs[k].materials, 2);
     hand_over(first.simulation, simulation_step_count(one.simulation) / 2, second.simulation);
     assert_int_equal(deck_case_go(&second), STEP_END);
-    assert_same_run(&one, &second);
+    same_runs(one.simulation, second.simulation);
     deck_case_close(&one);
     deck_case_close(&more);
     deck_case_close(&first);

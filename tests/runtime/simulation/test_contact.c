@@ -11,6 +11,7 @@
 
 #include "runtime/simulation/run_contact.h"
 #include "runtime/simulation/simulation_save.h"
+#include "tests/runtime/same_runs.h"
 #include "tests/runtime/small_bodies.h"
 
 #define SPACING   0.01
@@ -62,30 +63,35 @@ static double pushed_way(double t) {
   return 0.5 * (-APPROACH * t + GAP - apart);
 }
 
-static double bounce_error(int steps, double *rebound) {
-  const double end = GAP / APPROACH + 1.7 * acos(-1) / sqrt(2 * stiffness() / mass());
+/* Two columns in contact for `end`: how far the left one is off its `way` at most. */
+static double way_error(const char *right, double end, int steps, double (*way)(double),
+                        double *speed) {
   char text[4096];
   snprintf(
       text, sizeof text,
-      "&simulation end_time = %.17g step = %.17g /\n" COLUMN("a", "0") COLUMN("b", "0.01002") SPEED(
-          "b",
-          "-5") "&contact lattices = 'a', 'b' /\n"
-                "&monitor name = 'u' kind = 'displacement' region = 'all a' component = 'x' /\n"
-                "&monitor name = 'v' kind = 'velocity' region = 'all a' component = 'x' /\n"
-                "&output frames = 0 sample = %.17g /\n",
-      end, end / steps, end / steps);
+      "&simulation end_time = %.17g step = %.17g /\n" COLUMN(
+          "a", "0") "%s"
+                    "&contact lattices = 'a', 'b' /\n"
+                    "&monitor name = 'u' kind = 'displacement' region = 'all a' component = 'x' /\n"
+                    "&monitor name = 'v' kind = 'velocity' region = 'all a' component = 'x' /\n"
+                    "&output frames = 0 sample = %.17g /\n",
+      end, end / steps, right, end / steps);
   small_bodies b;
   small_bodies_open(&b, &elastic_bar, text);
   assert_int_equal(small_go(&b.run), STEP_END);
-  const double *time, *u;
+  const double *time, *u = small_values(&b.run, "u");
   double most = 0;
   const long samples = simulation_history(b.run.simulation, &time);
-  simulation_series(b.run.simulation, small_series(&b.run, "u"), NULL, &u);
   for (long k = 0; k < samples; k++)
-    most = fmax(most, fabs(u[k] - pushed_way(time[k])));
-  *rebound = small_last(&b.run, "v");
+    most = fmax(most, fabs(u[k] - way(time[k])));
+  *speed = small_last(&b.run, "v");
   small_bodies_close(&b);
-  return most / GAP;
+  return most;
+}
+
+static double bounce_error(int steps, double *rebound) {
+  const double end = GAP / APPROACH + 1.7 * acos(-1) / sqrt(2 * stiffness() / mass());
+  return way_error(COLUMN("b", "0.01002") SPEED("b", "-5"), end, steps, pushed_way, rebound) / GAP;
 }
 
 static void two_particles_bounce(void **state) {
@@ -98,29 +104,19 @@ static void two_particles_bounce(void **state) {
   assert_true(fabs(v[1] / -APPROACH - 1) < 1e-3);
 }
 
-/* Begins pressed together by 1 um, at rest: the way of either until they part. */
+#define OVERLAP 1e-6
+/* Begins pressed together by this, at rest: the way of either until they part. */
+static double parting_way(double t) {
+  return -0.5 * OVERLAP * (1 - cos(sqrt(2 * stiffness() / mass()) * t));
+}
+
 static double parting_error(int steps) {
-  const double omega = sqrt(2 * stiffness() / mass()), end = 0.8 * acos(-1) / (2 * omega);
-  char text[4096];
-  snprintf(
-      text, sizeof text,
-      "&simulation end_time = %.17g step = %.17g /\n" COLUMN("a", "0") COLUMN(
-          "b",
-          "0.01") "&contact lattices = 'a', 'b' /\n"
-                  "&initial_displacement region = 'all b' component = 'x' value = -1e-6 /\n"
-                  "&monitor name = 'u' kind = 'displacement' region = 'all a' component = 'x' /\n"
-                  "&output frames = 0 sample = %.17g /\n",
-      end, end / steps, end / steps);
-  small_bodies b;
-  small_bodies_open(&b, &elastic_bar, text);
-  assert_int_equal(small_go(&b.run), STEP_END);
-  const double *time, *u;
-  double most = 0;
-  simulation_series(b.run.simulation, small_series(&b.run, "u"), NULL, &u);
-  for (long k = 0; k < simulation_history(b.run.simulation, &time); k++)
-    most = fmax(most, fabs(u[k] + 0.5e-6 * (1 - cos(omega * time[k]))));
-  small_bodies_close(&b);
-  return most / 1e-6;
+  const double end = 0.4 * acos(-1) / sqrt(2 * stiffness() / mass());
+  double speed;
+  return way_error(COLUMN("b", "0.01") "&initial_displacement region = 'all b' component = 'x' "
+                                       "value = -1e-6 /\n",
+                   end, steps, parting_way, &speed) /
+         OVERLAP;
 }
 
 static void what_begins_pressed_together_parts(void **state) {
@@ -233,26 +229,6 @@ static void a_middle_block_hands_the_blow_on(void **state) {
   small_bodies_close(&b);
 }
 
-static void same_bodies(const small_bodies *a, const small_bodies *b) {
-  const double *p, *q;
-  for (int n = 0; n < simulation_bodies(a->run.simulation); n++) {
-    const body *x = simulation_state(a->run.simulation, n)->body,
-               *y = simulation_state(b->run.simulation, n)->body;
-    for (int d = 0; d < x->dof; d++) {
-      const size_t bytes = (size_t)x->lattice->size * sizeof(double);
-      assert_memory_equal(x->displacement[d], y->displacement[d], bytes);
-      assert_memory_equal(x->velocity[d], y->velocity[d], bytes);
-    }
-  }
-  const long samples = simulation_history(a->run.simulation, NULL);
-  assert_int_equal(simulation_history(b->run.simulation, NULL), samples);
-  for (int k = 0; k < simulation_series_count(a->run.simulation); k++) {
-    simulation_series(a->run.simulation, k, NULL, &p);
-    simulation_series(b->run.simulation, k, NULL, &q);
-    assert_memory_equal(p, q, (size_t)samples * sizeof(double));
-  }
-}
-
 #define WATCHED_CONTACT                                                                            \
   "&contact /\n&monitor name = 'f' kind = 'contact_force' lattice = 'a' component = 'x' "          \
   "average = 2e-6 /\n"
@@ -266,7 +242,7 @@ static void threads_and_stops_change_no_bit(void **state) {
   for (int threads = 2; threads <= 3; threads++) {
     open_collision(&other, 4e-7, threads, WATCHED_CONTACT);
     assert_int_equal(small_go(&other.run), STEP_END);
-    same_bodies(&straight, &other);
+    same_runs(straight.run.simulation, other.run.simulation);
     small_bodies_close(&other);
   }
   open_collision(&other, 4e-7, 2, WATCHED_CONTACT);
@@ -278,7 +254,7 @@ static void threads_and_stops_change_no_bit(void **state) {
   open_collision(&other, 4e-7, 1, WATCHED_CONTACT);
   assert_true(simulation_restore(other.run.simulation, path, "x", NULL, error, sizeof error));
   assert_int_equal(small_go(&other.run), STEP_END);
-  same_bodies(&straight, &other);
+  same_runs(straight.run.simulation, other.run.simulation);
   const contact_said a = simulation_contact(straight.run.simulation, 0),
                      b = simulation_contact(other.run.simulation, 0);
   assert_true(a.pairs > 0 && a.pairs == b.pairs && a.force == b.force && a.stored == b.stored);

@@ -16,38 +16,34 @@
 #include "runtime/simulation/simulation_state.h"
 #include "tests/runtime/hand_over.h"
 #include "tests/runtime/rigid_motion.h"
+#include "tests/runtime/same_runs.h"
+#include "tests/runtime/small_run.h"
 
 enum { MOST = 4 };
 typedef struct linked_run {
-  arena *memory;
-  source_set sources;
-  diagnostics said;
-  const deck *deck;
+  small_run run;
   pl_law on_rows, on_lists;
   double parameters[MOST][BEAM_PARAMETERS];
   simulation_law law[MOST];
-  simulation *simulation;
 } linked_run;
 
 /* Materials stand in the order of lattices, bars and links. */
 static void open_linked_in(linked_run *r, int dimensions, const char *text) {
+  const deck *k;
   memset(r, 0, sizeof *r);
   r->on_rows = beams_in(dimensions, PL_ROWS);
   r->on_lists = beams_in(dimensions, PL_LIST);
-  r->memory = arena_new();
-  diag_begin(&r->said, &r->sources);
-  const int file = source_add(&r->sources, "deck.nml", text, strlen(text));
-  r->deck = deck_read(r->memory, &r->sources, file, NULL, 0, &r->said);
-  for (int n = 0; r->deck && n < r->deck->lattice_count; n++) {
+  small_read(&r->run, text);
+  k = r->run.deck;
+  for (int n = 0; k && n < k->lattice_count; n++) {
     const pl_law *law = n == 0 ? &r->on_rows : &r->on_lists;
-    assert_true(material_parameters(&r->deck->materials[n], law, r->parameters[n], &r->said));
+    assert_true(material_parameters(&k->materials[n], law, r->parameters[n], &r->run.said));
     r->law[n] = (simulation_law){.law = law, .parameters = r->parameters[n]};
   }
-  if (r->deck) r->simulation = simulation_new(r->deck, r->law, &r->said);
-  if (!r->simulation) {
-    diag_print(&r->said, stderr);
-    fail_msg("%s", text);
-  }
+  if (k) r->run.simulation = simulation_new(k, r->law, &r->run.said);
+  if (r->run.simulation) return;
+  small_print(&r->run);
+  fail_msg("%s", text);
 }
 
 static void open_linked(linked_run *r, const char *text) {
@@ -55,42 +51,11 @@ static void open_linked(linked_run *r, const char *text) {
 }
 
 static void close_linked(linked_run *r) {
-  simulation_free(r->simulation);
-  diag_clear(&r->said);
-  source_clear(&r->sources);
-  arena_free(r->memory);
-}
-
-static step_status go(const linked_run *r) {
-  step_status status;
-  do
-    status = simulation_advance(r->simulation, 1L << 40, NULL);
-  while (status == STEP_OK);
-  return status;
-}
-
-static const double *series_of(const linked_run *r, const char *name) {
-  const double *values;
-  for (int k = 0; k < simulation_series_count(r->simulation); k++)
-    if (strcmp(simulation_series(r->simulation, k, NULL, &values), name) == 0) return values;
-  fail_msg("no series %s", name);
-  return NULL;
-}
-
-static double largest(const linked_run *r, const char *name) {
-  const double *values = series_of(r, name);
-  double most = 0;
-  for (long k = 0; k < simulation_history(r->simulation, NULL); k++)
-    most = fmax(most, fabs(values[k]));
-  return most;
-}
-
-static double last(const linked_run *r, const char *name) {
-  return series_of(r, name)[simulation_history(r->simulation, NULL) - 1];
+  small_close(&r->run);
 }
 
 static body *body_of(const linked_run *r, int lattice) {
-  return simulation_state(r->simulation, lattice)->body;
+  return simulation_state(r->run.simulation, lattice)->body;
 }
 
 /* --- one bond --------------------------------------------------------------------------------- */
@@ -115,10 +80,10 @@ typedef struct bond_ends {
 } bond_ends;
 
 static bond_ends ends_of(const linked_run *r) {
-  bond_ends b = {.link = &r->simulation->links[0]};
+  bond_ends b = {.link = &r->run.simulation->links[0]};
   const rows *g = b.link->own->lattice_rows;
   double at[2][3];
-  assert_int_equal(r->simulation->link_count, 1);
+  assert_int_equal(r->run.simulation->link_count, 1);
   assert_int_equal(g->bond_count, 1);
   assert_int_equal(g->particle_count, 2);
   for (int p = 0; p < 2; p++)
@@ -147,7 +112,7 @@ static void check_bond(double along, double across, double turn, const double ex
   moved->displacement[0][of->site[0]] = along * b.e[0] - across * b.e[1];
   moved->displacement[1][of->site[0]] = along * b.e[1] + across * b.e[0];
   turned->displacement[2][bar->site[0]] = turn;
-  run_link_begin(&r.simulation->links[0]);
+  run_link_begin(&r.run.simulation->links[0]);
   for (int end = 0; end < 2; end++) {
     const long q = g->particle_site[b.at[end]];
     const double f[3] = {law->force[0][q] * b.e[0] + law->force[1][q] * b.e[1],
@@ -224,7 +189,7 @@ static void keeps_momenta(linked_run *r, double rate) {
     rigid_spin(body_of(r, b), rate, b == BAR ? 4 : 2, 0.1);
   const momenta before = all_momenta(r);
   for (int k = 0; k < 20; k++) {
-    simulation_advance(r->simulation, 100, NULL);
+    simulation_advance(r->run.simulation, 100, NULL);
     const momenta now = all_momenta(r);
     furthest = fmax(furthest, momenta_apart(&now, &before));
   }
@@ -247,7 +212,7 @@ static void a_free_body_keeps_its_momenta(void **state) {
 static void turns_without_force(linked_run *r) {
   for (int b = CONCRETE; b <= BAR; b++)
     rigid_turn(body_of(r, b), 0.9, 0.3);
-  run_link *link = &r->simulation->links[0];
+  run_link *link = &r->run.simulation->links[0];
   run_link_begin(link);
   const sweep *law = link->own->laws[0].state;
   const double rigidity = 4e6 * link->own->lattice_rows->spacing;
@@ -287,20 +252,21 @@ static void energies_add_up(void **state) {
   char pulled[2048];
   snprintf(pulled, sizeof pulled, PULLED, 1e-6);
   open_free(&r, ONE_WAY, 0.5, pulled);
-  assert_int_equal(go(&r), STEP_END);
-  const double work = largest(&r, "energy/external");
-  const double *of[3] = {series_of(&r, "c/external"), series_of(&r, "b/external"),
-                         series_of(&r, "l/external")},
-               *sum = series_of(&r, "energy/external");
-  for (long n = 0; n < simulation_history(r.simulation, NULL); n++)
+  assert_int_equal(small_go(&r.run), STEP_END);
+  const double work = small_largest(&r.run, "energy/external");
+  const double *of[3] = {small_values(&r.run, "c/external"), small_values(&r.run, "b/external"),
+                         small_values(&r.run, "l/external")},
+               *sum = small_values(&r.run, "energy/external");
+  for (long n = 0; n < simulation_history(r.run.simulation, NULL); n++)
     assert_true(of[0][n] + of[1][n] + of[2][n] == sum[n]);
-  const double imbalance = largest(&r, "energy/imbalance"), own = largest(&r, "l/imbalance"),
-               stored = largest(&r, "l/stored");
+  const double imbalance = small_largest(&r.run, "energy/imbalance"),
+               own = small_largest(&r.run, "l/imbalance"),
+               stored = small_largest(&r.run, "l/stored");
   print_message("imbalance %.1e of the work, of the link %.1e of what it stores\n",
                 imbalance / work, own / stored);
-  assert_true(work > 0 && stored > 1e-3 * work && last(&r, "c/stored") > 1e-3 * work);
+  assert_true(work > 0 && stored > 1e-3 * work && small_last(&r.run, "c/stored") > 1e-3 * work);
   assert_true(imbalance < 1e-10 * work && own < 1e-9 * stored);
-  assert_true(largest(&r, "l/kinetic") == 0);
+  assert_true(small_largest(&r.run, "l/kinetic") == 0);
   close_linked(&r);
 }
 
@@ -313,8 +279,9 @@ static void the_imbalance_falls_with_the_step(void **state) {
     char pulled[2048];
     snprintf(pulled, sizeof pulled, PULLED, 1e-3);
     open_free(&r, ONE_WAY, k ? 0.2 : 0.8, pulled);
-    assert_int_equal(go(&r), STEP_END);
-    imbalance[k] = largest(&r, "energy/imbalance") / largest(&r, "energy/external");
+    assert_int_equal(small_go(&r.run), STEP_END);
+    imbalance[k] =
+        small_largest(&r.run, "energy/imbalance") / small_largest(&r.run, "energy/external");
     close_linked(&r);
   }
   print_message("imbalance %.1e, with a quarter of the step %.1e\n", imbalance[0], imbalance[1]);
@@ -334,45 +301,25 @@ static void open_threads(linked_run *r, int threads) {
   open_linked(r, text);
 }
 
-/* Motion of all bodies, forces of the link, histories. */
-static void assert_same(const linked_run *a, const linked_run *b) {
-  for (int n = CONCRETE; n <= LINK; n++) {
-    const body *x = body_of(a, n), *y = body_of(b, n);
-    const size_t site = (size_t)x->lattice->size * sizeof(double);
-    for (int d = 0; d < x->dof; d++) {
-      assert_memory_equal(x->displacement[d], y->displacement[d], site);
-      assert_memory_equal(x->velocity[d], y->velocity[d], site);
-    }
-  }
-  const long samples = simulation_history(a->simulation, NULL);
-  assert_int_equal(simulation_history(b->simulation, NULL), samples);
-  for (int k = 0; k < simulation_series_count(a->simulation); k++) {
-    const double *p, *q;
-    simulation_series(a->simulation, k, NULL, &p);
-    simulation_series(b->simulation, k, NULL, &q);
-    assert_memory_equal(p, q, (size_t)samples * sizeof(double));
-  }
-}
-
 static void threads_and_stops_do_not_change_a_bit(void **state) {
   (void)state;
   linked_run straight;
   open_threads(&straight, 1);
-  assert_int_equal(go(&straight), STEP_END);
-  const long steps = simulation_step_count(straight.simulation);
-  assert_true(largest(&straight, "l/stored") > 0);
+  assert_int_equal(small_go(&straight.run), STEP_END);
+  const long steps = simulation_step_count(straight.run.simulation);
+  assert_true(small_largest(&straight.run, "l/stored") > 0);
   for (int threads = 2; threads <= 3; threads++) {
     linked_run whole, first, second, third;
     open_threads(&whole, threads);
-    assert_int_equal(go(&whole), STEP_END);
-    assert_same(&straight, &whole);
+    assert_int_equal(small_go(&whole.run), STEP_END);
+    same_runs(straight.run.simulation, whole.run.simulation);
     open_threads(&first, threads);
     open_threads(&second, 1);
     open_threads(&third, threads);
-    hand_over(first.simulation, steps / 4, second.simulation);
-    hand_over(second.simulation, steps / threads, third.simulation);
-    assert_int_equal(go(&third), STEP_END);
-    assert_same(&straight, &third);
+    hand_over(first.run.simulation, steps / 4, second.run.simulation);
+    hand_over(second.run.simulation, steps / threads, third.run.simulation);
+    assert_int_equal(small_go(&third.run), STEP_END);
+    same_runs(straight.run.simulation, third.run.simulation);
     close_linked(&whole);
     close_linked(&first);
     close_linked(&second);
@@ -390,7 +337,7 @@ static void which_end_a_bar_begins_with_is_no_matter(void **state) {
   snprintf(pulled, sizeof pulled, PULLED, 0.1);
   for (int k = 0; k < 2; k++) {
     open_free(&r[k], k ? OTHER_WAY : ONE_WAY, 0.5, pulled);
-    assert_int_equal(go(&r[k]), STEP_END);
+    assert_int_equal(small_go(&r[k].run), STEP_END);
   }
   for (int b = CONCRETE; b <= BAR; b++) {
     const body *x = body_of(&r[0], b), *y = body_of(&r[1], b);
@@ -420,10 +367,10 @@ static double growth(const char *more, double factor, long steps, double *limit)
   snprintf(text, sizeof text, "&simulation end_time = 10 /\n&output frames = 0 /\n%s%s%s",
            CONCRETE_AND_BAR(ONE_WAY), LINKED, more);
   open_linked(&r, text);
-  *limit = simulation_step_limit(r.simulation)->limit;
+  *limit = simulation_step_limit(r.run.simulation)->limit;
   double before = 0, after = 0;
   unsigned seed = 7;
-  for (int n = 0; n < r.deck->lattice_count; n++) {
+  for (int n = 0; n < r.run.deck->lattice_count; n++) {
     body *b = body_of(&r, n);
     b->time_step = factor * *limit;
     for (long p = 0; p < b->lattice->particle_count; p++)
@@ -434,8 +381,8 @@ static double growth(const char *more, double factor, long steps, double *limit)
         before += body_mass(b, d, b->lattice->particle_site[p]) * *v * *v;
       }
   }
-  simulation_advance(r.simulation, steps, NULL);
-  for (int n = 0; n < r.deck->lattice_count; n++) {
+  simulation_advance(r.run.simulation, steps, NULL);
+  for (int n = 0; n < r.run.deck->lattice_count; n++) {
     const body *b = body_of(&r, n);
     for (long p = 0; p < b->lattice->particle_count; p++)
       for (int d = 0; d < b->dof && !b->lattice->copies; d++) {
@@ -484,7 +431,7 @@ static void only_links_that_share_particles_add_up(void **state) {
     snprintf(text, sizeof text, "&simulation end_time = 10 /\n&output frames = 0 /\n%s%s",
              CONCRETE_AND_BAR(ONE_WAY), links[k]);
     open_linked(&r, text);
-    limit[k] = simulation_step_limit(r.simulation)->limit;
+    limit[k] = simulation_step_limit(r.run.simulation)->limit;
     close_linked(&r);
   }
   print_message("steps %.4g, %.4g, %.4g us\n", 1e6 * limit[0], 1e6 * limit[1], 1e6 * limit[2]);
@@ -509,9 +456,9 @@ static void a_bar_that_begins_beside_its_place(void **state) {
              "&monitor name = 'way' kind = 'displacement' region = 'all' component = 'x' /\n",
              2e-5 / (STEPS << (k == 2 ? 5 : k)), CONCRETE_AND_BAR(ONE_WAY), LINKED);
     open_linked(&r, text);
-    assert_int_equal(go(&r), STEP_END);
-    way[k] = last(&r, "way");
-    assert_true(last(&r, "energy/kinetic") > 0);
+    assert_int_equal(small_go(&r.run), STEP_END);
+    way[k] = small_last(&r.run, "way");
+    assert_true(small_last(&r.run, "energy/kinetic") > 0);
     close_linked(&r);
   }
   const double error[2] = {fabs(way[0] - way[2]), fabs(way[1] - way[2])};
@@ -536,17 +483,19 @@ static void reactions_count_links(void **state) {
             "&monitor name = 'held' kind = 'reaction' region = 'concrete' component = 'x' /\n"
             "&monitor name = 'pull' kind = 'reaction' region = 'bar' component = 'x' /\n"
             "&monitor name = 'way' kind = 'displacement' region = 'bar' component = 'x' /\n");
-  assert_int_equal(go(&r), STEP_END);
-  const double *held = series_of(&r, "held"), *pull = series_of(&r, "pull");
-  const long end = simulation_history(r.simulation, NULL) - 1;
+  assert_int_equal(small_go(&r.run), STEP_END);
+  const double *held = small_values(&r.run, "held"), *pull = small_values(&r.run, "pull");
+  const long end = simulation_history(r.run.simulation, NULL) - 1;
   for (long n = 0; n <= end; n++)
     assert_true(fabs(held[n] + pull[n]) < 1e-11 * pull[end]);
-  const double stored = 0.5 * pull[end] * last(&r, "way");
+  const double stored = 0.5 * pull[end] * small_last(&r.run, "way");
   print_message("pull %.4g N, stored %.4g J\n", pull[end], stored);
   assert_true(pull[end] > 0.1);
-  assert_true(fabs(last(&r, "l/stored") / stored - 1) < 1e-6);
-  assert_true(fabs(last(&r, "l/external") / stored - 1) < 1e-6);
-  assert_true(fabs((last(&r, "energy/external") - last(&r, "energy/kinetic")) / stored - 1) < 1e-6);
+  assert_true(fabs(small_last(&r.run, "l/stored") / stored - 1) < 1e-6);
+  assert_true(fabs(small_last(&r.run, "l/external") / stored - 1) < 1e-6);
+  assert_true(
+      fabs((small_last(&r.run, "energy/external") - small_last(&r.run, "energy/kinetic")) / stored -
+           1) < 1e-6);
   close_linked(&r);
 }
 
@@ -569,15 +518,15 @@ static void a_quasi_static_run_comes_to_the_balance_of_springs(void **state) {
                   "&monitor name = 'held' kind = 'reaction' region = 'all' component = 'x' /\n"
                   "&monitor name = 'way' kind = 'displacement' region = 'end' component = 'x' /\n"
                   "&output frames = 0 /\n");
-  assert_int_equal(go(&r), STEP_END);
+  assert_int_equal(small_go(&r.run), STEP_END);
   long unbalanced;
-  assert_int_equal(simulation_increments(r.simulation, &unbalanced), 2);
-  print_message("%ld unbalanced, %ld steps\n", unbalanced, simulation_step_done(r.simulation));
+  assert_int_equal(simulation_increments(r.run.simulation, &unbalanced), 2);
+  print_message("%ld unbalanced, %ld steps\n", unbalanced, simulation_step_done(r.run.simulation));
   assert_int_equal(unbalanced, 0);
   for (int k = 0; k <= 2; k++) {
     const double force = 0.05 * k, way = force / 7e6 + force / 5e6;
-    assert_true(fabs(series_of(&r, "held")[k] + force) < 1e-6);
-    assert_true(fabs(series_of(&r, "way")[k] - way) < 1e-6 * 0.1 / 7e6);
+    assert_true(fabs(small_values(&r.run, "held")[k] + force) < 1e-6);
+    assert_true(fabs(small_values(&r.run, "way")[k] - way) < 1e-6 * 0.1 / 7e6);
   }
   close_linked(&r);
 }
