@@ -34,12 +34,21 @@ static inline double largest_in(const double *values, const double *time, long s
   return most;
 }
 
+/* So many kN on a prism in all, on a beam along its 1.2 m. */
+static inline void load_override(const char *deck_name, double kN, char text[64]) {
+  const bool prism = strstr(deck_name, "tension") || strstr(deck_name, "compression");
+  if (prism)
+    snprintf(text, 64, "force.total=%.9g kN", kN);
+  else
+    snprintf(text, 64, "force.per_length=%.9g kN/m", kN / 1.2);
+}
+
 /* Under the force `kN` held from `held`, s, on: the deflection of the second half of the hold is
    that of the first, within 5 %. */
 static inline bool bears(const char *deck_name, double kN, double held) {
   deck_case c;
   char total[64];
-  snprintf(total, sizeof total, "force.total=%.9g kN", kN);
+  load_override(deck_name, kN, total);
   run(&c, deck_name, total, NULL);
   const double *time, *deflection = deck_case_series(&c, "deflection"),
                       *load = deck_case_series(&c, "load");
