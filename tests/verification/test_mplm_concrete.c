@@ -109,8 +109,10 @@ static double damper(double spacing, double velocity) {
   return 2 * 0.05 * mass * sqrt(E / rho) / spacing * 2 * sqrt(2 / (1 - nu)) * velocity;
 }
 
-/* The triangle under the force: half EA eps_t^2 s alpha. */
-static void tears(const char *settings, double spacing, double alpha, double per_area) {
+/* The triangle under the force: half EA eps_t^2 s alpha. In the end nothing but what is `left` of the
+   damper holds. */
+static void tears(const char *settings, double spacing, double alpha, double per_area,
+                  double left) {
   const double velocity = 1e-3,
                bond = 0.5 * axial_rigidity(spacing) * eps_t * eps_t * spacing * alpha;
   run(settings, spacing, velocity, 1.1 * alpha * eps_t * spacing / velocity + 1e-3);
@@ -129,7 +131,7 @@ static void tears(const char *settings, double spacing, double alpha, double per
   /* a sample every 0.02 ms stands within 1 % of the stretch of the peak */
   assert_true(strength / expected < 1 + 1e-6 && strength / expected > 0.99);
   assert_true(last_frame(f, "c/omega_t") == 1 && last_frame(f, "c/omega_c") == 0);
-  assert_true(fabs(load[count - 1] - damper(spacing, velocity)) < 1e-6 * expected);
+  assert_true(fabs(load[count - 1] - left * damper(spacing, velocity)) < 1e-6 * expected);
   free(load);
   clean_up(f);
 }
@@ -142,10 +144,31 @@ static double ratio_for(double G_F, double spacing) {
 
 static void tension_costs_what_the_law_says(void **state) {
   (void)state;
-  tears("", 20e-3, 10, 32.9);
-  tears("tension = 'energy'", 20e-3, ratio_for(175, 20e-3), 175);
-  tears("tension = 'energy'", 10e-3, ratio_for(175, 10e-3), 175);
+  tears("", 20e-3, 10, 32.9, 0);
+  tears("damper = 'lasting'", 20e-3, 10, 32.9, 1);
+  tears("tension = 'energy'", 20e-3, ratio_for(175, 20e-3), 175, 0);
+  tears("tension = 'energy'", 10e-3, ratio_for(175, 10e-3), 175, 0);
   assert_true(fabs(ratio_for(175, 20e-3) - 53.2) < 0.05);
+}
+
+/* In the plane and in space: what has parted goes its way. */
+static void a_damper_goes_with_its_bond(void **state) {
+  (void)state;
+  static const char *const laws[] = {"mplm_concrete", "mplm_concrete_space"};
+  for (int k = 0; k < 2; k++) {
+    FILE *out = deck();
+    fprintf(out,
+            "&simulation steps = 100 /\n&bond spacing = '20 mm' thickness = '20 mm' /\n"
+            "&material model = '%s' /\n"
+            "&path quantity = 'stretch' value = 0.01 rise = '1 s' /\n"
+            "&expect quantity = 'omega_t' value = 1 absolute = 1e-15 /\n"
+            "&expect quantity = 'N' value = 0 absolute = '1e-12 N' /\n",
+            laws[k]);
+    assert_int_equal(fclose(out), 0);
+    program("drive");
+  }
+  unlink("mplm_concrete.nml");
+  unlink("mplm_concrete.log");
 }
 
 /* Pushed together to a strain of -0.002: the axial force is that of an intact bond. */
@@ -167,6 +190,7 @@ static void crushes(const char *settings, double loss) {
 static void crushing_keeps_the_axial_force(void **state) {
   (void)state;
   crushes("", 1 / 4.728);
+  crushes("crushing = 'text' eps_u = -0.0015", 1); /* it has not parted */
   crushes("crushing = 'text'", 0.5);
   crushes("crushing = 'text' fading = 'force'", 3 / 2.0 * 0.5);
 }
@@ -395,6 +419,7 @@ static void a_crack_along_a_cube_face_costs_G_F(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(tension_costs_what_the_law_says),
+      cmocka_unit_test(a_damper_goes_with_its_bond),
       cmocka_unit_test(crushing_keeps_the_axial_force),
       cmocka_unit_test(a_failed_bond_rubs),
       cmocka_unit_test(friction_takes_energy_on_any_path),
