@@ -120,34 +120,40 @@ static double mean_of(const link_copy *c, double *const *values, int d) {
   return sum;
 }
 
-/* The bar's unit tangent in the reference state and now, and how quickly it turns now. */
-static void find_tangent(link_copy *c, double then[3], double spin[3]) {
-  double now[3], length = 0, before = 0;
+/* The bar's unit tangent now. Returns how far apart the particles are that it goes through. */
+static double find_tangent(const link_copy *c, double now[3]) {
+  double length = 0;
   for (int a = 0; a < 3; a++)
     now[a] = c->tangent[a];
-  for (int a = 0; a < c->bar->dimensions; a++) {
+  for (int a = 0; a < c->bar->dimensions; a++)
     now[a] += c->bar->displacement[a][c->after] - c->bar->displacement[a][c->before];
-    c->chord_rate[a] = c->bar->velocity[a][c->after] - c->bar->velocity[a][c->before];
-  }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; a++)
     length += now[a] * now[a];
+  length = sqrt(length);
+  for (int a = 0; a < 3; a++)
+    now[a] /= length;
+  return length;
+}
+
+/* The unit tangent in the reference state, and how quickly it turns now. */
+static void find_turning(link_copy *c, double then[3], double spin[3]) {
+  double before = 0;
+  c->chord = find_tangent(c, c->along);
+  for (int a = 0; a < c->bar->dimensions; a++)
+    c->chord_rate[a] = c->bar->velocity[a][c->after] - c->bar->velocity[a][c->before];
+  for (int a = 0; a < 3; a++)
     before += c->tangent[a] * c->tangent[a];
-  }
   for (int a = 0; a < 3; a++) {
     const int b = (a + 1) % 3, e = (a + 2) % 3;
-    spin[a] = (now[b] * c->chord_rate[e] - now[e] * c->chord_rate[b]) / length;
-  }
-  c->chord = sqrt(length);
-  for (int a = 0; a < 3; a++) {
-    c->along[a] = now[a] / c->chord;
+    spin[a] = (c->along[b] * c->chord_rate[e] - c->along[e] * c->chord_rate[b]) / c->chord;
     then[a] = c->tangent[a] / sqrt(before);
   }
 }
 
 double run_link_slip(const run_link *link, long particle) {
   const link_copy *c = &link->copies[particle];
-  double then[3], now[3], spin[3], slip = 0;
-  find_tangent(c, then, now, spin);
+  double now[3], slip = 0;
+  find_tangent(c, now);
   for (int a = 0; a < c->bar->dimensions; a++)
     slip += now[a] * (mean_of(c, c->of->displacement, a) - c->bar->displacement[a][c->at]);
   return slip;
@@ -176,7 +182,7 @@ static void turn_copy(body *copy, long here, const double then[3], const double 
 static void follow_bar(link_copy *c, body *copy, long here) {
   double then[3], spin[3];
   const double *now = c->along;
-  find_tangent(c, then, spin);
+  find_turning(c, then, spin);
   turn_copy(copy, here, then, now, spin);
   for (int a = 0; a < copy->dimensions; a++) {
     const int b = (a + 1) % 3, e = (a + 2) % 3;

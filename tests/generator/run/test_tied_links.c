@@ -90,22 +90,19 @@ static void a_linear_bond_holds_as_its_closed_form(void **state) {
   assert_true(error[1] < 0.27 * error[0] && error[2] < 0.27 * error[1]);
 }
 
-<<<<<<< HEAD
-/* The power law along a bar that is long enough. */
-=======
 /* What monitors say of it: with u(x) = u cosh(lambda (l - x))/cosh(lambda l) the slip, the tension is
    E A u', in the bond whose middle is there. */
 static void slip_and_tension_are_the_closed_form(void **state) {
   (void)state;
   static const double spacings[] = {0.02, 0.01, 0.005};
-  const double K = 200e9, u = 1e-7, lambda = sqrt(4 * K / (E * diameter)),
+  const double K = 200e9, u = 1e-7, lambda = sqrt(4 * K / (bar_E * bar_diameter)),
                scale = u / cosh(lambda * length);
   double before[3] = {0, 0, 0};
   for (int n = 0; n < 3; n++) {
     const double s = spacings[n], middle = (floor(0.103 / s) + 0.5) * s,
                  exact[3] = {scale * cosh(lambda * (length - 0.1)),
-                             E * area() * lambda * scale * sinh(lambda * (length - middle)),
-                             E * area() * lambda * scale * sinh(lambda * (length - s / 2))};
+                             bar_E * bar_area() * lambda * scale * sinh(lambda * (length - middle)),
+                             bar_E * bar_area() * lambda * scale * sinh(lambda * (length - s / 2))};
     deck_case c;
     char text[4096];
     snprintf(text, sizeof text,
@@ -129,8 +126,7 @@ static void slip_and_tension_are_the_closed_form(void **state) {
   }
 }
 
-/* The power law along a bar that is long enough: F^2 = 2 E A pi d * integral of tau over slip. */
->>>>>>> bars
+/* The power law along a bar that is long enough. */
 static void the_model_code_holds_as_its_closed_form(void **state) {
   (void)state;
   const double u = 4e-5, exact = long_bar_force(u), found = pulled_to(u, 0.01, 0.005, 1, STEEL);
