@@ -9,6 +9,7 @@
 
 #include "tests/runtime/hand_over.h"
 #include "tests/verification/beam_in_space.h"
+#include "tests/verification/same_runs.h"
 
 enum { CONCRETE, BOTTOM, BOND = 4 }; /* the deck's interactions */
 
@@ -46,37 +47,6 @@ static void open_fast(deck_case *c, const char *threads) {
   assert_true(deck_case_run(c, BEAM_IN_SPACE, overrides, 10));
 }
 
-static long different(const sweep *of, const double *x, const double *y, int planes) {
-  const rows *g = of->body->lattice;
-  long count = 0;
-  for (int k = 0; k < planes; k++)
-    for (long p = 0; p < g->particle_count; p++) {
-      const long at = k * g->size + g->particle_site[p];
-      count += memcmp(&x[at], &y[at], sizeof(double)) != 0;
-    }
-  return count;
-}
-
-static void assert_same_body(const sweep *x, const sweep *y) {
-  for (int d = 0; d < x->body->dof; d++) {
-    assert_int_equal(different(x, x->body->displacement[d], y->body->displacement[d], 1), 0);
-    assert_int_equal(different(x, x->body->velocity[d], y->body->velocity[d], 1), 0);
-  }
-}
-
-static void assert_same(const deck_case *a, const deck_case *b) {
-  const double *p, *q;
-  const long samples = simulation_history(a->simulation, NULL);
-  for (int n = 0; n < a->deck->lattice_count; n++)
-    assert_same_body(simulation_state(a->simulation, n), simulation_state(b->simulation, n));
-  assert_int_equal(simulation_history(b->simulation, NULL), samples);
-  for (int k = 0; k < simulation_series_count(a->simulation); k++) {
-    simulation_series(a->simulation, k, NULL, &p);
-    simulation_series(b->simulation, k, NULL, &q);
-    assert_memory_equal(p, q, (size_t)samples * sizeof(double));
-  }
-}
-
 static void threads_and_stops_do_not_change_a_bit(void **state) {
   (void)state;
   static const char *const threads[] = {"simulation.threads=2", "simulation.threads=3"};
@@ -92,11 +62,11 @@ static void threads_and_stops_do_not_change_a_bit(void **state) {
       open_fast(&rest, threads[0]);
       hand_over(more.simulation, 601, rest.simulation);
       assert_int_equal(deck_case_go(&rest), STEP_END);
-      assert_same(&one, &rest);
+      assert_same_runs(&one, &rest);
       deck_case_close(&rest);
     }
     assert_int_equal(deck_case_go(&more), STEP_END);
-    assert_same(&one, &more);
+    assert_same_runs(&one, &more);
     deck_case_close(&more);
   }
   deck_case_close(&one);
