@@ -34,13 +34,13 @@ static void with_all_dampers(void **state) {
   strength("stirrups_shear", 300, 320, LIST(LONG_STEP), "| 5.6 stirrups, shear", form);
 }
 
-/* Reference: 42 to 44, 82 to 85, and as above. */
+/* Reference: 42 to 44, 82 to 85, and as above. Off sites 46 kN/m is borne or not as the step is. */
 static void without_dampers_of_torn_bonds(void **state) {
   (void)state;
   static const char form[] = "| %g, %g |", on[] = "| 5.4 one bar, on", off[] = "| 5.4 one bar, off";
   strength("plain_beam", 42, 43, LIST(BREAKING), "| 5.3 plain beam", form);
   strength("one_bar", 82, 84, LIST(LONG_STEP, BREAKING), on, form);
-  strength("one_bar", 46, 48, LIST(LONG_STEP, BREAKING, OFF_SITES), off, form);
+  strength("one_bar", 44, 48, LIST(LONG_STEP, BREAKING, OFF_SITES), off, form);
   strength("stirrups_bending", 68, 72, LIST(LONG_STEP, BREAKING), "| 5.5 stirrups, bending", form);
   strength("stirrups_shear", 270, 280, LIST(LONG_STEP, BREAKING), "| 5.6 stirrups, shear", form);
 }
