@@ -1,6 +1,7 @@
-/* perilat export: histories, or one frame of a result, as comma-separated values. */
+/* perilat export: histories, one frame, or cracks of a result, as comma-separated values. */
 #include <errno.h>
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,7 +27,8 @@ typedef struct export_request {
   const char **names;          /* the only histories or fields to write; none given: all */
   int name_count;
   const char *of_histories,
-      *of_frames; /* an option that only this table knows, when one was given */
+      *of_frames;     /* an option that only this table knows, when one was given */
+  const char *cracks; /* of this monitor */
   bool bonds, framed, json;
   long frame;
 } export_request;
@@ -172,7 +174,7 @@ static bool add_columns(table *t, result_file *f, const export_request *q) {
   return q->name_count ? add_asked(t, f, q) : add_all(t, f, q->bonds);
 }
 
-static void write_history(FILE *out, const table *t) {
+static void write_rows(FILE *out, const table *t) {
   write_titles(out, t->columns, t->count);
   for (long row = 0; row < t->rows; row++) {
     putc('\n', out);
@@ -181,8 +183,8 @@ static void write_history(FILE *out, const table *t) {
   putc('\n', out);
 }
 
-static void put_history(json *w, const table *t) {
-  json_put_text(w, "of", "history");
+static void put_rows(json *w, const char *of, const table *t) {
+  json_put_text(w, "of", of);
   json_put_integer(w, "rows", t->rows);
   json_put_array(w, "columns");
   put_columns(w, t);
@@ -199,9 +201,9 @@ static bool export_history(result_file *f, const export_request *q, FILE *out, j
   t.rows = t.columns[0].count;
   good = good && add_columns(&t, f, q);
   if (good && w)
-    put_history(w, &t);
+    put_rows(w, "history", &t);
   else if (good)
-    write_history(out, &t);
+    write_rows(out, &t);
   table_free(&t);
   return good;
 }
@@ -306,6 +308,54 @@ static bool export_frame(result_file *f, const export_request *q, FILE *out, jso
   return good;
 }
 
+/* --- cracks ---------------------------------------------------------------------------------- */
+
+enum { CRACK_FRAME, CRACK_TIME, CRACK_PLACE, CRACK_WIDTH, CRACK_COLUMNS };
+
+/* A row for each crack of each frame, from the values of result_read_cracks. */
+static table list_cracks(const double *values, long frames, long most, const double *times) {
+  static const char *const names[CRACK_COLUMNS] = {"frame", "time", "place", "width"};
+  static const char *const units[CRACK_COLUMNS] = {"1", "s", "m", "m"};
+  table t = {.columns = must_calloc(CRACK_COLUMNS, sizeof *t.columns), .count = CRACK_COLUMNS};
+  for (int c = 0; c < CRACK_COLUMNS; c++) {
+    table_values *v = &t.columns[c];
+    *v = (table_values){.name = names[c], .components = 1};
+    strcpy(v->unit, units[c]);
+    v->values = must_calloc((size_t)(frames * most) + 1, sizeof *v->values);
+  }
+  for (long n = 0; n < frames * most; n++) {
+    if (isnan(values[2 * n])) continue;
+    const double row[CRACK_COLUMNS] = {(double)(n / most), times[n / most], values[2 * n],
+                                       values[2 * n + 1]};
+    for (int c = 0; c < CRACK_COLUMNS; c++)
+      t.columns[c].values[t.rows] = row[c];
+    t.rows++;
+  }
+  for (int c = 0; c < CRACK_COLUMNS; c++)
+    t.columns[c].count = t.rows;
+  return t;
+}
+
+static bool export_cracks(result_file *f, const export_request *q, FILE *out, json *w) {
+  char error[1024];
+  long frames = 0, most = 0, instants = 0;
+  double *values = result_read_cracks(f, q->cracks, &frames, &most, error, sizeof error),
+         *times = result_read_frame_times(f, &instants);
+  const bool good = values && times && instants >= frames;
+  if (!good) say_error("%s", values ? "the frames have no times" : error);
+  if (good) {
+    table t = list_cracks(values, frames, most, times);
+    if (w)
+      put_rows(w, "cracks", &t);
+    else
+      write_rows(out, &t);
+    table_free(&t);
+  }
+  free(values);
+  free(times);
+  return good;
+}
+
 /* --- the command ------------------------------------------------------------------------------ */
 
 static bool read_request(int argc, char **argv, export_request *q) {
@@ -319,6 +369,8 @@ static bool read_request(int argc, char **argv, export_request *q) {
       q->names[q->name_count++] = q->of_histories = v;
     else if ((v = option_value(argc, argv, &at, "--field", &bad)))
       q->names[q->name_count++] = q->of_frames = v;
+    else if ((v = option_value(argc, argv, &at, "--cracks", &bad)))
+      q->cracks = v;
     else if (option_flag(argv, &at, "--bonds"))
       q->bonds = true;
     else if (option_flag(argv, &at, "--json"))
@@ -348,6 +400,8 @@ static bool complete(const export_request *q) {
               "history.csv");
   else if (q->of_histories && (q->framed || q->of_frames))
     say_error("histories and a frame are two tables; export one at a time");
+  else if (q->cracks && (q->framed || q->of_frames || q->of_histories || q->bonds))
+    say_error("cracks are a table of their own; leave out --history, --frame, --field and --bonds");
   else if (q->of_frames && !q->framed)
     say_error("--field belongs to frames; add --frame N, e.g. --frame -1 for the last");
   else if (q->bonds && !q->framed)
@@ -382,9 +436,11 @@ static int write_table(const char *text, size_t length, const char *path) {
 /* 0 or 1. */
 static int export_table(const export_request *q, FILE *out, json *w) {
   result_file *f = table_open(program, q->result);
-  return f && table_close(f, q->framed ? export_frame(f, q, out, w) : export_history(f, q, out, w))
-             ? 0
-             : 1;
+  if (!f) return 1;
+  const bool good = q->cracks   ? export_cracks(f, q, out, w)
+                    : q->framed ? export_frame(f, q, out, w)
+                                : export_history(f, q, out, w);
+  return table_close(f, good) ? 0 : 1;
 }
 
 static int export_to_json(const export_request *q) {

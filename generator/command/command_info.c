@@ -169,6 +169,27 @@ static void put_ending(result_file *f, json *w) {
     json_put_number(w, numbers[k], result_read_number(f, numbers[k]));
 }
 
+/* "width: 3 in the last frame, the widest 0.21 mm; at most 4 in a frame" */
+static bool print_cracks(result_file *f, const char *monitor) {
+  char error[1024];
+  long frames = 0, most = 0, last = 0, largest = 0;
+  double widest = 0;
+  double *values = result_read_cracks(f, monitor, &frames, &most, error, sizeof error);
+  if (!values) say_error("%s", error);
+  for (long n = 0; values && n < frames; n++) {
+    last = 0;
+    widest = 0;
+    for (long k = n * most; k < (n + 1) * most && !isnan(values[2 * k]); k++, last++)
+      widest = pl_fmax(widest, values[2 * k + 1]);
+    largest = last > largest ? last : largest;
+  }
+  if (values)
+    printf("Cracks of `%s`: %ld in the last frame, the widest %.4g mm; at most %ld in a frame\n",
+           name_shown(monitor), last, 1e3 * widest, largest);
+  free(values);
+  return values != NULL;
+}
+
 static bool print_result(result_file *f, const char *path) {
   result_sizes s;
   bool good = read_sizes(f, path, &s);
@@ -192,6 +213,10 @@ static bool print_result(result_file *f, const char *path) {
     printf("%s %s", k ? "," : "", name_shown(fields.items[k]));
   puts(fields.count ? "" : " nothing");
   result_names_free(&fields);
+  result_names cracks = result_list(f, "/cracks");
+  for (int k = 0; k < cracks.count; k++)
+    good = print_cracks(f, cracks.items[k]) && good;
+  result_names_free(&cracks);
   return good;
 }
 
@@ -225,6 +250,12 @@ static bool put_result(result_file *f, const char *path, json *w) {
     json_text(w, fields.items[k]);
   json_array_end(w);
   result_names_free(&fields);
+  result_names cracks = result_list(f, "/cracks");
+  json_put_array(w, "cracks");
+  for (int k = 0; k < cracks.count; k++)
+    json_text(w, cracks.items[k]);
+  json_array_end(w);
+  result_names_free(&cracks);
   return good;
 }
 

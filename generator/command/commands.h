@@ -34,7 +34,7 @@
   X(compare, "a.h5 b.h5 | lab.csv", "h5 hdf5 csv",                                                 \
     "where two results, or a result and a table, differ most",                                     \
     "0 the same, 1 an input is wrong, 2 different")                                                \
-  X(export, "result.h5", "h5 hdf5", "histories or a frame as comma-separated values",              \
+  X(export, "result.h5", "h5 hdf5", "histories, a frame or cracks as comma-separated values",      \
     COMMAND_STATUS)                                                                                \
   X(info, "law.plm | deck.nml | result.h5 | -", "plm nml h5 hdf5",                                 \
     "what a law implies, what a file holds", COMMAND_STATUS)                                       \
@@ -126,6 +126,7 @@
   X(export, "--field", "NAME",                                                                     \
     "this field of the frame only, not all; may be given several times")                           \
   X(export, "--bonds", "", "the bonds of the frame, not its particles")                            \
+  X(export, "--cracks", "NAME", "the cracks across the line of this monitor, frame by frame")      \
   X(export, "--json", "", "as one JSON document on the standard output")                           \
   X(info, "--spacing", "L", "of the lattice that the law is put on, e.g. '10 mm'")                 \
   X(info, "--thickness", "T", "of the plate, e.g. '0.1 m'")                                        \

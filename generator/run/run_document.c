@@ -23,6 +23,7 @@ static void put_energy(json *w, const run *r, long samples) {
     const char *name = simulation_series(r->simulation, k, NULL, &values);
     if (strncmp(name, "energy/", 7) == 0) json_put_number(w, name + 7, last_of(values, samples));
   }
+  json_put_number(w, "largest", simulation_largest_energy(r->simulation));
   json_put_bool(w, "checked", !unchecked);
   json_put_text(w, "unchecked", unchecked);
   json_object_end(w);

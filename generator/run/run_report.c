@@ -618,7 +618,9 @@ static void conclude_energy(const run *r) {
     printf("imbalance not checked: %s", unchecked);
   else
     printf("imbalance %.2g J", imbalance);
-  if (!unchecked && fabs(external) > 0) printf(" (%.2g %%)", 100 * fabs(imbalance / external));
+  const double largest = simulation_largest_energy(r->simulation);
+  if (!unchecked && largest > 0)
+    printf(" (%.2g %% of the largest energy)", 100 * fabs(imbalance) / largest);
   putchar('\n');
 }
 
@@ -628,9 +630,7 @@ static void warn_of_gain(const run *r) {
     const char *series, *words;
   } parts[] = {{"energy/dissipated_damage", "its damage and states have"},
                {"energy/dissipated_damping", "its rate terms and the deck's damping have"}};
-  const double given = pl_fmax(fabs(last_value(r, "energy/external")),
-                               fabs(sample_of(r, "energy/kinetic", false))),
-               scale = pl_fmax(given, fabs(last_value(r, "energy/stored")));
+  const double scale = simulation_largest_energy(r->simulation);
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
     const double lost = last_value(r, parts[k].series);
     if (!(lost < -1e-3 * scale)) continue;
@@ -641,6 +641,25 @@ static void warn_of_gain(const run *r) {
             k ? ""
               : "; a law that locks energy in its states should give W (`perilat help energy`)");
   }
+}
+
+/* What the relaxation took from a body whose law remembers: its states on the way are those of a
+   body that moves. */
+static void warn_of_damping(const run *r) {
+  const double part = 0.1, external = last_value(r, "energy/external"),
+               damping = last_value(r, "energy/dissipated_damping"),
+               damage = unless_nothing(last_value(r, "energy/dissipated_damage"), external);
+  if (r->deck->relaxation.increments == 0 || !(damping > part * fabs(external)) || damage == 0)
+    return;
+  fprintf(
+      stderr,
+      "perilat: warning: the relaxation damped %.3g J, %.0f %% of the work of loads and drives: "
+      "the body moved\n"
+      "  within increments, and what broke or yielded then may depend on how many there are; "
+      "run it again with\n"
+      "  `relaxation.increments=%d` and compare. What stays the same was set free by the body "
+      "itself, as it broke\n",
+      damping, 100 * damping / fabs(external), 2 * r->deck->relaxation.increments);
 }
 
 /* "particle 12 of plate at (3, 4) mm" */
@@ -691,6 +710,19 @@ static void conclude_increments(const run *r) {
            (long)r->deck->relaxation.most_steps);
 }
 
+/* "contact    blow: at most 34 pairs of particles touch, with 1.2 kN between two; 0.31 J stored" */
+static void conclude_contact(const run *r, int number) {
+  const contact_said c = simulation_contact(r->simulation, number);
+  printf("  contact    %s: ", r->deck->contacts[number].name);
+  if (c.pairs == 0) {
+    puts("nothing touched");
+    return;
+  }
+  printf("at most %ld pair%s of particles in touch at a time", c.pairs, c.pairs == 1 ? "" : "s");
+  print_quantity(", ", c.force, "N between two");
+  print_quantity(", ", c.stored, "J stored\n");
+}
+
 /* The value that is largest in size, with its sign. */
 static void conclude_monitor(const run *r, int k) {
   const char *unit_name;
@@ -712,9 +744,12 @@ void conclude(const run *r, double seconds, long steps) {
   conclude_increments(r);
   for (int k = 0; k < r->deck->monitor_count; k++)
     conclude_monitor(r, k);
+  for (int k = 0; k < r->deck->contact_count; k++)
+    conclude_contact(r, k);
   conclude_energy(r);
   fflush(stdout);
   warn_of_gain(r);
+  warn_of_damping(r);
   warn_of_overlap(r);
   long frames = (long)result_mark(r->result).count;
   printf("  written    %s (%ld frame%s) and its .xdmf for ParaView\n", r->result_path, frames,

@@ -65,38 +65,41 @@ static void push(const neighbourhood *n, double *const *moving, int b, double by
       force[k][a] = n->p->force[a][site_of(n, &out->blocks[k])] * angle_of(n, out, a);
 }
 
-/* Part by which either side of a kink at rest is stiffer than the mean of both, of blocks that
-   matter. */
-static void note_kink(stencil *out, site_force *up, site_force *down) {
-  const double matters = 1e-3;
-  double largest = 0;
-  for (int k = 0; k < out->count; k++)
-    for (int a = 0; a < out->dof; a++)
-      largest = pl_fmax(largest, fabs(up[k][a] - down[k][a]));
-  for (int k = 0; k < out->count; k++)
-    for (int a = 0; a < out->dof; a++) {
-      const double odd = fabs(up[k][a] - down[k][a]), even = fabs(up[k][a] + down[k][a]);
-      if (odd > matters * largest) out->kink = pl_fmax(out->kink, even / odd);
-    }
-}
-
-/* Column b of the blocks, -df/d(moved), of the particle in the middle. */
-static void probe(const neighbourhood *n, double *const *moving, double size, int b, bool rates,
-                  stencil *out) {
+/* Column b of the blocks, -df/d(moved), of the particle in the middle. `even` [count] is what the
+   forces by a way and by its opposite have in common, over twice the way. */
+static void probe(const neighbourhood *n, double *const *moving, double size, int b,
+                  site_force *even, stencil *out) {
   site_force *up = must_calloc(2 * (size_t)out->count, sizeof *up), *down = up + out->count;
   push(n, moving, b, size, out, up);
   push(n, moving, b, -size, out, down);
   for (int k = 0; k < out->count; k++)
     for (int a = 0; a < out->dof; a++) {
       stencil_block *block = &out->blocks[k];
-      double *value = rates ? &block->damping[a][b] : &block->stiffness[a][b];
+      double *value = even ? &block->stiffness[a][b] : &block->damping[a][b];
       *value -= up[k][a] / (2 * size);
       *value += down[k][a] / (2 * size);
+      if (even) even[k][a] = fabs(up[k][a] + down[k][a]) / (2 * size);
     }
-  if (!rates) note_kink(out, up, down);
   free(up);
   moving[b][patch_site(n->p, n->reach)] = 0;
   patch_repeat(n->p, moving[b]);
+}
+
+/* Of all columns: the part by which either side of a kink at rest is stiffer than the mean of both,
+   where the stiffness matters. */
+static void find_kink(site_force *const *even, stencil *out) {
+  const double matters = 1e-3;
+  double largest = 0;
+  for (int k = 0; k < out->count; k++)
+    for (int a = 0; a < out->dof; a++)
+      for (int b = 0; b < out->dof; b++)
+        largest = pl_fmax(largest, fabs(out->blocks[k].stiffness[a][b]));
+  for (int k = 0; k < out->count; k++)
+    for (int a = 0; a < out->dof; a++)
+      for (int b = 0; b < out->dof; b++) {
+        const double odd = fabs(out->blocks[k].stiffness[a][b]);
+        if (odd > matters * largest) out->kink = pl_fmax(out->kink, even[b][k][a] / odd);
+      }
 }
 
 /* --- blocks ----------------------------------------------------------------------------------- */
@@ -160,10 +163,15 @@ stencil stencil_new(const pl_law *law, const double *parameters, const rows *w) 
   stencil s = {.dimensions = law->dimensions, .dof = law->dof};
   neighbourhood near = neighbourhood_new(law, parameters, w);
   add_blocks(&near, &s);
+  site_force *even[WAVES_MOST_DOF] = {NULL};
   for (int b = 0; b < s.dof; b++) {
-    probe(&near, near.p->displacement, tiny * w->spacing, b, false, &s);
-    probe(&near, near.p->velocity, tiny_rate * w->spacing, b, true, &s);
+    even[b] = must_calloc((size_t)s.count, sizeof *even[b]);
+    probe(&near, near.p->displacement, tiny * w->spacing, b, even[b], &s);
+    probe(&near, near.p->velocity, tiny_rate * w->spacing, b, NULL, &s);
   }
+  find_kink(even, &s);
+  for (int b = 0; b < s.dof; b++)
+    free(even[b]);
   patch_free(near.p);
   pair_up(s.blocks[0].stiffness, s.blocks[0].stiffness);
   pair_up(s.blocks[0].damping, s.blocks[0].damping);

@@ -6,6 +6,7 @@
 
 #include "dsl/base/elementary.h"
 #include "runtime/analysis/bar_force.h"
+#include "runtime/analysis/crack_line.h"
 #include "runtime/analysis/crack_tip.h"
 #include "runtime/analysis/particle_tensors.h"
 #include "runtime/analysis/section.h"
@@ -19,6 +20,7 @@ struct watched_part {
   /* of the kind that they are for */
   section section;
   bar_force bar;
+  crack_line *line;
   tensor_region region;
   crack_tip *tips; /* [tip_count] of each law that has damage */
   int tip_count;
@@ -102,6 +104,19 @@ static bool open_bar(watched_part *w, diagnostics *d) {
   return false;
 }
 
+static bool open_line(watched_part *w, const damage_law *laws, int count, diagnostics *d) {
+  double outside[3];
+  char text[ROWS_PLACE_TEXT];
+  const deck_monitor *m = w->deck;
+  w->line = crack_line_new(w->of, laws, count, m->from, m->to, m->above, outside);
+  if (w->line) return true;
+  diag_report(d, DIAG_EMPTY_REGION, deck_where(&m->item, "from"),
+              "the line leaves the lattice at %s",
+              rows_place_text(w->of->dimensions, outside, text));
+  diag_hint(d, "between `from` and `to` it must lie among particles");
+  return false;
+}
+
 static bool open_tips(watched_part *w, const damage_law *laws, int count, diagnostics *d) {
   unsigned char *inside = inside_of(w);
   long places = 0;
@@ -140,6 +155,8 @@ static bool open_kind(watched_part *w, const damage_law *laws, int count, diagno
     return open_section(w, d);
   case MONITOR_BAR_FORCE:
     return open_bar(w, d);
+  case MONITOR_CRACK_WIDTH:
+    return open_line(w, laws, count, d);
   case MONITOR_TIP:
   case MONITOR_TIP_SPEED:
     return open_tips(w, laws, count, d);
@@ -172,6 +189,7 @@ void watched_free(watched_part *w) {
   if (!w) return;
   section_free(&w->section);
   bar_force_free(&w->bar);
+  crack_line_free(w->line);
   tensor_region_free(&w->region);
   for (int n = 0; n < w->tip_count; n++)
     crack_tip_free(&w->tips[n]);
@@ -253,12 +271,18 @@ double watched_value(const watched_part *w, const watch_instant *at) {
     return through_section(w, at->forces);
   case MONITOR_BAR_FORCE:
     return bar_force_largest(&w->bar, at->forces);
+  case MONITOR_CRACK_WIDTH:
+    return crack_line_widest(w->line);
   case MONITOR_TIP:
   case MONITOR_TIP_SPEED:
     return way_of_tip(w, at->late);
   default:
     return tensor(w, at);
   }
+}
+
+crack_line *watched_line(const watched_part *w) {
+  return w ? w->line : NULL;
 }
 
 /* --- in words --------------------------------------------------------------------------------- */
@@ -326,6 +350,9 @@ char *watched_words(const watched_part *w, arena *a) {
                         place_words(w, w->deck->at, a));
   case MONITOR_BAR_FORCE:
     return bar_words(w, a);
+  case MONITOR_CRACK_WIDTH:
+    return arena_printf(a, "width of the widest crack across the line from %s to %s",
+                        place_words(w, w->deck->from, a), place_words(w, w->deck->to, a));
   case MONITOR_TIP:
   case MONITOR_TIP_SPEED:
     return tip_words(w, a);

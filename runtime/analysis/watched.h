@@ -1,10 +1,11 @@
 /* What a monitor watches of a part of a body: accelerations, momenta, energies, stresses, strains,
-   the force through a section, that along a bar, the tip of a crack. */
+   the force through a section, that along a bar, the tip of a crack, widths of cracks. */
 #ifndef PERILAT_RUNTIME_WATCHED_H
 #define PERILAT_RUNTIME_WATCHED_H
 
 #include "dsl/base/arena.h"
 #include "dsl/base/diagnostics.h"
+#include "runtime/analysis/crack_line.h"
 #include "runtime/body/momentum.h"
 #include "runtime/deck/deck.h"
 #include "runtime/interaction/bond_forces.h"
@@ -34,6 +35,8 @@ void watched_free(watched_part *w);
 double watched_value(const watched_part *w, const watch_instant *at);
 /* Of an acceleration: the mean velocity half a step before, m/s. */
 double watched_velocity(const watched_part *w);
+/* The line across which cracks are measured; NULL of other kinds. */
+crack_line *watched_line(const watched_part *w);
 /* "stress xx of `middle`" */
 char *watched_words(const watched_part *w, arena *a);
 

@@ -271,6 +271,7 @@ typedef enum monitor_kind {
   MONITOR_BAR_FORCE,     /* N: along a bar, in the bond nearest to `at`, or the largest tension */
   MONITOR_SLIP,          /* m: of a link to places, nearest to `at`, or the largest in size */
   MONITOR_CONTACT_FORCE, /* N: of all contacts, on the region's or on all particles */
+  MONITOR_CRACK_WIDTH,   /* m: of the widest crack across the line from `from` to `to` */
   MONITOR_REACTIONS      /* N, `between`: half of the second's reaction less the first's */
 } monitor_kind;
 
@@ -291,10 +292,11 @@ typedef struct deck_monitor {
   bool placed;                    /* `at` is given */
   double at[3];                   /* m */
   double normal[3], direction[3]; /* of any length */
+  double from[3], to[3];          /* m */
   double about[3];                /* m */
   double average; /* s: mean over this time before each sample; 0: value at the sample */
   double zero_at; /* s: the value then is subtracted; negative: never */
-  double above;   /* DAMAGED: default 0; BROKEN: default 1 */
+  double above;   /* DAMAGED: default 0; BROKEN: default 1; CRACK_WIDTH: default 0.99 */
   double scale;   /* factor on the value; default 1 (-1: downward load positive) */
 } deck_monitor;
 

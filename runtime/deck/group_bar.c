@@ -88,8 +88,12 @@ static bool has_corners(deck_reader *r, const deck_bar *item, int dimensions) {
   return item->value_count % dimensions == 0 && corners >= least;
 }
 
+static polyline line_of(const deck_bar *b, int dimensions) {
+  return (polyline){dimensions, b->value_count / dimensions, b->points, b->closed};
+}
+
 static void check_legs(deck_reader *r, const deck_bar *item, int dimensions) {
-  const polyline p = {dimensions, item->value_count / dimensions, item->points, item->closed};
+  const polyline p = line_of(item, dimensions);
   for (int k = 0; k < polyline_legs(&p); k++) {
     const double *from, *to, length = polyline_leg(&p, k, &from, &to);
     const int end = (k + 1) % p.corners + 1;
@@ -110,7 +114,7 @@ static void check_legs(deck_reader *r, const deck_bar *item, int dimensions) {
 /* A bar is longer than thick: mostly a unit is missing. */
 static void check_thickness(deck_reader *r, const namelist_group *from, const deck_bar *item,
                             int dimensions) {
-  const polyline p = {dimensions, item->value_count / dimensions, item->points, item->closed};
+  const polyline p = line_of(item, dimensions);
   const bool area = namelist_find(from, "area");
   const double length = polyline_length(&p);
   if (item->diameter < length) return;
@@ -121,6 +125,23 @@ static void check_thickness(deck_reader *r, const namelist_group *from, const de
                        : "a plain number is in m: `diameter = '12 mm'`");
 }
 
+static bool is_nowhere(const double shift[3], double spacing) {
+  const double length = sqrt(shift[0] * shift[0] + shift[1] * shift[1] + shift[2] * shift[2]);
+  return length < POLYLINE_ROUNDING * spacing;
+}
+
+static void warn_of_overlap(deck_reader *r, const deck_bar *item, int dimensions) {
+  const polyline p = line_of(item, dimensions);
+  if (item->copies < 2 || is_nowhere(item->shift, item->spacing)) return;
+  const double apart = polyline_apart(&p, item->shift);
+  if (apart >= item->diameter) return;
+  diag_report(r->d, DIAG_DECK_WARNING, deck_where(&item->item, "shift"),
+              "copies of the bar are %.4g mm apart, but %.4g mm thick: they lie in each other, and "
+              "do not touch",
+              1e3 * apart, 1e3 * item->diameter);
+  diag_hint(r->d, "a `shift` along the bar puts copies onto each other");
+}
+
 static void check_section(deck_reader *r, const namelist_group *from, deck_bar *item) {
   deck_refuse_both(r, from, "diameter", "area");
   if (item->diameter == 0 && item->area == 0)
@@ -129,11 +150,6 @@ static void check_section(deck_reader *r, const namelist_group *from, deck_bar *
     item->area = M_PI / 4 * item->diameter * item->diameter;
   else
     item->diameter = sqrt(item->area * 4 / M_PI);
-}
-
-static bool is_nowhere(const double shift[3], double spacing) {
-  const double length = sqrt(shift[0] * shift[0] + shift[1] * shift[1] + shift[2] * shift[2]);
-  return length < POLYLINE_ROUNDING * spacing;
 }
 
 static void check_copies(deck_reader *r, const namelist_group *from, const deck_bar *item) {
@@ -170,6 +186,7 @@ static void check_bar(deck_reader *r, const namelist_group *from, void *into) {
   if (!has_corners(r, item, dimensions)) return;
   check_legs(r, item, dimensions);
   check_thickness(r, from, item, dimensions);
+  warn_of_overlap(r, item, dimensions);
 }
 
 DECK_MORE(bar, lattice, .identity = "name", .begin = begin_bar, .check = check_bar,

@@ -23,10 +23,10 @@ static const deck_key_info monitor_keys[] = {
      .type = DECK_CHOICE,
      .choices = "reaction|displacement|velocity|opening|damaged|broken|field|acceleration|"
                 "momentum|angular_momentum|energy|force|moment|tip|tip_speed|stress|"
-                "strain|applied|bar_force|slip|contact_force",
+                "strain|applied|bar_force|slip|contact_force|crack_width",
      .required = true,
      DECK_AT(monitor, kind),
-     .doc = "decides which of the next ten keys are needed"},
+     .doc = "decides which of the next twelve keys are needed"},
     {.name = "region",
      .type = DECK_NAME,
      DECK_AT(monitor, region),
@@ -43,7 +43,8 @@ static const deck_key_info monitor_keys[] = {
      DECK_AT(monitor, lattice),
      .doc = "in place of `region`: the lattice that is watched; bar_force: a bar, slip: a link to "
             "places. Where the deck has several, momentum, angular_momentum, energy, force, "
-            "moment, bar_force, contact_force, tip, tip_speed, and what is asked `at` a place, "
+            "moment, bar_force, contact_force, crack_width, tip, tip_speed, and what is asked `at` "
+            "a place, "
             "need one of the two; energies in sum over all are in `energy/...`"},
     {.name = "between",
      .type = DECK_NAMES,
@@ -85,6 +86,16 @@ static const deck_key_info monitor_keys[] = {
      .unit = "1",
      DECK_AT(monitor, direction),
      .doc = "tip, tip_speed: where the crack goes"},
+    {.name = "from",
+     .type = DECK_PLACE,
+     .unit = "m",
+     DECK_AT(monitor, from),
+     .doc = "crack_width: where the line begins that cracks cut"},
+    {.name = "to",
+     .type = DECK_PLACE,
+     .unit = "m",
+     DECK_AT(monitor, to),
+     .doc = "crack_width: where it ends"},
     {.name = "about",
      .type = DECK_PLACE,
      .unit = "m",
@@ -95,12 +106,12 @@ static const deck_key_info monitor_keys[] = {
      .type = DECK_REAL,
      .unit = "1",
      .bound = BOUND_NOT_NEGATIVE,
-     .fallback = "= 0; broken: 1; required of a tip",
+     .fallback = "= 0; broken: 1; crack_width: 0.99; required of a tip",
      DECK_AT(monitor, above),
      .doc = "damaged: bonds with more damage than this are counted (particles, where the law's "
             "damage stands on these alone); broken: those with at least this damage, e.g. 0.999 "
-            "for laws whose bonds never separate completely; tip, tip_speed: bonds with more "
-            "damage than this belong to the crack"},
+            "for laws whose bonds never separate completely; tip, tip_speed, crack_width: bonds "
+            "with more damage than this belong to a crack"},
     {.name = "average",
      .type = DECK_REAL,
      .unit = "s",
@@ -139,27 +150,39 @@ enum {
   OF_ENERGY = 1 << MONITOR_ENERGY,
   OF_BAR = 1 << MONITOR_BAR_FORCE,
   OF_LINK = 1 << MONITOR_SLIP,
+  OF_WIDTH = 1 << MONITOR_CRACK_WIDTH,
   OF_CONTACT = 1 << MONITOR_CONTACT_FORCE,
   OF_SUMS = OF_CONTACT | 1 << MONITOR_MOMENTUM, /* along an axis, in sum */
   OF_PART = OF_TURNS | OF_ENERGY | OF_SUMS,     /* of a region or of all */
   /* of a lattice without a region */
-  OF_WHOLE = OF_PLACE | OF_PART | OF_SECTION | OF_TIP | OF_BAR | OF_LINK,
+  OF_WHOLE = OF_PLACE | OF_PART | OF_SECTION | OF_TIP | OF_BAR | OF_LINK | OF_WIDTH,
   OF_LATTICE = OF_WHOLE | OF_DAMAGE,
   OF_MOVING = OF_MOTION | OF_PAIR | OF_PLACE | OF_TURNS | 1 << MONITOR_MOMENTUM,
   ALONG_AXIS = OF_MOTION | OF_PAIR | 1 << MONITOR_ACCELERATION | OF_SUMS
 };
-static const char *const monitor_words[] = {
-    "a reaction monitor",      "a displacement monitor",
-    "a velocity monitor",      "an opening monitor",
-    "a damaged monitor",       "a broken monitor",
-    "a field monitor",         "an acceleration monitor",
-    "a momentum monitor",      "an angular_momentum monitor",
-    "an energy monitor",       "a force monitor",
-    "a moment monitor",        "a tip monitor",
-    "a tip_speed monitor",     "a stress monitor",
-    "a strain monitor",        "an applied monitor",
-    "a bar_force monitor",     "a slip monitor",
-    "a contact_force monitor", "a reaction monitor with `between`"};
+static const char *const monitor_words[] = {"a reaction monitor",
+                                            "a displacement monitor",
+                                            "a velocity monitor",
+                                            "an opening monitor",
+                                            "a damaged monitor",
+                                            "a broken monitor",
+                                            "a field monitor",
+                                            "an acceleration monitor",
+                                            "a momentum monitor",
+                                            "an angular_momentum monitor",
+                                            "an energy monitor",
+                                            "a force monitor",
+                                            "a moment monitor",
+                                            "a tip monitor",
+                                            "a tip_speed monitor",
+                                            "a stress monitor",
+                                            "a strain monitor",
+                                            "an applied monitor",
+                                            "a bar_force monitor",
+                                            "a slip monitor",
+                                            "a contact_force monitor",
+                                            "a crack_width monitor",
+                                            "a reaction monitor with `between`"};
 static const deck_key_use monitor_uses[] = {
     {"region", OF_MOTION | OF_FIELD | OF_PLACE | OF_PART | OF_SECTION | OF_TIP | OF_BAR, false},
     {"lattice", OF_LATTICE, false},
@@ -169,8 +192,10 @@ static const deck_key_use monitor_uses[] = {
     {"at", OF_PLACE | OF_SECTION | OF_TIP | OF_BAR | OF_LINK, false},
     {"normal", OF_SECTION, true},
     {"direction", OF_TIP, true},
+    {"from", OF_WIDTH, true},
+    {"to", OF_WIDTH, true},
     {"about", OF_TURNS, false},
-    {"above", OF_DAMAGE | OF_TIP, false}};
+    {"above", OF_DAMAGE | OF_TIP | OF_WIDTH, false}};
 /* The keys that some kinds need and others may have. */
 static const deck_key_use monitor_needs[] = {
     {"region", OF_MOTION | OF_FIELD, true},
@@ -254,6 +279,22 @@ static void check_broken(deck_reader *r, const namelist_group *from, deck_monito
               "`above` of a broken monitor must be greater than 0 and at most 1");
 }
 
+/* A line that cracks cut, and the damage that makes them. */
+static bool check_line(deck_reader *r, const namelist_group *from, deck_monitor *item) {
+  double way[3];
+  if (!is_kind(item, OF_WIDTH)) return true;
+  if (!namelist_find(from, "above")) item->above = 0.99;
+  if (item->above >= 1)
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "above"),
+                "`above` of a crack must be less than 1: no damage is more");
+  for (int a = 0; a < 3; a++)
+    way[a] = item->to[a] - item->from[a];
+  if (way[0] != 0 || way[1] != 0 || way[2] != 0) return item->above < 1;
+  diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "to"),
+              "the line has no length: `from` and `to` are the same place");
+  return false;
+}
+
 static const char *watched_region(const deck_monitor *item) {
   return item->region ? item->region : item->between[0];
 }
@@ -317,7 +358,7 @@ static bool some_contact_touches(const deck *k, const deck_lattice *l) {
 /* Some kinds are of bars, of links or of what touches alone. */
 static bool check_sort(deck_reader *r, const deck_monitor *item) {
   const deck_lattice *l = watched_lattice(r, item);
-  if (!l || !is_kind(item, OF_BAR | OF_LINK | OF_CONTACT)) return true;
+  if (!l || !is_kind(item, OF_BAR | OF_LINK | OF_CONTACT | OF_WIDTH)) return true;
   const span where = deck_where(&item->item, item->region ? "region" : "lattice");
   const char *name = deck_shown(r->memory, l->name), *word = deck_lattice_word(l);
   if (is_kind(item, OF_BAR) && !deck_lattice_is_chain(l)) {
@@ -330,6 +371,10 @@ static bool check_sort(deck_reader *r, const deck_monitor *item) {
   } else if (is_kind(item, OF_LINK) && l->to == LINK_TO_SITES) {
     diag_report(r->d, DIAG_CONFLICT, where, "the link `%s` joins sites: it has no slip", name);
     diag_hint(r->d, "with `to = 'place'` the bar slips along the place where it is");
+  } else if (is_kind(item, OF_WIDTH) && (deck_lattice_is_link(l) || deck_lattice_is_chain(l))) {
+    diag_report(r->d, DIAG_CONFLICT, where,
+                "`%s` is a %s: cracks are measured in the lattice around", name,
+                deck_lattice_is_link(l) ? "link" : "row of particles");
   } else if (is_kind(item, OF_CONTACT) && !some_contact_touches(r->k, l)) {
     diag_report(r->d, DIAG_CONFLICT, where, "this is always 0: by no `&contact` does `%s` touch",
                 name);
@@ -437,7 +482,8 @@ static void check_monitor(deck_reader *r, const namelist_group *from, void *into
   item->placed = namelist_find(from, "at") != NULL;
   const bool whole = has_needs(r, from, item);
   if (!deck_keys_fit(from, monitor_uses, USES, (int)item->kind, monitor_words[item->kind], r->d) ||
-      !whole || !check_lattice(r, from, item) || !check_place(r, from, item) || !check_tip(r, item))
+      !whole || !check_lattice(r, from, item) || !check_place(r, from, item) ||
+      !check_tip(r, item) || !check_line(r, from, item))
     return;
   if (!namelist_find(from, "zero_at")) item->zero_at = -1;
   if (item->kind == MONITOR_BROKEN) check_broken(r, from, item);
@@ -471,6 +517,7 @@ const char *deck_monitor_unit(const deck_monitor *m, bool rotates) {
   case MONITOR_OPENING:
   case MONITOR_TIP:
   case MONITOR_SLIP:
+  case MONITOR_CRACK_WIDTH:
     return rotates ? "rad" : "m";
   case MONITOR_VELOCITY:
   case MONITOR_TIP_SPEED:

@@ -19,6 +19,9 @@ int polyline_legs(const polyline *p);
 double polyline_leg(const polyline *p, int k, const double **from, const double **to);
 double polyline_length(const polyline *p);
 
+/* The least distance of two lines, m: of this one from itself moved by `shift` ([3]). */
+double polyline_apart(const polyline *p, const double shift[3]);
+
 /* A part of a leg is as long as `spacing` as nearly as equal parts can be. */
 long polyline_parts(const polyline *p, int leg, double spacing);
 

@@ -51,7 +51,7 @@ struct contact {
   long touch_count, touch_room;
   near_pair *fresh; /* pairs whose bond was lost in this step */
   long fresh_count, fresh_room;
-  double stored;
+  double stored, largest; /* J; N, of a pair */
 };
 
 /* --- set-up ----------------------------------------------------------------------------------- */
@@ -169,10 +169,14 @@ static int64_t slot_between(const rows *g, long p, long q) {
   return -1;
 }
 
+static double spacing_of(const contact *c, int32_t i, int32_t j) {
+  return 0.5 * (rows_of(&c->sides[c->side[i]])->spacing + rows_of(&c->sides[c->side[j]])->spacing);
+}
+
 /* What two particles do when they touch. False where they cannot. */
 static bool may_touch(const contact *c, int32_t i, int32_t j, near_pair *pair) {
   const contact_side *a = &c->sides[c->side[i]], *b = &c->sides[c->side[j]];
-  double d = pl_fmin(0.5 * (rows_of(a)->spacing + rows_of(b)->spacing), reference_of(c, i, j));
+  double d = pl_fmin(spacing_of(c, i, j), reference_of(c, i, j));
   if (a == b) {
     if (!c->selves) return false;
     const int64_t slot = slot_between(rows_of(a), c->site[i], c->site[j]);
@@ -368,6 +372,7 @@ static void push_apart(contact *c, const near_pair *pair) {
   const double r = chord_of(c, pair->i, pair->j, chord), over = pair->d - r;
   if (!(over > 0)) return;
   c->stored += 0.5 * pair->k * over * over;
+  c->largest = pl_fmax(c->largest, pair->k * over);
   if (!(r > 0)) return; /* no direction leads apart */
   touch *t = &c->touching[c->touch_count++];
   *t = (touch){.i = pair->i, .j = pair->j};
@@ -387,13 +392,18 @@ void contact_find(contact *c) {
     merge_fresh(c);
   make_room((void **)&c->touching, &c->touch_room, c->pair_count, sizeof *c->touching);
   c->touch_count = 0;
-  c->stored = 0;
+  c->stored = c->largest = 0;
   for (long n = 0; n < c->pair_count; n++)
     push_apart(c, &c->pairs[n]);
 }
 
 double contact_stored(const contact *c) {
   return c->stored;
+}
+
+long contact_touching(const contact *c, double *largest) {
+  *largest = c->largest;
+  return c->touch_count;
 }
 
 double contact_power(const contact *c, double *power) {
@@ -413,28 +423,41 @@ double contact_power(const contact *c, double *power) {
   return sum;
 }
 
-contact_overlap contact_overlaps(contact *c, double part) {
-  contact_overlap o = {.nearest = INFINITY};
+static void add_overlap(const contact *c, const near_pair *pair, double d, double part,
+                        contact_overlap *o) {
   double chord[3];
-  c->late = true;
-  find_losses(c);
+  const double r = chord_of(c, pair->i, pair->j, chord);
+  const int32_t ends[2] = {pair->i, pair->j};
+  if (!(r < part * d)) return;
+  o->pairs++;
+  if (!(r < o->nearest * d)) return;
+  o->nearest = r / d;
+  for (int e = 0; e < 2; e++) {
+    o->body[e] = c->side[ends[e]];
+    o->site[e] = c->site[ends[e]];
+  }
+}
+
+contact_overlap contact_drawn_over(contact *c, double part) {
+  contact_overlap o = {.nearest = INFINITY};
   list_pairs(c);
   for (long n = 0; n < c->pair_count; n++) {
     const near_pair *pair = &c->pairs[n];
-    const double r = chord_of(c, pair->i, pair->j, chord);
-    if (!(r < part * pair->d)) continue;
-    o.pairs++;
-    if (!(r < o.nearest * pair->d)) continue;
-    o.nearest = r / pair->d;
-    const int32_t ends[2] = {pair->i, pair->j};
-    for (int e = 0; e < 2; e++) {
-      o.body[e] = c->side[ends[e]];
-      o.site[e] = c->site[ends[e]];
-    }
+    if (c->side[pair->i] != c->side[pair->j])
+      add_overlap(c, pair, spacing_of(c, pair->i, pair->j), part, &o);
   }
   return o;
 }
 
+contact_overlap contact_overlaps(contact *c, double part) {
+  contact_overlap o = {.nearest = INFINITY};
+  c->late = true;
+  find_losses(c);
+  list_pairs(c);
+  for (long n = 0; n < c->pair_count; n++)
+    add_overlap(c, &c->pairs[n], c->pairs[n].d, part, &o);
+  return o;
+}
 double *contact_lost(contact *c, int number, size_t *count) {
   const rows *g = rows_of(&c->sides[number]);
   *count = (size_t)g->directions * (size_t)g->size;

@@ -38,8 +38,9 @@ void contact_free(contact *c);
 /* Bonds lost since the last time are taken note of, then the forces at the present places are added
    to the bodies' outer ones. */
 void contact_find(contact *c);
-/* J, of the forces found last. */
+/* Of the forces found last: J stored; pairs that touch, and the largest force between two, N. */
 double contact_stored(const contact *c);
+long contact_touching(const contact *c, double *largest);
 /* W: what these do with the present velocities; of each body is added to power[count]. Returns the
    sum. */
 double contact_power(const contact *c, double *power);
@@ -53,6 +54,9 @@ typedef struct contact_overlap {
   int32_t site[2];
 } contact_overlap;
 contact_overlap contact_overlaps(contact *c, double part);
+/* The same of particles of different bodies, nearer than `part` of the mean of their spacings:
+   bodies that lie over each other, as they may from the beginning. */
+contact_overlap contact_drawn_over(contact *c, double part);
 
 /* For saving a run: distances (m) at which the bonds of a body were lost, *count of them; NULL
    where none is. */

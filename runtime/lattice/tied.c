@@ -86,8 +86,8 @@ typedef struct cell_search {
 
 static bool is_cut(const cell_search *s, const double from[3], const double to[3]) {
   const tier *t = s->tier;
-  return site_notch_between(t->deck, &t->deck->lattices[t->link->of_around], from, to,
-                            NOTCH_DEPTH * t->body->spacing);
+  return t->deck && site_notch_between(t->deck, &t->deck->lattices[t->link->of_around], from, to,
+                                       NOTCH_DEPTH * t->body->spacing);
 }
 
 /* Between corners that carry something, or between one of them and the place. */

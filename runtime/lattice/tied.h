@@ -22,8 +22,8 @@
 #include "runtime/lattice/bar_line.h"
 #include "runtime/lattice/rows.h"
 
-/* Of a link of the deck that joins places; of the bar and of the lattice around it. NULL after
-   messages at the deck's line. */
+/* Of a link of the deck that joins places (without a deck notches do not count); of the bar and of
+   the lattice around it. NULL after messages at the deck's line. */
 rows *tied_build(const deck *k, const deck_link *link, const bar_line *line, const rows *bar,
                  const rows *body, diagnostics *d);
 

@@ -576,8 +576,9 @@ static void next_forces(const load_run *r) {
       take_next(r->w, &r->l->forces[i], force_after(r, &r->l->forces[i], known));
 }
 
-void load_steps_take_links(loads *l, const body *w) {
-  for (long i = 0; i < l->force_count; i++)
+void load_steps_take_links(loads *l, body *w, int block) {
+  const load_run r = run_of(l, w, block, 0);
+  for (long i = r.first_force; i < r.last_force; i++)
     if (l->forces[i].link) take_next(w, &l->forces[i], l->forces[i].share * *l->forces[i].link);
 }
 

@@ -52,8 +52,8 @@ void load_steps_apply(loads *l, body *w, int block, long step);
 /* When all blocks have, alone: gravity and damping of the coming step (with a clock of its own that
    stays as it is). */
 void load_steps_turn(const loads *l, body *w, long step);
-/* Then, when they are known: the forces of links at the new places. */
-void load_steps_take_links(loads *l, const body *w);
+/* Then, when they are known: the forces of links at the new places, of the rows of a block. */
+void load_steps_take_links(loads *l, body *w, int block);
 load_sums load_steps_total(const loads *l);
 
 /* In space, of constraint i, the first of a particle's rotations: the moments about all axes that

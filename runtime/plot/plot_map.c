@@ -237,12 +237,12 @@ static colour particle_colour(const map *m, long p, int component, double low, d
   return isnan(value) ? no_value : shade(place_of(value, low, high));
 }
 
-static void draw_particle(canvas *c, const map *m, long p, colour ink, double radius) {
+static void draw_particle(canvas *c, const map *m, long p, colour ink, double radius, bool edge) {
   canvas_colour(c, ink);
   cairo_arc(c->cr, at_x(m, m->frame.moved[2 * p]), at_y(m, m->frame.moved[2 * p + 1]), radius, 0,
             2 * M_PI);
   cairo_fill_preserve(c->cr);
-  if (m->frame.surface) { /* an edge, so that those in front stand out */
+  if (edge) {
     canvas_colour(c, (colour){0.25, 0.25, 0.28});
     cairo_set_line_width(c->cr, pl_fmin(0.08 * radius, 1.5));
     cairo_stroke(c->cr);
@@ -250,18 +250,27 @@ static void draw_particle(canvas *c, const map *m, long p, colour ink, double ra
   cairo_new_path(c->cr);
 }
 
+/* A particle that is seen in a view of a surface, but has no value. */
+static bool is_dot(const map *m, long p, int component) {
+  return m->frame.surface && isnan(plot_frame_value(&m->frame, p, component));
+}
+
 /* In the plane the more damaged above the less damaged; in a view of a surface those in front above
-   those behind. */
+   those behind, each with an edge to stand out by, above dots, so that nothing hides a bar
+   inside. */
 static void draw_particles(canvas *c, const map *m, int component, double low, double high) {
+  enum { DOTS, BALLS, PASSES };
   const bool coloured = m->frame.values && !m->frame.of_bonds;
   const bool by_class = coloured && m->frame.of_damage && !m->frame.surface;
-  const double radius = pl_fmax(0.7, (coloured ? 0.5 : 0.1) * m->frame.spacing * m->scale);
+  const double whole = 0.5 * m->frame.spacing * m->scale;
   cairo_new_path(c->cr);
-  for (int k = 0; k < (by_class ? CLASSES : 1); k++)
-    for (long p = 0; p < m->frame.particles; p++)
-      if (!by_class || class_of(m->frame.values[p]) == k)
-        draw_particle(c, m, p, coloured ? particle_colour(m, p, component, low, high) : plain_ink,
-                      radius);
+  for (int k = 0; k < (by_class ? CLASSES : PASSES); k++)
+    for (long p = 0; p < m->frame.particles; p++) {
+      const bool ball = coloured && !is_dot(m, p, component);
+      if ((by_class ? class_of(m->frame.values[p]) : ball ? BALLS : DOTS) != k) continue;
+      draw_particle(c, m, p, coloured ? particle_colour(m, p, component, low, high) : plain_ink,
+                    pl_fmax(0.7, ball ? whole : 0.2 * whole), ball && m->frame.surface);
+    }
 }
 
 static bool is_separated(const map *m, long b) {

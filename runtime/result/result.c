@@ -195,7 +195,9 @@ static int shape_of(const result_field *f, long frames, hsize_t shape[3]) {
 static hid_t make_field(hid_t file, const result_field *f, long frames) {
   char name[512];
   hsize_t shape[3];
-  snprintf(name, sizeof name, "/frames/%s", f->interaction ? f->interaction : f->name);
+  if (result_field_of_cracks(f) && !h5_make_group(file, "/cracks")) return -1;
+  snprintf(name, sizeof name, "%s/%s", result_field_of_cracks(f) ? "/cracks" : "/frames",
+           f->interaction ? f->interaction : f->name);
   if (f->interaction) {
     if (!h5_make_group(file, name)) return -1;
     snprintf(name, sizeof name, "/frames/%s/%s", f->interaction, f->name);

@@ -20,6 +20,8 @@
      /frames/time           [F] s; /frames/<field> [F, N, components];
                             /frames/<interaction>/<bond field> [F, M], attributes units, long_name
                             and kind ("state", "damage", "output" of the law, "other")
+     /cracks/<monitor>      [F, N, 2] m: place along the monitor's line and width of each crack in
+                            the order of places, NaN beyond the last; only with such monitors
      /VTKHDF, /xdmf         the same for other programs (views.h)
 
    The times are dimension scales of what stands beside them. */
@@ -29,6 +31,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "dsl/base/c_linkage.h"
 #include "runtime/result/frame_file.h"
@@ -44,10 +47,17 @@ typedef struct result_field { /* of a frame */
   const char *unit;        /* "m", "1" */
   const char *interaction; /* NULL: per particle; else bond field of that interaction */
   int components;          /* 1, 2, ... */
-  long count;              /* particles or bonds */
-  const char *kind;        /* "state", "damage", "output" of the law; else "other" */
-  const char *long_name;   /* in words; NULL: nobody has said */
+  long count;              /* particles, bonds or, at most, cracks */
+  /* "state", "damage", "output" of the law; "cracks" across the line of the monitor of that name;
+     else "other" */
+  const char *kind;
+  const char *long_name; /* in words; NULL: nobody has said */
 } result_field;
+
+/* Neither of particles nor of bonds. */
+static inline bool result_field_of_cracks(const result_field *f) {
+  return strcmp(f->kind, "cracks") == 0;
+}
 
 typedef struct result_series { /* of the history */
   const char *name;            /* "load"; "energy/kinetic" */

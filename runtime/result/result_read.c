@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "dsl/base/characters.h"
 #include "runtime/result/result_find.h"
 #include "runtime/result/result_sets.h"
 
@@ -64,6 +65,43 @@ double *result_read_volume(result_file *f, long *particles) {
 double *result_read_frame_times(result_file *f, long *frames) {
   int columns;
   return result_read_table(f, "/frames/time", false, 1, 1, frames, &columns);
+}
+
+/* Which lines of monitors there are. */
+static void say_no_cracks(result_file *f, const char *monitor, char *error, size_t size) {
+  result_names there = result_list(f, "/cracks");
+  int n =
+      snprintf(error, size, "`%s` has no cracks of a monitor `%s`", f->path, name_shown(monitor));
+  for (int k = 0; k < there.count && n > 0 && (size_t)n < size; k++)
+    n += snprintf(error + n, size - (size_t)n, "%s`%s`", k ? ", " : "; it has those of ",
+                  name_shown(there.items[k]));
+  if (there.count == 0 && n > 0 && (size_t)n < size)
+    snprintf(error + n, size - (size_t)n,
+             ": it holds them where the deck has one of the kind 'crack_width'");
+  result_names_free(&there);
+}
+
+double *result_read_cracks(result_file *f, const char *monitor, long *frames, long *most,
+                           char *error, size_t size) {
+  char path[512];
+  hsize_t shape[3] = {0, 0, 0};
+  snprintf(path, sizeof path, "/cracks/%.500s", monitor);
+  const hid_t set = strchr(monitor, '/') ? -1 : result_set_open(f, path);
+  if (set < 0) {
+    say_no_cracks(f, monitor, error, size);
+    return NULL;
+  }
+  double *values = result_set_read(f, set, H5T_NATIVE_DOUBLE, sizeof *values, 3, shape);
+  if (values && shape[2] != 2) {
+    result_set_report(f, set);
+    free(values);
+    values = NULL;
+  }
+  if (!values) snprintf(error, size, "%s", f->trouble);
+  *frames = (long)shape[0];
+  *most = (long)shape[1];
+  H5Dclose(set);
+  return values;
 }
 
 char *result_read_text(result_file *f, const char *path) {

@@ -11,7 +11,9 @@ typedef struct frame_field {
   int interaction;       /* of the run; on particles the first that has the field */
   long count;            /* particles of all bodies, or bonds of that interaction */
   bool of_law;           /* it, or a parameter, has its name from the law */
-  const char *kind;      /* "state", "damage", "output" of the law; else "other" */
+  bool of_cracks;        /* place and width (m) of the cracks across a monitor's line; it has the
+                            monitor's name, and is NaN beyond the last crack */
+  const char *kind;      /* "state", "damage", "output" of the law; "cracks"; else "other" */
   const char *long_name; /* in words: the law's, where it is of the law */
 } frame_field;
 

@@ -53,6 +53,7 @@ struct frame_set {
   int body_count;
   const run_law *laws; /* [law_count] those of all bodies */
   int law_count;
+  const monitors *watched;
   const run_clock *clock;
   bond_forces **forces;  /* [body_count] NULL unless some field needs them */
   frame_tensor *tensors; /* [TENSORS][body_count] */
@@ -483,15 +484,33 @@ static void add_of_law(frame_set *f, int n) {
     if (is_field(&f->laws[n], p) && !varies(law, p)) add_parameter(f, n, p, values_of_constant, p);
 }
 
+static crack_line *line_of(const frame_set *f, const frame_field *field) {
+  const int m = deck_find_monitor(f->watched->deck, field->name);
+  return watched_line(f->watched->items[m].own);
+}
+
+static void add_cracks(frame_set *f, const monitor *m) {
+  const crack_line *line = watched_line(m->own);
+  if (!line) return;
+  f->fields[f->count++] = (frame_field){.name = m->deck->name,
+                                        .unit = "m",
+                                        .of_cracks = true,
+                                        .components = 2,
+                                        .count = crack_line_most(line),
+                                        .kind = "cracks",
+                                        .long_name = "of each crack: place along the line, width"};
+}
+
 frame_set *frames_new(const deck_output *asked, const run_body *bodies, int count,
-                      const run_clock *clock) {
-  const size_t most = most_fields(bodies, count);
+                      const monitors *watched, const run_clock *clock) {
+  const size_t most = most_fields(bodies, count) + (size_t)watched->count;
   frame_set *f = must_calloc(1, sizeof *f);
   *f = (frame_set){.asked = asked,
                    .bodies = bodies,
                    .body_count = count,
                    .laws = bodies[0].laws,
                    .law_count = count_laws(bodies, count),
+                   .watched = watched,
                    .clock = clock};
   f->fields = must_calloc(most, sizeof *f->fields);
   f->sources = must_calloc(most * (size_t)f->law_count, sizeof *f->sources);
@@ -505,6 +524,8 @@ frame_set *frames_new(const deck_output *asked, const run_body *bodies, int coun
       if (!run_body_is_link(&bodies[b])) add_tensor(f, k, b);
   for (int n = 0; n < f->law_count; n++)
     add_of_law(f, n);
+  for (int m = 0; m < watched->count; m++)
+    add_cracks(f, &watched->items[m]);
   return f;
 }
 
@@ -542,8 +563,21 @@ static void values_of_law(const frame_set *f, int field, const run_body *of, con
   if (from->values) from->values(&here, from, values);
 }
 
+static void values_of_cracks(const frame_set *f, const frame_field *field, double *values) {
+  long count;
+  const crack *found = crack_line_find(line_of(f, field), &count);
+  for (long k = 0; k < field->count; k++) {
+    values[2 * k] = k < count ? found[k].place : NAN;
+    values[2 * k + 1] = k < count ? found[k].width : NAN;
+  }
+}
+
 void frames_values(const frame_set *f, int field, double *values) {
   const frame_field *of = &f->fields[field];
+  if (of->of_cracks) {
+    values_of_cracks(f, of, values);
+    return;
+  }
   if (of->on_bonds) {
     const run_law *law = &f->laws[of->interaction];
     values_of_law(f, field, &f->bodies[law->from->lattice], law, values);

@@ -1,5 +1,5 @@
 /* What is stored in frames, when, and its values in the order of results: particles of all bodies,
-   body by body, bonds of each for themselves. A field of particles that a body does not have is NaN
+   body by body, bonds of each for themselves, cracks across the lines of monitors. A field of particles that a body does not have is NaN
    there, a damage 0. */
 #ifndef PERILAT_RUNTIME_FRAMES_H
 #define PERILAT_RUNTIME_FRAMES_H
@@ -10,6 +10,7 @@
 #include "dsl/base/diagnostics.h"
 #include "runtime/deck/deck.h"
 #include "runtime/simulation/frame_field.h"
+#include "runtime/simulation/monitor.h"
 #include "runtime/simulation/run_body.h"
 #include "runtime/simulation/run_clock.h"
 
@@ -18,9 +19,9 @@ typedef struct frame_set frame_set;
 /* False with a diagnostic when the deck asks for fields that no run has. */
 bool frames_check(const deck_output *asked, const run_body *bodies, int count, diagnostics *d);
 /* What the deck asks for and the run has; `damage` is that of particles and all damages of the
-   laws. Bodies and clock must stay. */
+   laws. Bodies, monitors and clock must stay. */
 frame_set *frames_new(const deck_output *asked, const run_body *bodies, int count,
-                      const run_clock *clock);
+                      const monitors *watched, const run_clock *clock);
 void frames_free(frame_set *f);
 
 int frames_fields(const frame_set *f, const frame_field **fields);

@@ -1,10 +1,12 @@
 #include "runtime/simulation/history.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
 
 enum { INCREMENT_STEPS, INCREMENT_UNBALANCE, INCREMENT_SERIES };
 static const char *const increment_names[] = {"relaxation_steps", "relaxation_unbalance"};
@@ -131,6 +133,16 @@ char *history_words(const history *h, int k, arena *a) {
   if (own >= 0) return arena_printf(a, "%s", increment_words[own]);
   const char *words = ledger_words[term_of(h, energy)], *owner = owner_of(h, energy);
   return owner ? arena_printf(a, "%s, of `%s`", words, owner) : arena_printf(a, "%s", words);
+}
+
+double history_largest_energy(const history *h, int64_t samples) {
+  double largest = h->energies ? 0 : NAN;
+  for (int term = 0; term < LEDGER_COUNT && h->energies; term++) {
+    const double *values = h->values + (h->monitors->count + term) * h->capacity;
+    for (int64_t k = 0; k < samples && term != LEDGER_IMBALANCE; k++)
+      largest = pl_fmax(largest, fabs(values[k]));
+  }
+  return largest;
 }
 
 int history_imbalance(const history *h, int number) {

@@ -40,6 +40,8 @@ void history_add(history *h, int64_t sample, double time);
 const char *history_series(const history *h, int k, const char **unit, const double **values);
 /* What a series is, in words. */
 char *history_words(const history *h, int k, arena *a);
+/* The largest of all energies in sum, in size, J; NaN without. The imbalance is none. */
+double history_largest_energy(const history *h, int64_t samples);
 /* The series that judges the run, the imbalance of its energies, or -1; with a body of several, its
    own. */
 int history_imbalance(const history *h, int body);

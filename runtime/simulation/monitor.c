@@ -27,8 +27,8 @@ static bool has_component(const deck_monitor *m) {
          m->kind == MONITOR_CONTACT_FORCE;
 }
 
-static bool follows_tip(const deck_monitor *m) {
-  return m->kind == MONITOR_TIP || m->kind == MONITOR_TIP_SPEED;
+static bool follows_cracks(const deck_monitor *m) {
+  return m->kind == MONITOR_TIP || m->kind == MONITOR_TIP_SPEED || m->kind == MONITOR_CRACK_WIDTH;
 }
 
 /* Of the first region that it watches, or of the second: the name of its lattice, or NULL. */
@@ -117,11 +117,11 @@ static bool can_be_damaged(const run_body *b) {
 }
 
 static bool check_damage(const deck_monitor *m, const run_body *bodies, int count, diagnostics *d) {
-  bool some = !counts_damage(m) && !follows_tip(m);
+  bool some = !counts_damage(m) && !follows_cracks(m);
   for (int b = 0; b < count; b++)
     some = some || can_be_damaged(&bodies[b]);
   if (some) return true;
-  const char *task = follows_tip(m) ? "follow" : "count";
+  const char *task = follows_cracks(m) ? "follow" : "count";
   if (count > 1 || bodies[0].law_count > 1)
     diag_report(d, DIAG_BAD_VALUE, deck_where(&m->item, "kind"),
                 "none of the laws has damage to %s", task);
@@ -212,6 +212,7 @@ static monitor_time when_known(const monitor *m, const monitors *all) {
   case MONITOR_MOMENT:
   case MONITOR_BAR_FORCE:
   case MONITOR_STRESS:
+  case MONITOR_CRACK_WIDTH:
     return KNOWN_WHEN_OBSERVED;
   default:
     return KNOWN_AFTER_STEP;
@@ -286,13 +287,11 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
     break;
   case MONITOR_DISPLACEMENT:
   case MONITOR_VELOCITY:
+  case MONITOR_CONTACT_FORCE:
     take_sites(m, 0, all, m->deck->region);
     break;
   case MONITOR_SLIP:
     take_places(m, all, d);
-    break;
-  case MONITOR_CONTACT_FORCE:
-    take_sites(m, 0, all, m->deck->region);
     break;
   case MONITOR_FIELD:
     take_sites(m, 0, all, m->deck->region);

@@ -9,6 +9,7 @@
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/uniform_strain.h"
 #include "runtime/deck/lattice_kind.h"
+#include "runtime/lattice/rows_select.h"
 
 /* --- which bodies ----------------------------------------------------------------------------- */
 
@@ -244,6 +245,14 @@ static void add_work(run_contacts *c) {
   }
 }
 
+static void note_peaks(run_contact *item) {
+  double force;
+  const long pairs = contact_touching(item->found, &force);
+  item->peaks = (contact_peaks){.pairs = pairs > item->peaks.pairs ? pairs : item->peaks.pairs,
+                                .force = pl_fmax(force, item->peaks.force),
+                                .stored = pl_fmax(contact_stored(item->found), item->peaks.stored)};
+}
+
 void run_contacts_find(run_contacts *c, int64_t step) {
   const bool known = c->step >= 0;
   if (c->step == step) return;
@@ -251,8 +260,10 @@ void run_contacts_find(run_contacts *c, int64_t step) {
   for (int n = 0; n < c->count; n++)
     for (int b = 0; b < c->items[n].count; b++)
       body_clear_outer(c->bodies[c->items[n].of[b]].body);
-  for (int n = 0; n < c->count; n++)
+  for (int n = 0; n < c->count; n++) {
     contact_find(c->items[n].found);
+    note_peaks(&c->items[n]);
+  }
   if (known) add_work(c);
   c->step = step;
 }
@@ -296,6 +307,44 @@ contact_overlap run_contacts_overlap(const deck *k, const run_body *bodies) {
   free(c.of);
   free(c.stiffness);
   return o;
+}
+
+/* The group that draws a particle; that of its lattice where its place comes from a file. */
+static span drawn_by(const deck *k, const run_body *of, int32_t site) {
+  const rows *g = of->lattice_rows;
+  int32_t *body_of = must_calloc((size_t)g->particle_count + 1, sizeof *body_of);
+  rows_bodies(g, k, of->lattice, body_of);
+  const int32_t number = body_of[g->site_particle[site]];
+  free(body_of);
+  return number >= 0 && number < k->body_count ? k->bodys[number].item.where
+                                               : k->lattices[of->lattice].item.where;
+}
+
+void run_contacts_warn(const deck *k, const run_body *bodies, diagnostics *d) {
+  static const deck_contact all = {.lattice_count = 0};
+  run_contact c = {.from = &all};
+  take_bodies(&c, k);
+  contact_body *of = must_calloc((size_t)c.count + 1, sizeof *of);
+  for (int n = 0; n < c.count; n++)
+    of[n].of = bodies[c.of[n]].body;
+  if (c.count > 1) {
+    c.found = contact_new(of, c.count, false);
+    const contact_overlap o = contact_drawn_over(c.found, 0.5);
+    if (o.pairs > 0) {
+      const run_body *first = &bodies[c.of[o.body[0]]], *second = &bodies[c.of[o.body[1]]];
+      diag_report(d, DIAG_DECK_WARNING, drawn_by(k, second, o.site[1]),
+                  "bodies of `%s` and `%s` lie over each other from the beginning: particles of "
+                  "theirs are nearer than half a spacing, %ld pair%s in all",
+                  first->name, second->name, o.pairs, o.pairs == 1 ? "" : "s");
+      diag_note(d, drawn_by(k, first, o.site[0]), "the other body");
+      diag_hint(d, k->contact_count > 0
+                       ? "a `&contact` keeps them no further apart than they begin"
+                       : "no force acts between them: move one, or cut it with a `&notch`");
+    }
+    contact_free(c.found);
+  }
+  free(of);
+  free(c.of);
 }
 
 double run_contacts_memory(const run_contacts *c) {

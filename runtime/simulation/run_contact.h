@@ -19,6 +19,11 @@
 #include "runtime/interaction/contact.h"
 #include "runtime/simulation/run_body.h"
 
+typedef struct contact_peaks { /* of all states so far */
+  int64_t pairs;               /* that touch at a time */
+  double force, stored;        /* N, of a pair; J */
+} contact_peaks;
+
 typedef struct run_contact {
   const deck_contact *from;
   int *of; /* [count] numbers of the bodies */
@@ -27,6 +32,7 @@ typedef struct run_contact {
   contact *found;
   double work; /* J: done on it, by the ways that its particles have gone */
   ledger ledger;
+  contact_peaks peaks;
 } run_contact;
 
 typedef struct run_contacts {
@@ -52,6 +58,8 @@ void run_contacts_find(run_contacts *c, int64_t step);
    would keep them at. Of lattices, by their numbers in `body`; none of a single one whose bonds all
    hold. The state observed last is to be observed again. */
 contact_overlap run_contacts_overlap(const deck *k, const run_body *bodies);
+/* Warns at the deck's lines of bodies that it draws over each other. */
+void run_contacts_warn(const deck *k, const run_body *bodies, diagnostics *d);
 double run_contacts_memory(const run_contacts *c); /* bytes */
 
 #endif

@@ -84,7 +84,7 @@ run_link *run_links_new(run_body *bodies, int body_count, int *count) {
   for (int b = 0; b < body_count; b++) {
     if (!bodies[b].lattice_rows->copies) continue;
     run_link *link = &links[(*count)++];
-    *link = (run_link){.own = &bodies[b]};
+    *link = (run_link){.own = &bodies[b], .number = *count - 1};
     take_copies(link, bodies);
     load_bodies(link, *count - 1, bodies);
   }
@@ -103,7 +103,15 @@ void run_links_free(run_link *links, int count) {
   free(links);
 }
 
-/* --- forces ----------------------------------------------------------------------------------- */
+/* --- where copies are ------------------------------------------------------------------------- */
+
+typedef struct copy_range {
+  long first, end;
+} copy_range;
+
+static copy_range part_of(long count, int part, int parts) {
+  return (copy_range){count * part / parts, count * (part + 1) / parts};
+}
 
 static double mean_of(const link_copy *c, double *const *values, int d) {
   double sum = 0;
@@ -112,35 +120,40 @@ static double mean_of(const link_copy *c, double *const *values, int d) {
   return sum;
 }
 
-/* The bar's unit tangent in the reference state and now, and how quickly it turns now. Returns how
-   far apart the particles are now that it goes through. */
-static double find_tangent(const link_copy *c, double then[3], double now[3], double spin[3]) {
-  double rate[3] = {0, 0, 0}, length = 0, before = 0;
+/* The bar's unit tangent now. Returns how far apart the particles are that it goes through. */
+static double find_tangent(const link_copy *c, double now[3]) {
+  double length = 0;
   for (int a = 0; a < 3; a++)
     now[a] = c->tangent[a];
-  for (int a = 0; a < c->bar->dimensions; a++) {
+  for (int a = 0; a < c->bar->dimensions; a++)
     now[a] += c->bar->displacement[a][c->after] - c->bar->displacement[a][c->before];
-    rate[a] = c->bar->velocity[a][c->after] - c->bar->velocity[a][c->before];
-  }
-  for (int a = 0; a < 3; a++) {
+  for (int a = 0; a < 3; a++)
     length += now[a] * now[a];
+  length = sqrt(length);
+  for (int a = 0; a < 3; a++)
+    now[a] /= length;
+  return length;
+}
+
+/* The unit tangent in the reference state, and how quickly it turns now. */
+static void find_turning(link_copy *c, double then[3], double spin[3]) {
+  double before = 0;
+  c->chord = find_tangent(c, c->along);
+  for (int a = 0; a < c->bar->dimensions; a++)
+    c->chord_rate[a] = c->bar->velocity[a][c->after] - c->bar->velocity[a][c->before];
+  for (int a = 0; a < 3; a++)
     before += c->tangent[a] * c->tangent[a];
-  }
   for (int a = 0; a < 3; a++) {
     const int b = (a + 1) % 3, e = (a + 2) % 3;
-    spin[a] = (now[b] * rate[e] - now[e] * rate[b]) / length;
-  }
-  for (int a = 0; a < 3; a++) {
-    now[a] /= sqrt(length);
+    spin[a] = (c->along[b] * c->chord_rate[e] - c->along[e] * c->chord_rate[b]) / c->chord;
     then[a] = c->tangent[a] / sqrt(before);
   }
-  return sqrt(length);
 }
 
 double run_link_slip(const run_link *link, long particle) {
   const link_copy *c = &link->copies[particle];
-  double then[3], now[3], spin[3], slip = 0;
-  find_tangent(c, then, now, spin);
+  double now[3], slip = 0;
+  find_tangent(c, now);
   for (int a = 0; a < c->bar->dimensions; a++)
     slip += now[a] * (mean_of(c, c->of->displacement, a) - c->bar->displacement[a][c->at]);
   return slip;
@@ -166,9 +179,10 @@ static void turn_copy(body *copy, long here, const double then[3], const double 
 }
 
 /* A place is shown further along the bar's tangent, and turns with it. */
-static void follow_bar(const link_copy *c, body *copy, long here) {
-  double then[3], now[3], spin[3];
-  find_tangent(c, then, now, spin);
+static void follow_bar(link_copy *c, body *copy, long here) {
+  double then[3], spin[3];
+  const double *now = c->along;
+  find_turning(c, then, spin);
   turn_copy(copy, here, then, now, spin);
   for (int a = 0; a < copy->dimensions; a++) {
     const int b = (a + 1) % 3, e = (a + 2) % 3;
@@ -177,34 +191,43 @@ static void follow_bar(const link_copy *c, body *copy, long here) {
   }
 }
 
-static void follow(const run_link *link) {
+static void follow(const run_link *link, copy_range of) {
   const rows *g = link->own->lattice_rows;
   body *copy = link->own->body;
-  for (long p = 0; p < g->particle_count; p++) {
+  for (long p = of.first; p < of.end; p++) {
     const long here = g->particle_site[p];
-    const link_copy *c = &link->copies[p];
+    link_copy *c = &link->copies[p];
     for (int d = 0; d < components_of(link, c); d++) {
-      copy->displacement[d][here] = mean_of(c, c->of->displacement, d);
-      copy->velocity[d][here] = mean_of(c, c->of->velocity, d);
+      copy->displacement[d][here] = c->way[d] = mean_of(c, c->of->displacement, d);
+      copy->velocity[d][here] = c->rate[d] = mean_of(c, c->of->velocity, d);
     }
     if (c->bar) follow_bar(c, copy, here);
   }
 }
 
-/* Of the forces over half of the way that the last step took. */
-static void add_work(run_link *link) {
+/* --- forces ----------------------------------------------------------------------------------- */
+
+/* Of the forces known, with the present velocities. */
+static void add_power(run_link *link, copy_range of) {
   const rows *g = link->own->lattice_rows;
   const sweep *law = law_of(link);
-  double power = 0;
-  for (long p = 0; p < g->particle_count; p++) {
-    const link_copy *c = &link->copies[p];
+  for (long p = of.first; p < of.end; p++) {
+    link_copy *c = &link->copies[p];
     for (int d = 0; d < components_of(link, c); d++)
-      power += law->force[d][g->particle_site[p]] * mean_of(c, c->of->velocity, d);
+      c->power += law->force[d][g->particle_site[p]] * c->rate[d];
     for (int d = 0; d < law->body->dimensions && has_couple(c); d++)
-      power +=
-          link->couple[d][p] * (c->bar->velocity[d][c->after] - c->bar->velocity[d][c->before]);
+      c->power += link->couple[d][p] * c->chord_rate[d];
   }
-  link->work -= 0.5 * law->body->time_step * power;
+}
+
+/* Each of the forces over half of the way that the last step took. */
+static void add_work(run_link *link) {
+  double power = 0;
+  for (long p = 0; p < link->own->lattice_rows->particle_count; p++) {
+    power += link->copies[p].power;
+    link->copies[p].power = 0;
+  }
+  link->work -= 0.5 * link->own->body->time_step * power;
 }
 
 /* What the law took in the last state becomes part of what it has taken. */
@@ -215,52 +238,67 @@ static void book_losses(const sweep *law) {
   }
 }
 
+static void find_forces(run_link *link) {
+  sweep *law = law_of(link);
+  law->body->blocks[0].aside = true;
+  for (int stage = 0; stage < law->engine.force_stages; stage++)
+    law->engine.forces(law, stage, 0);
+}
+
 /* The force F on a place and its opposite on the bar's particle, from which the place is now by r,
    turn the bodies by r x F. The bond's energy does not change where place and bar turn together:
    so it takes a couple -r x F to turn the bar's tangent alone, and momentum about any point stays.
  */
-static void find_couples(run_link *link) {
+static void find_couples(run_link *link, copy_range of) {
   const rows *g = link->own->lattice_rows;
   const sweep *law = law_of(link);
-  for (long p = 0; p < g->particle_count; p++) {
+  for (long p = of.first; p < of.end; p++) {
     const link_copy *c = &link->copies[p];
-    double then[3], now[3], spin[3], r[3] = {0, 0, 0}, f[3] = {0, 0, 0}, m[3];
+    double r[3] = {0, 0, 0}, f[3] = {0, 0, 0}, m[3];
     if (!has_couple(c)) continue;
     for (int a = 0; a < law->body->dimensions; a++) {
-      r[a] = mean_of(c, c->of->displacement, a) - c->bar->displacement[a][c->at];
+      r[a] = c->way[a] - c->bar->displacement[a][c->at];
       f[a] = law->force[a][g->particle_site[p]];
     }
-    const double length = find_tangent(c, then, now, spin);
     for (int a = 0; a < 3; a++) {
       const int b = (a + 1) % 3, e = (a + 2) % 3;
       m[a] = f[b] * r[e] - f[e] * r[b];
     }
     for (int a = 0; a < law->body->dimensions; a++) {
       const int b = (a + 1) % 3, e = (a + 2) % 3;
-      link->couple[a][p] = (m[b] * now[e] - m[e] * now[b]) / length;
+      link->couple[a][p] = (m[b] * c->along[e] - m[e] * c->along[b]) / c->chord;
     }
   }
 }
 
-static void find_forces(run_link *link) {
-  sweep *law = law_of(link);
-  law->body->blocks[0].aside = true;
-  for (int stage = 0; stage < law->engine.force_stages; stage++)
-    law->engine.forces(law, stage, 0);
-  find_couples(link);
+/* --- a state ---------------------------------------------------------------------------------- */
+
+static copy_range all_of(const run_link *link) {
+  return (copy_range){0, link->own->lattice_rows->particle_count};
 }
 
 void run_link_begin(run_link *link) {
   if (link->known) return;
-  follow(link);
+  follow(link, all_of(link));
   find_forces(link);
+  find_couples(link, all_of(link));
   link->known = true;
 }
 
-void run_link_step(run_link *link) {
-  book_losses(law_of(link));
-  follow(link);
-  add_work(link);
-  find_forces(link);
-  add_work(link);
+/* A law's forces, and sums, are the business of one thread for each link. */
+void run_link_step(run_link *link, int stage, int part, int parts) {
+  const copy_range mine = part_of(all_of(link).end, part, parts);
+  const bool whole = part == link->number % parts;
+  if (stage == 0) {
+    follow(link, mine);
+    add_power(link, mine);
+  } else if (stage == 1 && whole) {
+    book_losses(law_of(link));
+    find_forces(link);
+  } else if (stage == 2) {
+    find_couples(link, mine);
+    add_power(link, mine);
+  } else if (stage == 3 && whole) {
+    add_work(link);
+  }
 }

@@ -5,7 +5,9 @@
    the link's law gives the forces of that instant. They act in the coming step, and are part of
    what is observed. What a link takes from the bodies, or gives them, is the work of its forces on
    them: the ledger of the link has it as external work with the opposite sign, so that in sum it
-   goes out. */
+   goes out.
+
+   All threads do this together, in stages; what they do does not depend on how many there are. */
 #ifndef PERILAT_RUNTIME_RUN_LINK_H
 #define PERILAT_RUNTIME_RUN_LINK_H
 
@@ -20,6 +22,11 @@ typedef struct link_copy {
   double weight[ROWS_MOST_COPIED];
   double tangent[3]; /* in the reference state, through `before` and `after`, m */
   double ahead;      /* m */
+  /* In the present state: */
+  double way[PL_MAX_DOF], rate[PL_MAX_DOF]; /* of what it follows, m, m/s and rad, rad/s */
+  double along[3];                          /* the bar's unit tangent */
+  double chord, chord_rate[3];              /* from `before` to `after`: length m, m/s */
+  double power; /* W: of its forces before and after the last step, with the present velocities */
 } link_copy;
 
 typedef struct run_link {
@@ -28,6 +35,7 @@ typedef struct run_link {
   /* [dimensions][particles of own] N: of places that turn with a bar, on the particle after; the
      opposite is on the one before */
   double *couple[3];
+  int number;  /* of the run's links */
   double work; /* J: done on the link, by the ways that its particles have gone */
   bool known;  /* the forces of the present state are */
 } run_link;
@@ -43,7 +51,9 @@ double run_link_slip(const run_link *link, long particle);
 
 /* Forces of the state that a run begins or goes on with; nothing where they are known. */
 void run_link_begin(run_link *link);
-/* Forces after a step of all bodies, and their work since the last state. */
-void run_link_step(run_link *link);
+/* Forces after a step of all bodies, and their work since the last state: all parts of a stage
+   before the next one. The forces in the last one are known. */
+enum { RUN_LINK_STAGES = 4 };
+void run_link_step(run_link *link, int stage, int part, int parts);
 
 #endif

@@ -71,6 +71,7 @@ static bool open_bodies(simulation *s, diagnostics *d) {
     s->bodies[b].first_block %= s->blocks;
   s->team = team_new(s->blocks);
   s->links = run_links_new(s->bodies, s->body_count, &s->link_count);
+  s->link_stages = s->link_count > 0 ? RUN_LINK_STAGES : 0;
   run_contacts_begin(&s->contacts);
   return good;
 }
@@ -96,7 +97,7 @@ static bool open_monitors(simulation *s, diagnostics *d) {
 
 static bool open_frames(simulation *s, diagnostics *d) {
   const frame_field *fields;
-  s->frames = frames_new(&s->deck->output, s->bodies, s->body_count, &s->clock);
+  s->frames = frames_new(&s->deck->output, s->bodies, s->body_count, s->monitors, &s->clock);
   const int count = frames_fields(s->frames, &fields);
   return law_fits_result(s->deck, s->bodies, fields, count, d);
 }
@@ -106,6 +107,7 @@ static bool set_up(simulation *s, rows *const *lattices, diagnostics *d) {
   if (!choose_step(s, d) || !open_bodies(s, d)) return false;
   open_clock(s);
   if (!open_monitors(s, d) || !open_frames(s, d)) return false;
+  run_contacts_warn(s->deck, s->bodies, d);
   s->bad = bad_search_new(s->bodies, s->body_count, &s->clock);
   return true;
 }
@@ -273,6 +275,11 @@ overlap_found simulation_overlap(simulation *s) {
   return found;
 }
 
+contact_said simulation_contact(const simulation *s, int number) {
+  const contact_peaks *p = &s->contacts.items[number].peaks;
+  return (contact_said){(long)p->pairs, p->force, p->stored};
+}
+
 long simulation_history(const simulation *s, const double **time) {
   if (time) *time = s->history.time;
   return (long)s->clock.at.samples;
@@ -296,6 +303,10 @@ int simulation_imbalance(const simulation *s, const char **unchecked) {
   for (int b = 0; b < s->body_count && !*unchecked; b++)
     *unchecked = s->bodies[b].energies.unchecked;
   return history_imbalance(&s->history, -1);
+}
+
+double simulation_largest_energy(const simulation *s) {
+  return history_largest_energy(&s->history, s->clock.at.samples);
 }
 
 bool simulation_judges(const simulation *s, int series, const char **unchecked) {

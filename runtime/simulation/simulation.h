@@ -105,6 +105,13 @@ typedef struct overlap_found {
 } overlap_found;
 overlap_found simulation_overlap(simulation *s);
 
+/* Of a contact of the deck: the largest numbers of all states so far. */
+typedef struct contact_said {
+  long pairs;           /* that touch at a time */
+  double force, stored; /* N, of a pair; J */
+} contact_said;
+contact_said simulation_contact(const simulation *s, int contact);
+
 /* History so far. Series 0.. are the deck's monitors, then the energy terms, in sum and, of several
    bodies, of each; of quasi-static runs
    then the steps that the increment took and the unbalanced force at its end (relaxation.h). */
@@ -116,6 +123,9 @@ char *simulation_series_words(const simulation *s, int k, arena *a);
 /* The series that judges the run, the imbalance of its energies, or -1; *unchecked: why it says
    nothing (ledger.h), or NULL. */
 int simulation_imbalance(const simulation *s, const char **unchecked);
+/* J: the largest of all energies in sum in the history so far, in size; the imbalance is small or
+   large beside it. */
+double simulation_largest_energy(const simulation *s);
 /* The series is such an imbalance, of the run or of a body; *unchecked likewise. */
 bool simulation_judges(const simulation *s, int series, const char **unchecked);
 double simulation_monitor_peak(const simulation *s, int monitor,

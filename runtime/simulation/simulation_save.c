@@ -70,6 +70,7 @@ static void add_relaxation(part_list *l, relaxation *r) {
 static void add_contact(part_list *l, run_contact *c) {
   add_part(l, "work of a contact", &c->work, sizeof c->work);
   add_part(l, "ledger", &c->ledger, sizeof c->ledger);
+  add_part(l, "peaks of a contact", &c->peaks, sizeof c->peaks);
   for (int b = 0; b < c->count; b++) {
     size_t count;
     double *lost = contact_lost(c->found, b, &count);

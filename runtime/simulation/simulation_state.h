@@ -37,10 +37,12 @@ struct simulation {
   bad_search *bad;
   /* The time loop's: */
   int step_stages;       /* of a step: as many as the body with the most has */
+  int link_stages;       /* then of links; none without them */
   int observe_stages;    /* the same of observing */
   bool observe, go_on;   /* set by one thread for all */
   int64_t observed_step; /* of the state observed last; -1: none */
   profile *profile;      /* NULL: nothing is measured */
+  double links_begun;    /* s of the clock: their stages, where it is */
   int64_t until;
   const volatile sig_atomic_t *interrupted;
 };

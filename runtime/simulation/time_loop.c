@@ -116,20 +116,12 @@ static void set_time(simulation *s) {
   }
 }
 
-static void step_links(simulation *s) {
-  set_time(s);
-  for (int k = 0; k < s->link_count; k++)
-    run_link_step(&s->links[k]);
-  for (int b = 0; b < s->body_count; b++)
-    load_steps_take_links(s->bodies[b].loads, s->bodies[b].body);
-}
-
 static void find_contacts(simulation *s) {
   if (s->contacts.count > 0) run_contacts_find(&s->contacts, s->clock.at.step);
 }
 
 /* What one thread does after all have moved their rows and what is loaded in them. */
-static void after_step(simulation *s) {
+static void after_moving(simulation *s) {
   if (some_body_is_bad(s)) {
     bad_search_velocity(s->bad);
     s->clock.at.status = STEP_BAD;
@@ -141,7 +133,11 @@ static void after_step(simulation *s) {
     load_steps_turn(s->bodies[b].loads, s->bodies[b].body, (long)s->clock.at.step);
   }
   s->clock.at.step++;
-  if (s->link_count > 0) step_links(s);
+  set_time(s);
+}
+
+/* And when the forces of links are known, too. */
+static void after_step(simulation *s) {
   find_contacts(s);
   s->go_on = s->clock.at.step < s->until && !(s->interrupted && *s->interrupted);
   if (s->relaxation) {
@@ -190,15 +186,27 @@ static double add_time(const simulation *s, double begun, double *sum) {
   return now;
 }
 
-/* A block of a body in a stage of a step or of observing; some bodies have fewer stages. */
+/* Tasks of the team: the stages of a step, those of links, then those of observing. */
+static int first_of_links(const simulation *s) {
+  return s->step_stages;
+}
+static int first_of_observing(const simulation *s) {
+  return s->step_stages + s->link_stages;
+}
+
+/* A block of a body in a stage; some bodies have fewer stages. */
 static void do_block(simulation *s, run_body *of, int task, int block) {
   const sweep_engine *engine = &of->state->engine;
   body_block *b = &of->body->blocks[block];
   double now = s->profile ? monotonic_seconds() : 0;
-  if (task >= s->step_stages) {
-    const int stage = task - s->step_stages;
+  if (task >= first_of_observing(s)) {
+    const int stage = task - first_of_observing(s);
     if (stage < engine->observe_stages) engine->observe(of->state, stage, block);
     add_time(s, now, &b->observing);
+    return;
+  }
+  if (task >= first_of_links(s)) {
+    if (task == first_of_observing(s) - 1) load_steps_take_links(of->loads, of->body, block);
     return;
   }
   if (task >= engine->step_stages || run_body_is_link(of)) return;
@@ -209,10 +217,15 @@ static void do_block(simulation *s, run_body *of, int task, int block) {
   add_time(s, now, &b->loading);
 }
 
-/* Tasks of the team: the stages of a step, then those of observing. The blocks of one body after
-   the other are dealt out to those of the team. */
+static void do_links(simulation *s, int stage, int block) {
+  for (int k = 0; k < s->link_count && stage >= 0 && stage < s->link_stages; k++)
+    run_link_step(&s->links[k], stage, block, s->blocks);
+}
+
+/* The blocks of one body after the other are dealt out to those of the team. */
 static void do_stage(void *of, int task, int block) {
   simulation *s = of;
+  do_links(s, task - first_of_links(s), block);
   for (int b = 0; b < s->body_count; b++) {
     run_body *at = &s->bodies[b];
     const int own = (block - at->first_block + s->blocks) % s->blocks;
@@ -225,20 +238,27 @@ static int next_task(simulation *s) {
   set_time(s);
   for (int b = 0; b < s->body_count; b++)
     s->bodies[b].body->timed = s->profile && !s->observe;
-  return s->observe ? s->step_stages : s->go_on ? 0 : TEAM_END;
+  return s->observe ? first_of_observing(s) : s->go_on ? 0 : TEAM_END;
 }
 
 /* What one thread does between stages; sampling counts its time for itself (record_sample). */
+static void look_after(simulation *s, bool moved, bool stepped) {
+  if (!moved && !stepped) after_observing(s);
+  if (moved) after_moving(s);
+  if (stepped && s->clock.at.status == STEP_OK) after_step(s);
+}
+
 static int after_stage(void *of, int task) {
   simulation *s = of;
   profile *p = s->profile;
-  const bool stepped = task == s->step_stages - 1,
-             observed = task == s->step_stages + s->observe_stages - 1;
-  if (!stepped && !observed) return task + 1;
+  const bool moved = task == first_of_links(s) - 1, stepped = task == first_of_observing(s) - 1,
+             observed = task == first_of_observing(s) + s->observe_stages - 1;
+  if (!moved && !stepped && !observed) return task + 1;
   const double begun = p ? monotonic_seconds() : 0, sampled = p ? p->sampled : 0;
-  (stepped ? after_step : after_observing)(s);
-  if (p) p->loaded += monotonic_seconds() - begun - (p->sampled - sampled);
-  return next_task(s);
+  if (p && stepped && !moved) p->loaded += begun - s->links_begun;
+  look_after(s, moved, stepped);
+  s->links_begun = add_time(s, begun + (p ? p->sampled - sampled : 0), p ? &p->loaded : NULL);
+  return moved && !stepped && s->clock.at.status == STEP_OK ? task + 1 : next_task(s);
 }
 
 /* First frame after the present step bounds an advance; one that is due but not taken does not. */

@@ -144,10 +144,10 @@ static double ratio_for(double G_F, double spacing) {
 
 static void tension_costs_what_the_law_says(void **state) {
   (void)state;
-  tears("", 20e-3, 10, 32.9, 1);
-  tears("damper = 'breaking'", 20e-3, 10, 32.9, 0);
-  tears("tension = 'energy'", 20e-3, ratio_for(175, 20e-3), 175, 1);
-  tears("tension = 'energy'", 10e-3, ratio_for(175, 10e-3), 175, 1);
+  tears("", 20e-3, 10, 32.9, 0);
+  tears("damper = 'lasting'", 20e-3, 10, 32.9, 1);
+  tears("tension = 'energy'", 20e-3, ratio_for(175, 20e-3), 175, 0);
+  tears("tension = 'energy'", 10e-3, ratio_for(175, 10e-3), 175, 0);
   assert_true(fabs(ratio_for(175, 20e-3) - 53.2) < 0.05);
 }
 
@@ -159,7 +159,7 @@ static void a_damper_goes_with_its_bond(void **state) {
     FILE *out = deck();
     fprintf(out,
             "&simulation steps = 100 /\n&bond spacing = '20 mm' thickness = '20 mm' /\n"
-            "&material model = '%s' damper = 'breaking' /\n"
+            "&material model = '%s' /\n"
             "&path quantity = 'stretch' value = 0.01 rise = '1 s' /\n"
             "&expect quantity = 'omega_t' value = 1 absolute = 1e-15 /\n"
             "&expect quantity = 'N' value = 0 absolute = '1e-12 N' /\n",
@@ -190,7 +190,7 @@ static void crushes(const char *settings, double loss) {
 static void crushing_keeps_the_axial_force(void **state) {
   (void)state;
   crushes("", 1 / 4.728);
-  crushes("crushing = 'text' eps_u = -0.0015 damper = 'breaking'", 1); /* it has not parted */
+  crushes("crushing = 'text' eps_u = -0.0015", 1); /* it has not parted */
   crushes("crushing = 'text'", 0.5);
   crushes("crushing = 'text' fading = 'force'", 3 / 2.0 * 0.5);
 }

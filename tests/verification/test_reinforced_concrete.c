@@ -33,7 +33,7 @@ static void prisms_in_tension(void **state) {
 static void prisms_in_compression(void **state) {
   (void)state;
   strength("compression_across", "| 5.2 compression, across", -9.5, -9.75);
-  assert_true(bears("compression_along", -80e3 * section, 1.36e-3));
+  assert_true(bears("compression_along", -70e3 * section, 1.36e-3));
 }
 
 /* 42 kN/m; an independent computation: 42 to 44. */
@@ -47,9 +47,55 @@ static void plain_beam(void **state) {
 /* On sites of the lattice. Reference: 82 to 85. */
 static void one_bar(void **state) {
   (void)state;
-  assert_true(bears("one_bar", -84 * 1.2, 10.85e-3));
-  assert_false(bears("one_bar", -86 * 1.2, 10.85e-3));
-  page_says("| 5.4 one bar", "| 84, 86 kN/m |");
+  assert_true(bears("one_bar", -82 * 1.2, 10.85e-3));
+  assert_false(bears("one_bar", -84 * 1.2, 10.85e-3));
+  page_says("| 5.4 one bar, on sites", "| 82, 84 kN/m |");
+}
+
+/* At the bar's level when the load has come: the concrete between the cracks is strained less than
+   it can be at all. */
+static void cracks_at_the_bar(void **state) {
+  (void)state;
+  deck_case c;
+  char figure[64];
+  const frame_field *fields;
+  double values[512], sum = 0, least = 1, most = 0;
+  long cracks = 0;
+  run(&c, "one_bar",
+      (const char *[]){"simulation.threads=1", "simulation.end_time=10.95 ms", NULL});
+  const int count = simulation_frame_fields(c.simulation, &fields);
+  for (int k = 0; k < count; k++) {
+    if (!fields[k].of_cracks) continue;
+    assert_true(2 * fields[k].count <= 512);
+    simulation_frame_values(c.simulation, k, values);
+    for (; cracks < fields[k].count && !isnan(values[2 * cracks]); cracks++) {
+      const double width = values[2 * cracks + 1];
+      sum += width;
+      least = fmin(least, width);
+      most = fmax(most, width);
+    }
+  }
+  const body *of = simulation_state(c.simulation, 0)->body;
+  double longer = 0;
+  for (long p = 0; p < of->lattice->particle_count; p++) {
+    const int32_t q = of->lattice->particle_site[p];
+    const bool level = fabs(of->lattice->y[q] - 0.0173205) < 1e-6;
+    if (level && fabs(fabs(of->lattice->x[q]) - 0.57) < 1e-6)
+      longer += (of->lattice->x[q] > 0 ? 1 : -1) * of->displacement[0][q];
+  }
+  print_message("%ld cracks of %.4g to %.4g um, sum %.4g of %.4g um\n", cracks, 1e6 * least,
+                1e6 * most, 1e6 * sum, 1e6 * longer);
+  assert_true(sum < longer && sum > longer - 1.14 * 1.26e-4);
+  snprintf(figure, sizeof figure, "%ld cracks cut", cracks);
+  page_says("- **Cracks.**", figure);
+  snprintf(figure, sizeof figure, "%.0f to %.0f µm wide, %.0f µm in sum", 1e6 * least, 1e6 * most,
+           1e6 * sum);
+  page_says("- **Cracks.**", figure);
+  snprintf(figure, sizeof figure, "%.0f µm longer over 1.14 m", 1e6 * longer);
+  page_says("- **Cracks.**", figure);
+  page_says("- **Cracks.**", "mean strain of 7.7e-5");
+  assert_true(fabs((longer - sum) / 1.14 - 7.7e-5) < 0.05e-5);
+  deck_case_close(&c);
 }
 
 /* --- by displacement -------------------------------------------------------------------------- */
@@ -94,7 +140,7 @@ static void open_bonds_do_not_rub(void **state) {
   (void)state;
   deck_case c;
   run(&c, "plain_beam",
-      (const char *[]){"simulation.threads=1", "force.total=-55.2 kN",
+      (const char *[]){"simulation.threads=1", "force.per_length=-46 kN/m",
                        "material.friction=stick_slip", NULL});
   const double *lost = deck_case_series(&c, "energy/dissipated_damage");
   const long samples = simulation_history(c.simulation, NULL);
@@ -106,13 +152,10 @@ static void open_bonds_do_not_rub(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(prisms_in_tension),
-      cmocka_unit_test(prisms_in_compression),
-      cmocka_unit_test(plain_beam),
-      cmocka_unit_test(one_bar),
-      cmocka_unit_test(twins_by_displacement),
-      cmocka_unit_test(pull_out),
-      cmocka_unit_test(open_bonds_do_not_rub),
+      cmocka_unit_test(prisms_in_tension), cmocka_unit_test(prisms_in_compression),
+      cmocka_unit_test(plain_beam),        cmocka_unit_test(one_bar),
+      cmocka_unit_test(cracks_at_the_bar), cmocka_unit_test(twins_by_displacement),
+      cmocka_unit_test(pull_out),          cmocka_unit_test(open_bonds_do_not_rub),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

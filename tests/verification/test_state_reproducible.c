@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "tests/runtime/hand_over.h"
-#include "tests/verification/case.h"
+#include "tests/verification/same_runs.h"
 
 static void open_prism(deck_case *c, const char *threads) {
   const char *const overrides[] = {threads, "simulation.end_time=0.9 ms", "drive.rise=1 ms",
@@ -30,36 +30,6 @@ static long touched(const sweep *w, int field) {
   return count;
 }
 
-static long different(const sweep *a, const double *x, const double *y, int planes) {
-  const rows *g = a->body->lattice;
-  long count = 0;
-  for (int k = 0; k < planes; k++)
-    for (long p = 0; p < g->particle_count; p++) {
-      const long at = k * g->size + g->particle_site[p];
-      count += memcmp(&x[at], &y[at], sizeof(double)) != 0;
-    }
-  return count;
-}
-
-static void assert_same(const deck_case *a, const deck_case *b) {
-  const sweep *x = simulation_state(a->simulation, 0), *y = simulation_state(b->simulation, 0);
-  for (int d = 0; d < x->body->dof; d++) {
-    assert_int_equal(different(x, x->body->displacement[d], y->body->displacement[d], 1), 0);
-    assert_int_equal(different(x, x->body->velocity[d], y->body->velocity[d], 1), 0);
-  }
-  for (int f = 0; f < x->law->field_count; f++)
-    assert_int_equal(
-        different(x, x->field[f], y->field[f], sweep_planes(x, x->law->fields[f].place)), 0);
-  const double *p, *q;
-  const long samples = simulation_history(a->simulation, NULL);
-  assert_int_equal(simulation_history(b->simulation, NULL), samples);
-  for (int k = 0; k < simulation_series_count(a->simulation); k++) {
-    simulation_series(a->simulation, k, NULL, &p);
-    simulation_series(b->simulation, k, NULL, &q);
-    assert_memory_equal(p, q, (size_t)samples * sizeof(double));
-  }
-}
-
 static void any_number_of_threads_gives_the_same_bits(void **state) {
   (void)state;
   deck_case one, more;
@@ -74,7 +44,7 @@ static void any_number_of_threads_gives_the_same_bits(void **state) {
   for (int threads = 2; threads <= 3; threads++) {
     open_prism(&more, threads == 2 ? "simulation.threads=2" : "simulation.threads=3");
     assert_int_equal(deck_case_go(&more), STEP_END);
-    assert_same(&one, &more);
+    assert_same_runs(&one, &more);
     deck_case_close(&more);
   }
   deck_case_close(&one);
@@ -93,7 +63,7 @@ static void a_resumed_run_gives_the_same_bits(void **state) {
     hand_over(first.simulation, stop, second.simulation);
     deck_case_close(&first);
     assert_int_equal(deck_case_go(&second), STEP_END);
-    assert_same(&straight, &second);
+    assert_same_runs(&straight, &second);
     deck_case_close(&second);
   }
   deck_case_close(&straight);

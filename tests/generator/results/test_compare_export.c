@@ -229,6 +229,47 @@ static void frame_as_table(void **state) {
          "0,0,1,0,0,1,0,0.5\n1,1,2,1,0,0.5,0.75,0.625\n");
 }
 
+/* Frame k has k cracks, at 0.1, 0.2, ... m and as wide in mm, of at most two. */
+static void cracks_as_table(void **state) {
+  workplace *w = *state;
+  result_header h = small_header(in_workplace(w, "c.h5"));
+  const result_field fields[] = {
+      small_fields[0], small_fields[1], {"opened", "m", NULL, 2, 2, "cracks", "of each crack"}};
+  h.fields = fields;
+  h.field_count = 3;
+  result *r = small_begin(&h, error, sizeof error);
+  for (int f = 0; f < FRAMES; f++) {
+    double u[2 * PARTICLES], omega[BONDS], cracks[4] = {NAN, NAN, NAN, NAN};
+    small_frame(f, u, omega);
+    for (int k = 0; k < f; k++) {
+      cracks[2 * k] = 0.1 * (k + 1);
+      cracks[2 * k + 1] = 1e-4 * (k + 1);
+    }
+    const double *values[] = {u, omega, cracks};
+    assert_true(result_frame(r, 0.5 * f, values, error, sizeof error));
+  }
+  const double time[] = {0, 1};
+  assert_true(small_finish(r, time, 2, NULL, 0, error, sizeof error));
+  result_discard(r);
+  result_close(r);
+  expect(w, "export c.h5 --cracks opened", 0,
+         "frame [1],time [s],place [m],width [m]\n1,0.5,0.1,0.0001\n2,1,0.1,0.0001\n"
+         "2,1,0.2,0.0002\n");
+  expect(w, "export c.h5 --cracks opened --json", 0, "\"of\": \"cracks\"");
+  expect(w, "export c.h5 --frame 1", 0,
+         "particle,x [m],y [m],displacement_x [m],displacement_y [m]\n");
+  expect(w, "info c.h5", 0,
+         "Cracks of `opened`: 2 in the last frame, the widest 0.2 mm; at most 2 in a frame");
+  expect(w, "info c.h5 --json", 0, "\"cracks\": [");
+  expect(w, "compare c.h5 c.h5", 0, "same");
+  expect(w, "export c.h5 --cracks closed", 1,
+         "has no cracks of a monitor `closed`; it has those of `opened`");
+  expect(w, "export c.h5 --cracks opened --frame 1", 1, "cracks are a table of their own");
+  make_result(w, "a.h5", plain);
+  expect(w, "export a.h5 --cracks opened", 1,
+         "holds them where the deck has one of the kind 'crack_width'");
+}
+
 /* Histories and fields are given by their names, or by the part of it that says which. */
 static void chosen_columns(void **state) {
   workplace *w = *state;
@@ -298,6 +339,7 @@ int main(void) {
       ONE(wrong_input_of_compare),
       ONE(history_as_table),
       ONE(frame_as_table),
+      ONE(cracks_as_table),
       ONE(chosen_columns),
       ONE(names_of_lattices_are_free),
       ONE(wrong_input_of_export),

@@ -208,6 +208,26 @@ static void maps_of_space_have_axes(void **state) {
   expect(w, "plot block.h5 --map displacement", 0, "written block_displacement.png");
 }
 
+/* Of its particles alone edges are drawn: those of the block around it, which have no stress of that
+   name, are dots. */
+static void bars_in_a_block_are_seen(void **state) {
+  workplace *w = *state;
+  size_t size;
+  int edges = 0;
+  write_text(w, "block.nml", block);
+  assert_int_equal(shell(w, "echo \"&bar name = 'b' points = 0.01, 0.01, 0.01, 0.01, 0.01, 0.04 "
+                            "spacing = 0.005 diameter = 0.002 / &material bar = 'b' "
+                            "model = 'steel_bar' /\" >> block.nml"),
+                   0);
+  expect(w, "run block.nml --set \"output.fields='displacement', 'sigma'\"", 0, "written");
+  expect(w, "plot block.h5 --map sigma -o bar.svg", 0, "written bar.svg");
+  char *text = read_bytes(w, "bar.svg", &size);
+  for (const char *at = text; (at = strstr(at, "stroke:rgb(25%")); at++)
+    edges++;
+  free(text);
+  assert_int_equal(edges, 7);
+}
+
 /* Five rows of D3 are cut, nine are left (runtime/README.md); edges that lack bonds are named,
    others are not. */
 static void what_sites_make_of_shapes(void **state) {
@@ -233,6 +253,79 @@ static void what_sites_make_of_shapes(void **state) {
   assert_non_null(strstr(w->said, "\n             and 2 more\n"));
 }
 
+/* --- blows, bodies over each other, damping ---------------------------------------------------- */
+
+/* All energy is brought by the block. */
+static const char blow[] =
+    "&simulation  end_time = '0.1 ms'  /\n"
+    "&lattice     name = 'plate'  kind = 'hexagonal'  spacing = '5 mm'  thickness = '10 mm'  /\n"
+    "&material    lattice = 'plate'  model = 'elastic_micropolar'  /\n"
+    "&body        lattice = 'plate'  shape = 'rectangle'  corner = 0, 0  size = '50 mm', '40 mm'  "
+    "/\n&lattice     name = 'block'  kind = 'hexagonal'  spacing = '5 mm'  thickness = '10 mm'\n"
+    "             origin = '55.1 mm', 0  /\n"
+    "&material    lattice = 'block'  model = 'elastic_micropolar'  /\n"
+    "&body        lattice = 'block'  shape = 'rectangle'  corner = '55 mm', 0  size = '20 mm', "
+    "'40 mm'  /\n"
+    "&region      name = 'all'  lattice = 'block'  shape = 'rectangle'  corner = -1, -1  size = 3, "
+    "3  /\n"
+    "&initial_velocity  region = 'all'  component = 'x'  value = -10  /\n"
+    "&output      result = 'blow.h5'  frames = 1  /\n";
+
+static double number_behind(const char *text, const char *words) {
+  const char *at = strstr(text, words);
+  assert_non_null(at);
+  return strtod(at + strlen(words), NULL);
+}
+
+static void blows_are_told(void **state) {
+  workplace *w = *state;
+  write_text(w, "blow.nml", blow);
+  assert_int_equal(shell(w, "echo \"&contact name = 'blow' /\" >> blow.nml"), 0);
+  expect(w, "run blow.nml", 0,
+         "  contact    blow: at most 5 pairs of particles in touch at a time, ");
+  assert_true(number_behind(w->said, "at a time, ") > 1); /* kN */
+  const double imbalance = fabs(number_behind(w->said, "; imbalance ")),
+               part = number_behind(strstr(w->said, "; imbalance "), " J (");
+  assert_non_null(strstr(w->said, " % of the largest energy)"));
+  /* 40 particles of 2323 kg/m^3 at 10 m/s */
+  const double brought = 0.5 * 40 * 2323 * sqrt(0.75) * 0.005 * 0.005 * 0.01 * 100;
+  assert_true(fabs(100 * imbalance / part / brought - 1) < 0.05); /* of two digits */
+  expect(w, "run blow.nml --json", 0, "\"largest\": 1.00");
+  expect(w, "run blow.nml --set initial_velocity.value=10", 0,
+         "  contact    blow: nothing touched\n");
+}
+
+static void bodies_over_each_other_are_told(void **state) {
+  workplace *w = *state;
+  write_text(w, "blow.nml", blow);
+  expect(w, "check blow.nml", 0, "");
+  assert_null(strstr(w->said, "lie over each other"));
+  assert_int_equal(shell(w, "sed -i \"s/'55 mm'/'45 mm'/\" blow.nml"), 0);
+  expect(w, "check blow.nml", 0,
+         "blow.nml:8:1: warning: bodies of `plate` and `block` lie over each other from the "
+         "beginning: particles of theirs are nearer than half a spacing, 15 pairs in all");
+  assert_non_null(strstr(w->said, "no force acts between them: move one"));
+  assert_non_null(strstr(w->said, "blow.nml:4:1: note: the other body"));
+  assert_int_equal(shell(w, "echo \"&contact name = 'blow' /\" >> blow.nml"), 0);
+  expect(w, "run blow.nml", 0, "a `&contact` keeps them no further apart than they begin");
+}
+
+/* Eight increments, and what breaks in the first of them moves; a hundred; none breaks. */
+static void much_damping_is_told(void **state) {
+  workplace *w = *state;
+  static const char warning[] = "warning: the relaxation damped ";
+  write_text(w, "quiet.nml", quiet);
+  expect(w, "run quiet.nml --set \"drive.displacement=-0.05 mm\"", 0, warning);
+  assert_non_null(strstr(w->said, "`relaxation.increments=16` and compare"));
+  expect(w, "run quiet.nml --set \"drive.displacement=-0.05 mm\" --set relaxation.increments=100",
+         0, "");
+  assert_null(strstr(w->said, warning));
+  expect(w, "run quiet.nml --set relaxation.increments=1", 0, "");
+  assert_true(number_behind(w->said, "by damping ") >
+              0.1 * number_behind(w->said, "external work "));
+  assert_null(strstr(w->said, warning));
+}
+
 int main(void) {
 #define ONE(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
   const struct CMUnitTest tests[] = {
@@ -243,7 +336,11 @@ int main(void) {
       ONE(quantities_are_told_in_words),
       ONE(maps_know_their_increment),
       ONE(maps_of_space_have_axes),
+      ONE(bars_in_a_block_are_seen),
       ONE(what_sites_make_of_shapes),
+      ONE(blows_are_told),
+      ONE(bodies_over_each_other_are_told),
+      ONE(much_damping_is_told),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

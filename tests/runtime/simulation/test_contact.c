@@ -229,29 +229,36 @@ static void a_middle_block_hands_the_blow_on(void **state) {
   small_bodies_close(&b);
 }
 
+#define WATCHED_CONTACT                                                                            \
+  "&contact /\n&monitor name = 'f' kind = 'contact_force' lattice = 'a' component = 'x' "          \
+  "average = 2e-6 /\n"
 static void threads_and_stops_change_no_bit(void **state) {
   (void)state;
   static const char path[] = "test_contact.state";
   small_bodies straight, other;
   char error[200];
-  open_collision(&straight, 4e-7, 1, "&contact /\n");
+  open_collision(&straight, 4e-7, 1, WATCHED_CONTACT);
   assert_int_equal(small_go(&straight.run), STEP_END);
   for (int threads = 2; threads <= 3; threads++) {
-    open_collision(&other, 4e-7, threads, "&contact /\n");
+    open_collision(&other, 4e-7, threads, WATCHED_CONTACT);
     assert_int_equal(small_go(&other.run), STEP_END);
     same_runs(straight.run.simulation, other.run.simulation);
     small_bodies_close(&other);
   }
-  open_collision(&other, 4e-7, 2, "&contact /\n");
+  open_collision(&other, 4e-7, 2, WATCHED_CONTACT);
   simulation_advance(other.run.simulation, 300, NULL); /* they are in touch */
   assert_true(small_last(&other.run, "contact/stored") > 0);
   assert_true(
       simulation_save(other.run.simulation, path, "x", &(frame_mark){0}, error, sizeof error));
   small_bodies_close(&other);
-  open_collision(&other, 4e-7, 1, "&contact /\n");
+  open_collision(&other, 4e-7, 1, WATCHED_CONTACT);
   assert_true(simulation_restore(other.run.simulation, path, "x", NULL, error, sizeof error));
   assert_int_equal(small_go(&other.run), STEP_END);
   same_runs(straight.run.simulation, other.run.simulation);
+  const contact_said a = simulation_contact(straight.run.simulation, 0),
+                     b = simulation_contact(other.run.simulation, 0);
+  assert_true(a.pairs > 0 && a.pairs == b.pairs && a.force == b.force && a.stored == b.stored);
+  assert_true(a.stored >= small_largest(&straight.run, "contact/stored"));
   small_bodies_close(&other);
   small_bodies_close(&straight);
   unlink(path);

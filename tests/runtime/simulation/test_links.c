@@ -294,7 +294,8 @@ static void open_threads(linked_run *r, int threads) {
   char text[4096], pulled[2048];
   snprintf(pulled, sizeof pulled, PULLED, 5.0);
   snprintf(text, sizeof text,
-           "&simulation end_time = 3e-4 threads = %d /\n&output frames = 0 sample = 1e-6 /\n%s%s"
+           "&simulation end_time = 3e-4 threads = %d /\n&output frames = 0 sample = 1e-6 /\n"
+           "&monitor name = 'N' kind = 'bar_force' lattice = 'b' average = 3e-6 /\n%s%s"
            "&damping rate = 2000 until = 1e-4 /\n%s",
            threads, CONCRETE_AND_BAR(ONE_WAY), LINKED, pulled);
   open_linked(r, text);

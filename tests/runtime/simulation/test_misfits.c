@@ -68,6 +68,9 @@ static const misfit misfits[] = {
     {RUN LAW BLOCK USE "&monitor name = 'n' kind = 'force' at = 0.05, 0 normal = 1, 0 "
                        "region = 'corner' /\n",
      DIAG_EMPTY_REGION, "no bond crosses this section"},
+    {RUN LAW BLOCK USE "&monitor name = 'n' kind = 'crack_width' from = 0.01, 0.01 "
+                       "to = 0.5, 0.01 /\n",
+     DIAG_EMPTY_REGION, "the line leaves the lattice at "},
     {RUN LAW BLOCK USE "&monitor name = 'n' kind = 'tip' at = 0.1, 0 direction = 1, 0 "
                        "above = 0.5 /\n",
      DIAG_EMPTY_REGION, "the way of the crack would always be 0"},

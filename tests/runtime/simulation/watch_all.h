@@ -17,6 +17,8 @@
   "&monitor name = 'w9' kind = 'strain' region = 'mid' component = 'xx' average = " mean " /\n"    \
   "&monitor name = 'v1' kind = 'tip' at = 0.1, 0 direction = -1, 0.1 above = 0.1 average = " mean  \
   " /\n"                                                                                           \
+  "&monitor name = 'v4' kind = 'crack_width' from = 0.02, 0.02 to = 0.04, 0.025 above = 0.1 "      \
+  "average = " mean " /\n"                                                                         \
   "&monitor name = 'v2' kind = 'tip_speed' at = 0, 0 direction = 1, 0 above = 0.1 average = 1e-5 " \
   "/\n"
 
