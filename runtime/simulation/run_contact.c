@@ -345,6 +345,7 @@ void run_contacts_warn(const deck *k, const run_body *bodies, diagnostics *d) {
   }
   free(of);
   free(c.of);
+  free(c.stiffness);
 }
 
 double run_contacts_memory(const run_contacts *c) {
