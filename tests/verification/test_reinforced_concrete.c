@@ -93,7 +93,7 @@ static void cracks_at_the_bar(void **state) {
   page_says("- **Cracks.**", figure);
   snprintf(figure, sizeof figure, "%.0f µm longer over 1.14 m", 1e6 * longer);
   page_says("- **Cracks.**", figure);
-  page_says("- **Cracks.**", "mean strain of 7.7e-5");
+  page_says("- **Cracks.**", "mean strain of 7.6e-5");
   assert_true(fabs((longer - sum) / 1.14 - 7.7e-5) < 0.05e-5);
   deck_case_close(&c);
 }
@@ -106,7 +106,7 @@ static void twins_by_displacement(void **state) {
   carries("tension_along_path", NULL, "| 5.1 tension, along", "| %.2f kN,", 0.05);
   carries("compression_across_path", NULL, "| 5.2 compression, across", "| %.1f kN,", 0.05);
   carries("compression_along_path", NULL, "| 5.2 compression, along", "| %.0f kN,", 0.05);
-  carries("plain_beam_path", "simulation.step=1.808 us", "| 5.3 plain beam", "| %.2f kN,", 0.05);
+  carries("plain_beam_path", "simulation.step=1.2 us", "| 5.3 plain beam", "| %.2f kN,", 0.05);
 }
 
 /* Until the far end begins to move, the bar is as good as endless. */
