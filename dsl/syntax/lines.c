@@ -97,8 +97,7 @@ void line_law(parsing *p, word first, word second, span where) {
   p->law_seen = true;
   p->model->law_where = where;
   if (!find_law(first.text, second.text, &p->model->law))
-    complain(p, where, "there is no such kind of law",
-             "write `law central bond`, `law micropolar bond`, `law slip bond` or `law state`");
+    complain(p, where, "there is no such kind of law", "write " LAW_LINES);
 }
 
 void line_settings(parsing *p, const words *list, span where) {

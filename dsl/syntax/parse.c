@@ -27,7 +27,7 @@ static void check_whole(parsing *p) {
   if (!p->law_seen) {
     diag_report(p->messages, DIAG_SYNTAX, p->model->name_where,
                 "the model `%s` does not say what kind of law it is", p->model->name);
-    diag_hint(p->messages, "write `law central bond`, `law micropolar bond`, `law slip bond` or `law state` below");
+    diag_hint(p->messages, "write " LAW_LINES " below");
   }
 }
 

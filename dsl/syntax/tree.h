@@ -183,6 +183,8 @@ typedef enum law_kind {
 } law_kind;
 
 const char *law_kind_name(law_kind kind);
+/* For hints: how to say which kind a law is. */
+#define LAW_LINES "`law central bond`, `law micropolar bond`, `law slip bond` or `law state`"
 
 /* Whether the ends of its bonds turn, so that particles have rotations. */
 static inline bool law_kind_turns(law_kind kind) {

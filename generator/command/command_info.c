@@ -23,15 +23,9 @@
 /* --- --builtins ------------------------------------------------------------------------------- */
 
 static int info_builtins(void) {
-  static const char *const kinds[] = {[IN_CENTRAL] = "central",
-                                      [IN_MICROPOLAR] = "micropolar",
-                                      [IN_BOND] = "bonds",
-                                      [IN_STATE] = "state",
-                                      [IN_CENTRAL | IN_STATE] = "central and state",
-                                      [IN_MICROPOLAR | IN_STATE] = "micropolar and state",
-                                      [IN_SLIP] = "slip",
-                                      [IN_LATTICE] = "but slip",
-                                      [IN_ANY] = "all"};
+  static const char *const kinds[] = {
+      [IN_MICROPOLAR] = "micropolar", [IN_BOND] = "bonds", [IN_STATE] = "state", [IN_SLIP] = "slip",
+      [IN_LATTICE] = "but slip",      [IN_ANY] = "all"};
   printf("Quantities that a law may read:\n  %-13s %-7s %-9s %-11s %s\n", "name", "unit", "lives",
          "laws", "meaning");
   for (int q = 0; q < QUANTITY_COUNT; q++) {

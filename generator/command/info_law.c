@@ -204,7 +204,7 @@ static bool obeys(law_facts *f) {
 static bool learn(law_facts *f, const info_law_options *o) {
   if (!open_law(f, o)) return false;
   f->law = plan_interpreted(f->model.plan);
-  return take_values(f) && (f->missing || imply(f));
+  return take_values(f) && (!law_facts_has_implied(f) || imply(f));
 }
 
 int info_law(const info_law_options *o) {

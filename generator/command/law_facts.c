@@ -8,6 +8,10 @@ const char *law_kind_text(const law *l) {
   return law_kind_name(l->tree->law);
 }
 
+bool law_facts_has_implied(const law_facts *f) {
+  return !f->missing && f->model.law->tree->law != LAW_SLIP_BOND;
+}
+
 bool law_facts_of_families(const law_facts *f) {
   return f->law->kind == PL_STATE;
 }

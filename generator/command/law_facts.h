@@ -36,6 +36,8 @@ typedef struct law_facts {
   implied implied;
 } law_facts;
 
+/* Whether a lattice of such bonds says something: not without all values, nor of laws of slip. */
+bool law_facts_has_implied(const law_facts *f);
 /* "micropolar bond" */
 const char *law_kind_text(const law *l);
 bool law_facts_of_families(const law_facts *f);

@@ -137,5 +137,5 @@ void law_facts_put(json *j, const law_facts *f) {
   put_symbols(j, "outputs", &l->outputs);
   json_put_text(j, "nonconservative", l->nonconservative);
   put_cost(j, f);
-  if (!f->missing) put_implied(j, f);
+  if (law_facts_has_implied(f)) put_implied(j, f);
 }

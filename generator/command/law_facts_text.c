@@ -180,6 +180,6 @@ void law_facts_print(const law_facts *f) {
   if (f->missing)
     printf("What it implies depends on `%s`, which has no default: give --set %s=...\n", f->missing,
            f->missing);
-  else
+  else if (law_facts_has_implied(f))
     print_implied(f);
 }

@@ -710,7 +710,7 @@ static void conclude_increments(const run *r) {
            (long)r->deck->relaxation.most_steps);
 }
 
-/* "contact    blow: at most 34 pairs of particles touch, with 1.2 kN between two; 0.31 J stored" */
+/* "contact    blow: at most 34 pairs of particles in touch at a time, 1.2 kN between two, ..." */
 static void conclude_contact(const run *r, int number) {
   const contact_said c = simulation_contact(r->simulation, number);
   printf("  contact    %s: ", r->deck->contacts[number].name);

@@ -11,9 +11,10 @@
    best, along the line, times the length, is taken off. (That is exact for each cell whose bonds
    fix all strains, where the force of a damaged bond is (1 - D) of an intact one's.)
 
-   The core of a crack are neighbouring parts with a bond of more damage than `above` beside them, or
-   a cut through the cell. What opens around it belongs to it as far as bonds are damaged at all, or
-   half of the way to the next core. Where all is whole, or damaged without a core, nothing opens.
+   The core of a crack are neighbouring parts with a bond of more damage than `above` beside them,
+   or a cut through the cell. What opens around it belongs to it as far as bonds are damaged at all,
+   or half of the way to the next core. Where all is whole, or damaged without a core, nothing
+   opens.
 
    Where rigid pieces part the width is their way along the line, to rounding; around a crack of a
    strained body the strain over a cell comes on top. */
@@ -58,8 +59,8 @@ typedef struct crack_line {
   crack *cracks;      /* as many as there can be */
 } crack_line;
 
-/* Between two places; laws of damage are all at work on the body. NULL where some of it lies outside
-   of all cells: the first such place is in outside[3] then. */
+/* Between two places; laws of damage are all at work on the body. NULL where some of it lies
+   outside of all cells: the first such place is in outside[3] then. */
 crack_line *crack_line_new(const body *of, const damage_law *laws, int law_count,
                            const double from[3], const double to[3], double above,
                            double outside[3]);

@@ -519,6 +519,16 @@ static void leave_out_all_faulty(deck *k) {
     if (!deck_groups[kind]->single) leave_out_faulty(k, kind);
 }
 
+/* Lattices have moved up. */
+static void find_anew_what_links_join(deck *k) {
+  for (int n = 0; n < k->lattice_count; n++) {
+    deck_link *link = (deck_link *)&k->lattices[n];
+    if (!deck_lattice_is_link(link)) continue;
+    link->of_bar = deck_find_lattice(k, link->bar);
+    link->of_around = deck_find_lattice(k, link->around);
+  }
+}
+
 const deck *deck_read_what_is_right(arena *a, source_set *sources, int file,
                                     const deck_override *overrides, int override_count,
                                     diagnostics *d) {
@@ -538,6 +548,7 @@ const deck *deck_read_what_is_right(arena *a, source_set *sources, int file,
   if (n->broken || too_many_errors(&r)) k->lacks = ~0u; /* nobody knows what is behind */
   leave_out_all_faulty(k);
   k->names = deck_names_new(a); /* others have moved up */
+  find_anew_what_links_join(k);
   link_regional(a, k);
   list_interactions(a, k);
   return k;

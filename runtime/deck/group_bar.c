@@ -139,7 +139,7 @@ static void warn_of_overlap(deck_reader *r, const deck_bar *item, int dimensions
               "copies of the bar are %.4g mm apart, but %.4g mm thick: they lie in each other, and "
               "do not touch",
               1e3 * apart, 1e3 * item->diameter);
-  diag_hint(r->d, "a `shift` along the bar puts copies onto each other");
+  diag_hint(r->d, "give a longer `shift`, across the bar");
 }
 
 static void check_section(deck_reader *r, const namelist_group *from, deck_bar *item) {
@@ -260,15 +260,18 @@ static void take_quantities(const deck_lattice *bar, const deck_lattice *around,
   item->mass_thickness = around->mass_thickness;
 }
 
+/* What is wrong with what it joins has been said, and the link is left out with it. */
 static void take_around(deck_reader *r, deck_link *item) {
   const deck_lattice *around = &r->k->lattices[item->of_around];
-  take_quantities(&r->k->lattices[item->of_bar], around, item);
+  item->item.faulty = around->item.faulty || r->k->lattices[item->of_bar].item.faulty;
+  if (!item->item.faulty) take_quantities(&r->k->lattices[item->of_bar], around, item);
   if (deck_lattice_is_bar(around) || deck_lattice_is_link(around))
     diag_report(r->d, DIAG_BAD_VALUE, deck_where(&item->item, "lattice"),
                 "`%s` is a %s: a link joins a bar to the lattice around it",
                 deck_shown(r->memory, item->around), deck_lattice_word(around));
-  else if (around->kind && deck_lattice_dimensions(around) !=
-                               deck_lattice_dimensions(&r->k->lattices[item->of_bar]))
+  else if (!item->item.faulty && around->kind &&
+           deck_lattice_dimensions(around) !=
+               deck_lattice_dimensions(&r->k->lattices[item->of_bar]))
     diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "lattice"),
                 "the bar `%s` and the lattice `%s` are not both in the plane, or in space",
                 deck_shown(r->memory, item->bar), deck_shown(r->memory, item->around));

@@ -309,8 +309,10 @@ static bool check_lattice(deck_reader *r, const namelist_group *from, const deck
   if (item->region && item->lattice) deck_refuse_both(r, from, "region", "lattice");
   if (item->lattice) return deck_lattice_known(r, &item->item, item->lattice) && !item->region;
   if (item->region || !is_kind(item, OF_WHOLE) || r->k->lattice_count < 2) return true;
-  diag_report(r->d, DIAG_MISSING_KEY, from->where, "%s needs `region` or `lattice` here",
-              monitor_words[item->kind]);
+  diag_report(r->d, DIAG_MISSING_KEY, from->where, "%s needs %s here", monitor_words[item->kind],
+              is_kind(item, OF_LINK)    ? "the `lattice` that is the link"
+              : is_kind(item, OF_WIDTH) ? "`lattice`"
+                                        : "`region` or `lattice`");
   diag_hint(r->d, "the deck has %d lattices%s", r->k->lattice_count,
             is_kind(item, OF_ENERGY) ? "; the result has the sum over all in `energy/...`" : "");
   return false;

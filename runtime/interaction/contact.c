@@ -458,6 +458,7 @@ contact_overlap contact_overlaps(contact *c, double part) {
     add_overlap(c, &c->pairs[n], c->pairs[n].d, part, &o);
   return o;
 }
+
 double *contact_lost(contact *c, int number, size_t *count) {
   const rows *g = rows_of(&c->sides[number]);
   *count = (size_t)g->directions * (size_t)g->size;

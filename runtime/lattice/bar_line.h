@@ -22,7 +22,8 @@ bool bar_line_chooses(const bar_line *l, int32_t particle);
 /* The next particle of the same copy, or the one before (step -1); at an end itself. */
 int32_t bar_line_beside(const bar_line *l, int32_t particle, int step);
 /* m: half way to the chosen ones on either side, at an end of the bar up to that. A chosen one with
-   `every` or more before it that are left out stands for no more of these than where there is one. */
+   `every` or more before it that are left out stands for no more of these than where there is one.
+   */
 double bar_line_share(const bar_line *l, int32_t particle);
 
 #endif

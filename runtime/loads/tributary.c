@@ -51,11 +51,9 @@ static bool lies_in(const line *l, double s) {
   return in;
 }
 
-enum { MOST_CUTS = 256 };
-
 typedef struct cut_list {
-  double at[MOST_CUTS]; /* parts of the way */
-  int count;
+  double *at; /* parts of the way */
+  int count, room;
 } cut_list;
 
 /* Also as the shape is seen from a little to either side: of a line that runs along an outline the
@@ -68,9 +66,14 @@ static void cut_by(const line *l, const deck_shape *shape, double from, double t
     place_on(l, to, b);
     a[0] -= side * aside * l->along[1], b[0] -= side * aside * l->along[1];
     a[1] += side * aside * l->along[0], b[1] += side * aside * l->along[0];
-    const int room = MOST_CUTS - cuts->count;
-    const int found = shape_cuts(shape, a, b, cuts->at + cuts->count, room);
-    cuts->count += found < room ? found : room;
+    const int found = shape_cuts(shape, a, b, cuts->at + cuts->count, cuts->room - cuts->count);
+    if (cuts->count + found > cuts->room) { /* once more, with room for all */
+      cuts->room = 2 * (cuts->count + found);
+      cuts->at = must_realloc(cuts->at, (size_t)cuts->room * sizeof *cuts->at);
+      side--;
+      continue;
+    }
+    cuts->count += found;
   }
 }
 
@@ -81,9 +84,8 @@ static int ascending(const void *p, const void *q) {
 
 /* m of the line between two places of it. */
 static double length_in(const line *l, double from, double to) {
-  cut_list cuts = {.count = 0};
+  cut_list cuts = {.at = must_alloc(64 * sizeof *cuts.at), .room = 64};
   double sum = 0, before = 0;
-  if (l->in.body_count == 0) return to - from;
   for (int n = 0; n < l->in.body_count; n++)
     cut_by(l, l->in.bodies[n], from, to, &cuts);
   for (int n = 0; n < l->in.notch_count; n++)
@@ -95,6 +97,7 @@ static double length_in(const line *l, double from, double to) {
     if (lies_in(l, middle)) sum += (to - from) * (end - before);
     before = end;
   }
+  free(cuts.at);
   return sum;
 }
 
@@ -161,11 +164,12 @@ static double *places_of(const line *l, long *count) {
   return places;
 }
 
-/* How far what is nearest to particle n of the line goes, by `side` -1 or 1. */
-static double reach(const line *l, const double *places, long count, long n, int side) {
+/* How far what is nearest to particle n of the line goes, by `side` -1 or 1; at an end as far as to
+   the outline, within a spacing, where there is one. */
+static double reach(const double *places, long count, long n, int side, bool outline) {
   const bool ends = n + side < 0 || n + side >= count;
   const double next = fabs(places[ends ? n - side : n + side] - places[n]);
-  return ends && l->in.body_count > 0 ? next : next / 2;
+  return ends && outline ? next : next / 2;
 }
 
 static void share_line(const line *l, const region_sites *at, double *length) {
@@ -177,7 +181,10 @@ static void share_line(const line *l, const region_sites *at, double *length) {
     const double s = along_line(l, here);
     const double *found = bsearch(&s, places, (size_t)count, sizeof *places, ascending);
     const long n = found - places;
-    length[p] = length_in(l, s - reach(l, places, count, n, -1), s + reach(l, places, count, n, 1));
+    const bool inside = lies_in(l, s); /* else of a body without an outline, a point or segment */
+    const double from = s - reach(places, count, n, -1, inside),
+                 to = s + reach(places, count, n, 1, inside);
+    length[p] = inside ? length_in(l, from, to) : to - from;
   }
   free(places);
 }

@@ -19,7 +19,8 @@ double *result_read_reference(result_file *f, long *particles,
                               int *dimensions);              /* [N][2] or [N][3] */
 double *result_read_volume(result_file *f, long *particles); /* [N] m^3 */
 double *result_read_frame_times(result_file *f, long *frames);
-/* Cracks across the line of a monitor: [frames][most][2] place and width, m, NaN beyond the last. */
+/* Cracks across the line of a monitor: [frames][most][2] place and width, m, NaN beyond the last.
+   */
 double *result_read_cracks(result_file *f, const char *monitor, long *frames, long *most,
                            char *error, size_t size);
 /* Numbers, or integers (int32_t), in as many columns as there may be; how many there are goes into

@@ -1,6 +1,6 @@
 /* What is stored in frames, when, and its values in the order of results: particles of all bodies,
-   body by body, bonds of each for themselves, cracks across the lines of monitors. A field of particles that a body does not have is NaN
-   there, a damage 0. */
+   body by body, bonds of each for themselves, cracks across the lines of monitors. A field of
+   particles that a body does not have is NaN there, a damage 0. */
 #ifndef PERILAT_RUNTIME_FRAMES_H
 #define PERILAT_RUNTIME_FRAMES_H
 

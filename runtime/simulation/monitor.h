@@ -1,6 +1,7 @@
 /* What is watched: reactions, displacements, openings, slips, forces of contact, counts of damaged
-   bonds, the law's values on particles, and what watched.h has; their running means, zeros and peaks, and the &stop conditions
-   on them. All values at a sample are of one instant: the state observed (sweep.h).
+   bonds, the law's values on particles, and what watched.h has; their running means, zeros and
+   peaks, and the &stop conditions on them. All values at a sample are of one instant: the state
+   observed (sweep.h).
 
    A value is (mean over the window - value at zero_at, from then on) times scale. The window holds
    the states of the last `average` seconds, the present one included, or all there were so far; of
@@ -65,8 +66,8 @@ typedef struct monitors {
 
 /* False with diagnostics where the deck watches what particles of the laws do not have. */
 bool monitors_check(const deck *k, const run_body *bodies, int count, diagnostics *d);
-/* Of a deck that was checked; bodies and links must stay. NULL with a diagnostic when a mean does not fit
-   into memory. */
+/* Of a deck that was checked; bodies and links must stay. NULL with a diagnostic when a mean does
+   not fit into memory. */
 monitors *monitors_new(const deck *k, const run_body *bodies, int count, const run_link *links,
                        int link_count, double interval, diagnostics *d);
 void monitors_free(monitors *m);

@@ -320,6 +320,14 @@ static span drawn_by(const deck *k, const run_body *of, int32_t site) {
                                                : k->lattices[of->lattice].item.where;
 }
 
+static bool some_contact_has(const deck *k, int first, int second) {
+  for (int n = 0; n < k->contact_count; n++)
+    if (deck_lattice_touches(&k->lattices[first], &k->contacts[n]) &&
+        deck_lattice_touches(&k->lattices[second], &k->contacts[n]))
+      return true;
+  return false;
+}
+
 void run_contacts_warn(const deck *k, const run_body *bodies, diagnostics *d) {
   static const deck_contact all = {.lattice_count = 0};
   run_contact c = {.from = &all};
@@ -337,7 +345,7 @@ void run_contacts_warn(const deck *k, const run_body *bodies, diagnostics *d) {
                   "theirs are nearer than half a spacing, %ld pair%s in all",
                   first->name, second->name, o.pairs, o.pairs == 1 ? "" : "s");
       diag_note(d, drawn_by(k, first, o.site[0]), "the other body");
-      diag_hint(d, k->contact_count > 0
+      diag_hint(d, some_contact_has(k, c.of[o.body[0]], c.of[o.body[1]])
                        ? "a `&contact` keeps them no further apart than they begin"
                        : "no force acts between them: move one, or cut it with a `&notch`");
     }

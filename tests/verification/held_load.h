@@ -72,8 +72,8 @@ static inline bool bears(const char *deck_name, double kN, double held) {
   return bears_with(deck_name, kN, held, (const char *[]){NULL});
 }
 
-/* The peak of a twin by displacement is what the page's row says; at the end at most a part `left` of
-   it is borne. */
+/* The peak of a twin by displacement is what the page's row says; at the end at most a part `left`
+   of it is borne. */
 static inline void carries(const char *deck_name, const char *more, const char *row,
                            const char *form, double left) {
   deck_case c;

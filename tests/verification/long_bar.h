@@ -22,7 +22,8 @@ static inline double bond_line_end(void) {
   return pow(bond_tau_max() / (bond_line * pow(bond_s_1, 0.4)), 1 / 0.6);
 }
 
-/* N: at a slip u of its end, between the line and s_1. F^2 = 2 E A pi d * integral of tau over slip. */
+/* N: at a slip u of its end, between the line and s_1. F^2 = 2 E A pi d * integral of tau over
+   slip. */
 static inline double long_bar_force(double u) {
   const double line = bond_line_end(),
                under = bond_line * line * line / 2 +

@@ -109,8 +109,8 @@ static double damper(double spacing, double velocity) {
   return 2 * 0.05 * mass * sqrt(E / rho) / spacing * 2 * sqrt(2 / (1 - nu)) * velocity;
 }
 
-/* The triangle under the force: half EA eps_t^2 s alpha. In the end nothing but what is `left` of the
-   damper holds. */
+/* The triangle under the force: half EA eps_t^2 s alpha. In the end nothing but what is `left` of
+   the damper holds. */
 static void tears(const char *settings, double spacing, double alpha, double per_area,
                   double left) {
   const double velocity = 1e-3,

@@ -217,6 +217,35 @@ static void a_link_waits_for_what_it_joins(void **state) {
   assert_null(strstr(w->said, "unstable-step"));
 }
 
+/* What is wrong with one of two bars, or the lattice, takes its link with it, and nothing else. */
+static void links_go_with_what_they_join(void **state) {
+  workplace *w = *state;
+  write_text(w, "two.nml",
+             "&simulation end_time = '1 us' /\n"
+             "&lattice name = 'c' kind = 'hexagonal' spacing = '20 mm' thickness = '100 mm' /\n"
+             "&material lattice = 'c' model = 'elastic_micropolar' /\n"
+             "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = '0.4 m', '0.2 m' /\n"
+             "&bar name = 'a' points = '0.1 m', '30 mm', '0.3 m', '30 mm' diameter = '12 mm' "
+             "spacing = '20 mm' /\n"
+             "&material bar = 'a' model = 'steel_bar' /\n"
+             "&link name = 'la' bar = 'a' lattice = 'c' to = 'place' /\n"
+             "&material link = 'la' model = 'bond_slip' /\n"
+             "&bar name = 'b' points = '0.1 m', '0.15 m', '0.3 m', '0.15 m' diameter = '12 mm' "
+             "spacing = '20 mm' /\n"
+             "&material bar = 'b' model = 'steel_bar' /\n"
+             "&link name = 'lb' bar = 'b' lattice = 'c' to = 'place' /\n"
+             "&material link = 'lb' model = 'bond_slip' /\n");
+  expect(w, "check two.nml", 0, "11 particles of b tied to places in c");
+  static const char *const slips[] = {"bar[a].diameter='12 MPa'", "bar[b].diameter='12 MPa'",
+                                      "lattice.spacing='20 MPa'", "bar[a].copies=0"};
+  for (size_t k = 0; k < sizeof slips / sizeof *slips; k++) {
+    char command[128];
+    snprintf(command, sizeof command, "check two.nml --set %s", slips[k]);
+    expect(w, command, 1, "error: ");
+    if (strstr(strstr(w->said, "error: ") + 1, "error: ")) fail_msg("%s", w->said);
+  }
+}
+
 /* In a result each particle stands once: 53 and 10, and bonds of the link join them. */
 static void a_particle_stands_once_in_results(void **state) {
   workplace *w = *state;
@@ -249,6 +278,8 @@ int main(void) {
       cmocka_unit_test_setup_teardown(laws_that_do_not_suit_are_named, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(a_link_waits_for_what_it_joins, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(links_go_with_what_they_join, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(a_particle_stands_once_in_results, set_up_workplace,
                                       tear_down_workplace),

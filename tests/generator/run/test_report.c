@@ -208,8 +208,8 @@ static void maps_of_space_have_axes(void **state) {
   expect(w, "plot block.h5 --map displacement", 0, "written block_displacement.png");
 }
 
-/* Of its particles alone edges are drawn: those of the block around it, which have no stress of that
-   name, are dots. */
+/* Of its particles alone edges are drawn: those of the block around it, which have no stress of
+   that name, are dots. */
 static void bars_in_a_block_are_seen(void **state) {
   workplace *w = *state;
   size_t size;

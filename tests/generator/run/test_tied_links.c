@@ -81,8 +81,8 @@ static void a_linear_bond_holds_as_its_closed_form(void **state) {
   assert_true(error[1] < 0.27 * error[0] && error[2] < 0.27 * error[1]);
 }
 
-/* What monitors say of it: with u(x) = u cosh(lambda (l - x))/cosh(lambda l) the slip, the tension is
-   E A u', in the bond whose middle is there. */
+/* What monitors say of it: with u(x) = u cosh(lambda (l - x))/cosh(lambda l) the slip, the tension
+   is E A u', in the bond whose middle is there. */
 static void slip_and_tension_are_the_closed_form(void **state) {
   (void)state;
   static const double spacings[] = {0.02, 0.01, 0.005};

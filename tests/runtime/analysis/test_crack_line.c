@@ -137,7 +137,8 @@ static double strained_error(double spacing, double strain) {
   return error;
 }
 
-/* Bonds that have failed show no strain: that of their cell is counted, and falls with the spacing. */
+/* Bonds that have failed show no strain: that of their cell is counted, and falls with the spacing.
+   */
 static void the_error_of_a_strained_body_falls_with_the_spacing(void **state) {
   (void)state;
   const double strain = 1e-4, coarse = strained_error(0.01, strain),

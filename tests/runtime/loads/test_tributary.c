@@ -58,6 +58,11 @@ static const row_case cases[] = {
     {"kind = 'chain' spacing = 0.02 area = 1e-4 ",
      BODY "shape = 'rectangle' corner = 0, -0.001 size = 0.41, 0.002 /", BOTTOM, 21, 0.41, 0.01,
      0.02},
+    /* a row of a body without an outline, beside one that has one */
+    {HEXAGON,
+     BODY "shape = 'rectangle' corner = 0, 0.2 size = 0.2, 0.1 / " BODY
+          "shape = 'segment' from = -0.1, 0 to = 0.1, 0 /",
+     BOTTOM, 11, 0.22, 0.02, 0.02},
     /* in space: along an edge of a box, along a row inside */
     {"kind = 'cubic' spacing = 0.02 ", BODY "shape = 'box' corner = 0, 0, 0 size = 0.2, 0.1, 0.1 /",
      FROM_CUBE "0.3, 0.002, 0.002", 11, 0.2, 0.01, 0.01},
