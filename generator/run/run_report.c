@@ -229,8 +229,16 @@ static void announce_particles(const run *r, int lattice) {
          2 * (double)w->bond_count / (double)w->particle_count, w->bond_count);
 }
 
+static bool some_link_joins(const deck *k, int bar, int around) {
+  for (int n = 0; n < k->lattice_count; n++) {
+    const deck_link *link = &k->lattices[n];
+    if (deck_lattice_is_link(link) && link->of_bar == bar && link->of_around == around) return true;
+  }
+  return false;
+}
+
 /* "placing    of 61 particles of bottom 59 lie in concrete, 0 to 5.8 mm from the nearest site, in
-   the mean 2.7 mm" */
+   the mean 2.7 mm; no link joins them" */
 static void announce_placing(const run *r, int lattice) {
   const deck *k = r->deck;
   const rows *bar = simulation_rows(r->simulation, lattice);
@@ -244,6 +252,7 @@ static void announce_placing(const run *r, int lattice) {
     if (p.inside)
       printf(", %.3g to %.3g mm from the nearest %s, in the mean %.3g mm", 1e3 * p.least,
              1e3 * p.most, w->list ? "particle" : "site", 1e3 * p.mean);
+    if (p.inside && !some_link_joins(k, lattice, n)) fputs("; no link joins them", stdout);
     putchar('\n');
   }
 }

@@ -219,7 +219,7 @@ static void the_report_says_what_bars_are(void **state) {
   expect(w, "check bars.nml", 0,
          "  bar        tie: 23 particles, 22 bonds, 220 mm long, area 50.2655 mm^2, spacing 10 mm\n"
          "  placing    of 23 particles of tie 21 lie in plate, 2.68 to 2.68 mm from the nearest "
-         "site, in the mean 2.68 mm\n"
+         "site, in the mean 2.68 mm; no link joins them\n"
          "  law        steel_bar (");
   assert_non_null(strstr(w->said, "): along this bar E = 200 GPa, E A = 10.05 MN\n"));
   assert_non_null(strstr(w->said,
