@@ -77,7 +77,7 @@ static inline double *law_case_value(law_case *c, const char *name) {
   abort();
 }
 
-enum { DECK_CASE_LAWS = 8 };
+enum { DECK_CASE_LAWS = 12 };
 /* A deck read from text or file, and the lattice or the run that it describes. */
 typedef struct deck_case {
   arena *memory;
