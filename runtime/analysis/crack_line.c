@@ -7,55 +7,35 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "runtime/base/eigen.h"
-#include "runtime/lattice/bar_rows.h"
 #include "runtime/lattice/tied.h"
 
 enum { PARTS = 4 /* a spacing */, MOST_SITES = 2 * ROWS_MOST_COPIED, STRAINS = 6 };
 
 /* --- stations --------------------------------------------------------------------------------- */
 
-static void take_station(crack_line *l, const rows *tied, long n) {
-  const rows_copy *there = &tied->copies[2 * n + 1];
-  line_station *s = &l->stations[n];
-  s->count = there->count;
-  for (int k = 0; k < there->count; k++) {
-    s->site[k] = l->of->lattice->particle_site[there->particle[k]];
-    s->weight[k] = there->weight[k];
+static bool take_station(line_station *s, near_particles *near, const double at[3]) {
+  rows_copy cell;
+  if (!tied_cell(near, NULL, NULL, at, &cell)) return false;
+  s->count = cell.count;
+  for (int k = 0; k < cell.count; k++) {
+    s->site[k] = near->body->particle_site[cell.particle[k]];
+    s->weight[k] = cell.weight[k];
   }
+  return true;
 }
 
-/* Of `bar` the first particle that is not tied. */
-static void find_outside(const rows *bar, const rows *tied, double outside[3]) {
-  long n = 0;
-  while (tied && n < tied->bond_count && tied->copies[2 * n].particle[0] == n)
-    n++;
-  rows_place(bar, bar->particle_site[n], outside);
-}
-
-/* Places of the line are tied to cells as those of a bar are. False where some are outside. */
+/* False where some place of the line is in no cell: the first one is in outside[3] then. */
 static bool take_stations(crack_line *l, const double from[3], const double to[3],
                           double outside[3]) {
-  const rows *g = l->of->lattice;
-  rows *bar = bar_rows_between(g->dimensions, from, to, g->spacing / PARTS);
-  const deck_bar drawn = {.name = "", .copies = 1};
-  const deck_link link = {.name = "", .bar = "", .around = "", .every = 1, .spacing = bar->spacing};
-  bar_line along = bar_line_of(&drawn, &link, bar);
-  source_set none = {0};
-  diagnostics unsaid;
-  diag_begin(&unsaid, &none);
-  rows *tied = tied_build(NULL, &link, &along, bar, g, &unsaid);
-  bar_line_end(&along);
-  diag_clear(&unsaid);
-  const bool inside = tied && tied->bond_count == bar->particle_count;
-  if (inside) {
-    l->parts = bar->bond_count;
-    l->stations = must_calloc((size_t)l->parts + 1, sizeof *l->stations);
-    for (long n = 0; n <= l->parts; n++)
-      take_station(l, tied, n);
-  } else
-    find_outside(bar, tied, outside);
-  rows_free(tied);
-  rows_free(bar);
+  near_particles near = tied_near(l->of->lattice);
+  bool inside = true;
+  l->stations = must_calloc((size_t)l->parts + 1, sizeof *l->stations);
+  for (long n = 0; n <= l->parts && inside; n++) {
+    for (int a = 0; a < 3; a++)
+      outside[a] = from[a] + (double)n / (double)l->parts * (to[a] - from[a]);
+    inside = take_station(&l->stations[n], &near, outside);
+  }
+  near_particles_end(&near);
   return inside;
 }
 
@@ -178,7 +158,10 @@ crack_line *crack_line_new(const body *of, const damage_law *laws, int law_count
   crack_line *l = must_calloc(1, sizeof *l);
   const double length = bravais_distance(from, to);
   const rows *g = of->lattice;
-  *l = (crack_line){.of = of, .law_count = law_count, .above = above};
+  *l = (crack_line){.of = of,
+                    .law_count = law_count,
+                    .above = above,
+                    .parts = (long)pl_fmax(1, round(PARTS * length / g->spacing))};
   l->laws = must_calloc((size_t)law_count + 1, sizeof *laws);
   memcpy(l->laws, laws, (size_t)law_count * sizeof *laws);
   memcpy(outside, to, 3 * sizeof *to); /* of what is longer than the body */

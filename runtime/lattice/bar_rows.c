@@ -154,25 +154,11 @@ rows *bar_rows(const deck *k, int lattice, diagnostics *d) {
   return w;
 }
 
-static rows *rows_between(int dimensions, const double from[3], const double to[3], double spacing,
-                          double area) {
-  double ends[6];
-  for (int a = 0; a < dimensions; a++) {
-    ends[a] = from[a];
-    ends[dimensions + a] = to[a];
-  }
-  const polyline p = {dimensions, 2, ends, false};
-  chain c = chain_along(&p, spacing, 1, NULL);
-  rows *w = rows_of(&c, area);
+rows *bar_rows_straight(const rows *like, int particles) {
+  const double ends[6] = {[3] = like->spacing * (particles - 1)}, flat[4] = {[2] = ends[3]};
+  const polyline p = {like->dimensions, 2, like->dimensions == 3 ? ends : flat, false};
+  chain c = chain_along(&p, like->spacing, 1, NULL);
+  rows *w = rows_of(&c, like->area);
   chain_free(&c);
   return w;
-}
-
-rows *bar_rows_between(int dimensions, const double from[3], const double to[3], double spacing) {
-  return rows_between(dimensions, from, to, spacing, 1);
-}
-
-rows *bar_rows_straight(const rows *like, int particles) {
-  const double from[3] = {0, 0, 0}, to[3] = {like->spacing * (particles - 1), 0, 0};
-  return rows_between(like->dimensions, from, to, like->spacing, like->area);
 }

@@ -13,9 +13,6 @@
    message. */
 rows *bar_rows(const deck *k, int lattice, diagnostics *d);
 
-/* A straight row of particles from one place to another, as near to the spacing as can be; NULL
-   without memory. */
-rows *bar_rows_between(int dimensions, const double from[3], const double to[3], double spacing);
 /* A straight bar along x of so many particles, else as `like`; NULL without memory. */
 rows *bar_rows_straight(const rows *like, int particles);
 

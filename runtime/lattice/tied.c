@@ -4,7 +4,6 @@
 #include <stdlib.h>
 
 #include "dsl/base/arena.h"
-#include "runtime/lattice/near_particles.h"
 #include "runtime/lattice/scattered.h"
 #include "runtime/particles/site_marks.h"
 
@@ -74,7 +73,9 @@ static bool weigh(int dimensions, double flat, const near_particle *const corner
 /* Of all cells of nearest sites that hold the place and that no notch goes through, that whose
    corners are the nearest. */
 typedef struct cell_search {
-  const tier *tier;
+  const rows *body;
+  const deck *deck; /* whose notches cut; NULL: none do */
+  const deck_lattice *around;
   const double *place;
   int dimensions, count;
   double flat; /* m^2, m^3: cells that are no larger are none */
@@ -85,17 +86,15 @@ typedef struct cell_search {
 } cell_search;
 
 static bool is_cut(const cell_search *s, const double from[3], const double to[3]) {
-  const tier *t = s->tier;
-  return t->deck && site_notch_between(t->deck, &t->deck->lattices[t->link->of_around], from, to,
-                                       NOTCH_DEPTH * t->body->spacing);
+  return s->deck &&
+         site_notch_between(s->deck, s->around, from, to, NOTCH_DEPTH * s->body->spacing);
 }
 
 /* Between corners that carry something, or between one of them and the place. */
 static bool is_cell_cut(const cell_search *s, const double weight[MOST_CORNERS]) {
   double at[MOST_CORNERS][3];
   for (int k = 0; k <= s->dimensions; k++) {
-    const rows *g = s->tier->body;
-    rows_place(g, g->particle_site[s->corner[k]->particle], at[k]);
+    rows_place(s->body, s->body->particle_site[s->corner[k]->particle], at[k]);
     if (weight[k] <= ROUNDING) continue;
     if (is_cut(s, s->place, at[k])) return true;
     for (int j = 0; j < k; j++)
@@ -148,16 +147,25 @@ static void make_weights_whole(rows_copy *c) {
     c->weight[k] /= sum;
 }
 
-static bool find_cell(tier *t, const double place_of[3], rows_copy *out) {
-  const double edge = t->body->spacing;
-  cell_search s = {.tier = t,
+near_particles tied_near(const rows *body) {
+  return near_particles_of(body, SPACINGS * body->spacing);
+}
+
+bool tied_cell(near_particles *near, const deck *k, const deck_lattice *around,
+               const double place_of[3], rows_copy *out) {
+  const rows *g = near->body;
+  const double edge = g->spacing;
+  cell_search s = {.body = g,
+                   .deck = k,
+                   .around = around,
                    .place = place_of,
-                   .dimensions = t->body->dimensions,
-                   .count = find_nearest(&t->near, place_of),
-                   .flat = 1e-6 * (t->body->dimensions == 2 ? edge * edge : edge * edge * edge),
-                   .nearest = t->near.found,
+                   .dimensions = g->dimensions,
+                   .count = find_nearest(near, place_of),
+                   .flat = 1e-6 * (g->dimensions == 2 ? edge * edge : edge * edge * edge),
+                   .nearest = near->found,
                    .least = INFINITY,
                    .best = out};
+  out->count = 0;
   search_cells(&s, 0, 0);
   if (out->count == 0) return false;
   make_weights_whole(out);
@@ -182,7 +190,7 @@ static void tie(tier *t, int32_t particle) {
             place_of = {.lattice = t->link->of_around};
   double at[3], tangent[3];
   rows_place(t->bar, t->bar->particle_site[particle], at);
-  if (!find_cell(t, at, &place_of)) return;
+  if (!tied_cell(&t->near, t->deck, &t->deck->lattices[t->link->of_around], at, &place_of)) return;
   place_of.at = bar.at = particle;
   place_of.before = bar.before = bar_line_beside(t->line, particle, -1);
   place_of.after = bar.after = bar_line_beside(t->line, particle, 1);
@@ -236,7 +244,7 @@ rows *tied_build(const deck *k, const deck_link *link, const bar_line *line, con
             .line = line,
             .bar = bar,
             .body = body,
-            .near = near_particles_of(body, SPACINGS * body->spacing),
+            .near = tied_near(body),
             .copies = must_calloc(2 * most, sizeof(rows_copy)),
             .pairs = must_calloc(most, sizeof(point_pair))};
   for (int a = 0; a < body->dimensions; a++)

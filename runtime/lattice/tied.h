@@ -20,10 +20,18 @@
 #include "dsl/base/diagnostics.h"
 #include "runtime/deck/deck.h"
 #include "runtime/lattice/bar_line.h"
+#include "runtime/lattice/near_particles.h"
 #include "runtime/lattice/rows.h"
 
-/* Of a link of the deck that joins places (without a deck notches do not count); of the bar and of
-   the lattice around it. NULL after messages at the deck's line. */
+/* A body's particles as tied_cell asks for them; to be ended. */
+near_particles tied_near(const rows *body);
+/* The cell of a body's sites that holds a place: its particles and weights, the heaviest first.
+   Notches of that lattice of the deck cut cells; without a deck none do. False without a cell. */
+bool tied_cell(near_particles *near, const deck *k, const deck_lattice *around,
+               const double place_of[3], rows_copy *out);
+
+/* Of a link of the deck that joins places; of the bar and of the lattice around it. NULL after
+   messages at the deck's line. */
 rows *tied_build(const deck *k, const deck_link *link, const bar_line *line, const rows *bar,
                  const rows *body, diagnostics *d);
 
