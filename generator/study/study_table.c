@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "dsl/base/characters.h"
+#include "dsl/base/digits.h"
 #include "dsl/base/units.h"
 #include "generator/kernel/document.h"
 #include "runtime/base/whole_file.h"
@@ -137,13 +138,13 @@ static void title_of(const study_column *c, char *text, size_t size) {
     snprintf(text, size, "%s [%s]", c->name, c->unit);
 }
 
-static void cell_of(const study_column *c, int row, const char *form, char *text, size_t size) {
-  if (c->texts)
-    snprintf(text, size, "%s", c->texts[row]);
-  else if (isfinite(c->values[row]))
-    snprintf(text, size, form, c->values[row]);
-  else
-    snprintf(text, size, "%s", "");
+/* With six digits, or with all. */
+static void cell_of(const study_column *c, int row, bool whole, char *text, size_t size) {
+  char number[DIGITS_TEXT] = "";
+  if (!c->texts && isfinite(c->values[row]) && whole) fewest_digits(c->values[row], number);
+  if (!c->texts && isfinite(c->values[row]) && !whole)
+    snprintf(number, sizeof number, "%.6g", c->values[row]);
+  snprintf(text, size, "%s", c->texts ? c->texts[row] : number);
 }
 
 enum { CELL = 120 };
@@ -159,13 +160,13 @@ void study_table_print(const study_table *t, FILE *out) {
       title_of(c, cell, sizeof cell);
       width = strlen(cell);
       for (int r = 0; r < t->rows && k + 1 < t->column_count; r++) {
-        cell_of(c, r, "%.6g", cell, sizeof cell);
+        cell_of(c, r, false, cell, sizeof cell);
         width = strlen(cell) > width ? strlen(cell) : width;
       }
       if (row < 0)
         title_of(c, cell, sizeof cell);
       else
-        cell_of(c, row, "%.6g", cell, sizeof cell);
+        cell_of(c, row, false, cell, sizeof cell);
       fprintf(out, c->texts ? " %-*s" : " %*s", (int)width, name_shown(cell));
       fputs(" ", out);
     }
@@ -192,7 +193,7 @@ static void put_rows(const study_table *t, FILE *out) {
       if (row < 0)
         title_of(&t->columns[k], cell, sizeof cell);
       else
-        cell_of(&t->columns[k], row, "%.17g", cell, sizeof cell);
+        cell_of(&t->columns[k], row, true, cell, sizeof cell);
       put_cell(out, cell);
       fputc(k + 1 < t->column_count ? ',' : '\n', out);
     }
