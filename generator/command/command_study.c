@@ -120,7 +120,9 @@ static int study_as_asked(study_request *r) {
   if (!r->json) return files_suit(r) ? study_run(r, NULL) : 1;
   document d;
   document_begin(&d);
-  return document_end(&d, files_suit(r) ? study_run(r, &d.writer) : 1);
+  const int status = files_suit(r) ? study_run(r, &d.writer) : 1;
+  if (r->converge.text) d.error_key = "message"; /* `error` is the error bar */
+  return document_end(&d, status);
 }
 
 int command_study(int argc, char **argv) {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "generator/kernel/document.h"
+#include "generator/study/study_converge.h"
 #include "generator/study/study_publish.h"
 #include "generator/study/study_strength.h"
 
@@ -49,6 +50,15 @@ static const char **column_names(study_request *r, const study_axis *axes, int a
   return shown;
 }
 
+/* Of the key that goes to 0, which is there. */
+static int position_of(const study_request *r, const study_axis *axes) {
+  int at = 0;
+  for (int a = 0; a < r->vary.count; a++)
+    for (int k = 0; k < axes[a].key_count; k++, at++)
+      if (study_key_is(&axes[a].keys[k], r->converge.text)) return at;
+  return 0;
+}
+
 /* What is wrong with the first case is likely wrong with all. */
 static bool check_cases(study_request *r, study_case *cases, int count) {
   for (int k = 0; k < count; k++)
@@ -60,12 +70,14 @@ static int run_crossed(study_request *r, study_pool *pool, json *w) {
   study_outcome o = {.request = r, .x = r->o.x, .y = r->o.y};
   const study_axis *axes = read_axes(r);
   if (!axes || !(o.cases = study_cross(r, axes, r->vary.count, &o.count))) return 1;
+  if (r->converge.text && !study_converge_check(r, axes, r->vary.count)) return 1;
   o.keys = column_names(r, axes, r->vary.count, &o.key_count);
   if (!check_cases(r, o.cases, o.count)) return 1;
   if (!study_folder_open(pool->folder, r->memory, study_name(r))) return 2;
   const int stopped = study_pool_run(pool, o.cases, o.count);
   if (stopped > 0) return tell_stopped(o.cases, o.count, stopped);
   if (stopped < 0 || !study_read_rows(&o) || !study_publish(&o, w)) return 2;
+  if (r->converge.text) return study_converge(&o, position_of(r, axes), w);
   return study_rows_good(&o) == o.count ? 0 : 2;
 }
 

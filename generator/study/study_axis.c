@@ -3,6 +3,7 @@
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
+#include <strings.h>
 
 #include "runtime/deck/namelist.h"
 
@@ -83,6 +84,10 @@ static bool add_value(arena *a, study_key *key, int *count, piece value, diagnos
   key->values = arena_room(a, key->values, *count, sizeof *key->values);
   key->values[(*count)++] = value.text;
   return true;
+}
+
+bool study_key_is(const study_key *key, const char *given) {
+  return strcasecmp(key->name, given) == 0 || strcasecmp(key->shown, given) == 0;
 }
 
 /* --- ranges ----------------------------------------------------------------------------------- */

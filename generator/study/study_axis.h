@@ -36,6 +36,9 @@ typedef struct study_axis {
 /* False after messages. */
 bool study_axis_read(arena *a, const study_text *given, study_axis *axis, diagnostics *d);
 
+/* Given in full, or by its last part, whatever the case. */
+bool study_key_is(const study_key *key, const char *given);
+
 /* A range "group.key = low..high" and its step; the values in SI where they are read as numbers by
    `study_number`. Without a step *step is NULL. *high NULL: the key alone, or one value. */
 typedef struct study_range {

@@ -2,6 +2,7 @@
 
 #include <ctype.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,7 +12,9 @@
 #include "generator/kernel/version.h"
 #include "generator/plan/plan.h"
 #include "generator/run/run.h"
+#include "runtime/analysis/implied.h"
 #include "runtime/deck/deck_read.h"
+#include "runtime/deck/lattice_kind.h"
 #include "runtime/simulation/material.h"
 
 enum { MOST_CASES = 10000, LONGEST_NAME = 120 };
@@ -155,22 +158,37 @@ static uint64_t hash_of_law(uint64_t hash, const model *m) {
   return hash;
 }
 
+static double crack_energy_of(const pl_law *of, const double *values, const deck_lattice *l) {
+  if (of->kind == PL_STATE || deck_lattice_is_irregular(l) || deck_lattice_is_bar(l) ||
+      deck_lattice_is_link(l))
+    return NAN;
+  rows *w = implied_lattice_like(l, material_density(of, values));
+  const double energy = w ? implied_crack_energy(of, values, w, 0) : (double)NAN;
+  if (w) rows_free(w);
+  return energy;
+}
+
 /* What the deck sets in it must be there, in its unit. */
-static bool parameters_fit(model *opened, diagnostics *said) {
+static bool parameters_fit(model *opened, const deck_lattice *l, double *crack_energy,
+                           diagnostics *said) {
   pl_law *kernel = plan_interpreted(opened->plan);
   double *values = must_calloc((size_t)kernel->parameter_count + 1, sizeof *values);
   const bool good = material_parameters(&opened->values, kernel, values, said);
+  *crack_energy = good ? crack_energy_of(kernel, values, l) : (double)NAN;
   free(values);
   plan_interpreted_free(kernel);
   return good;
 }
 
-static bool take_law(const deck *k, const deck_interaction *of, const char *path, uint64_t *hash,
+static bool take_law(const deck *k, int interaction, study_case *c, uint64_t *hash,
                      diagnostics *said) {
+  const deck_interaction *of = &k->interactions[interaction];
+  const deck_lattice *l = &k->lattices[of->lattice];
+  double crack_energy;
   model opened = {.memory = NULL};
-  bool good = of->material &&
-              material_law_open(of->material, &k->lattices[of->lattice], path, &opened, said) &&
-              parameters_fit(&opened, said);
+  const bool good = of->material && material_law_open(of->material, l, c->deck, &opened, said) &&
+                    parameters_fit(&opened, l, &crack_energy, said);
+  if (good && interaction == 0) c->crack_energy = crack_energy;
   if (opened.memory) {
     if (!good) diag_print(&opened.said, stderr);
     *hash = hash_of_law(*hash, &opened);
@@ -196,7 +214,7 @@ static bool identify(arena *memory, study_case *c, source_set *sources, int file
   }
   bool good = true;
   for (int n = 0; n < k->interaction_count && good; n++)
-    good = take_law(k, &k->interactions[n], c->deck, &hash, said);
+    good = take_law(k, n, c, &hash, said);
   c->identity = hash;
   return good;
 }

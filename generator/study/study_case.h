@@ -22,6 +22,9 @@ typedef struct study_case {
   const char **settings; /* [setting_count] all that is set */
   int setting_count;
   uint64_t identity;
+  double
+      crack_energy; /* N/m: what a crack along the rows takes by the law of the first lattice; NaN:
+                          it says nothing of it */
   const char *result, *log; /* paths */
   study_state state;
   int status; /* exit status of its run */
