@@ -154,13 +154,10 @@ static bool add_range(scan *s) {
 }
 
 /* Of the key alone: tenths of the deck's value. */
-static bool add_tenths(scan *s, deck_text *t) {
+static bool add_tenths(scan *s, const char *given) {
   study_request *r = s->request;
-  bool good = true;
   double value = 0;
-  const char *text = value_of(r, t, s->key, &good);
-  if (!good) return false;
-  if (!text || !study_split_number(text, &value, &s->unit) || value == 0) {
+  if (!given || !study_split_number(given, &value, &s->unit) || value == 0) {
     diag_report(&r->said, DIAG_BAD_VALUE, r->strength.where,
                 "the deck gives no value for `%s` to scan around", s->key);
     diag_hint(&r->said, "say which loads: --strength \"%s=10..20:1 kN\"", s->key);
@@ -387,10 +384,13 @@ static bool prepare(scan *s) {
     return false;
   s->key = range.key.name;
   s->unit = "";
-  const bool good = read_times(s, &t) && (range.low ? add_range(s) : add_tenths(s, &t));
+  bool good = true;
+  const char *given = value_of(r, &t, s->key, &good);
+  good = good && read_times(s, &t) && (range.low ? add_range(s) : add_tenths(s, given));
   source_clear(&t.sources);
   if (!good || !r->o.twin) return good;
   s->twin = study_case_of(r, r->o.twin, NULL, NULL, 0);
+  s->twin.twin = true;
   return study_case_check(r, &s->twin);
 }
 

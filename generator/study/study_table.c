@@ -110,7 +110,7 @@ study_table study_table_of(arena *a, const study_row *rows, int count, const cha
     add_histories(a, &t, rows, model);
   }
   add_number(a, &t, rows, "steps", "1", ROW_STEPS, true);
-  add_number(a, &t, rows, "step", "s", ROW_STEP, false);
+  add_number(a, &t, rows, "time step", "s", ROW_STEP, false);
   add_number(a, &t, rows, "wall", "s", ROW_WALL, true);
   study_column *status = add_column(a, &t, "status", "1"), *ended;
   for (int r = 0; r < count; r++)
