@@ -45,7 +45,7 @@ static bool draw(const study_outcome *o, const char *path) {
   char error[2048];
   int count = 0;
   for (int k = 0; k < o->count && count < MOST_CURVES - o->beside_count; k++) {
-    if (!o->rows[k].there) continue;
+    if (!o->rows[k].there || (o->drawn && !o->drawn[k])) continue;
     results[count] = o->cases[k].result;
     labels[count++] = label_of(o, &o->cases[k]);
     x = o->rows[k].x_name;
@@ -74,7 +74,7 @@ bool study_publish(const study_outcome *o, json *w) {
   for (int k = 0; k < o->more_count; k++)
     study_table_add(a, &t, &o->more[k]);
   const bool drawn = study_rows_there(o) > 0;
-  study_table_print(&t, stdout);
+  study_table_print(&t, o->drawn, stdout);
   if (w) study_table_json(&t, "cases", w);
   if (!study_table_csv(&t, csv) || !study_table_hdf5(&t, o->rows, h5) || (drawn && !draw(o, png)))
     return false;

@@ -149,8 +149,9 @@ static void cell_of(const study_column *c, int row, bool whole, char *text, size
 
 enum { CELL = 120 };
 
-void study_table_print(const study_table *t, FILE *out) {
+void study_table_print(const study_table *t, const bool *wanted, FILE *out) {
   for (int row = -1; row < t->rows; row++) {
+    if (row >= 0 && wanted && !wanted[row]) continue;
     fputs(" ", out);
     for (int k = 0; k < t->column_count; k++) {
       const study_column *c = &t->columns[k];
