@@ -12,6 +12,9 @@
 #define RUN_STATUS                                                                                 \
   COMMAND_STATUS ", 130 stopped by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP: with the result so far " \
                  "and a checkpoint"
+#define STUDY_STATUS                                                                               \
+  "0 done, 1 the input is wrong, 2 a run failed or there is no answer, 130 stopped by Ctrl-C, 143 " \
+  "by SIGTERM, 129 by SIGHUP: the same command goes on"
 #define DRIVE_STATUS                                                                               \
   "0 all expectations hold, 1 the input is wrong, 2 an expectation fails or the law gives no "     \
   "number"
@@ -26,6 +29,9 @@
   X(build, "law.plm | deck.nml", "plm nml",                                                        \
     "compile a law to a shared kernel, or a deck to a solver", COMMAND_STATUS)                     \
   X(run, "deck.nml", "nml", "run a deck", RUN_STATUS)                                              \
+  X(study, "deck.nml ...", "nml",                                                                  \
+    "many runs: values crossed, strength, convergence, parameters that fit a curve",               \
+    STUDY_STATUS)                                                                                  \
   X(drive, "[law.plm] path.nml", "plm nml",                                                        \
     "one bond, or one particle of a law of families, along a path: table, picture, expectations",  \
     DRIVE_STATUS)                                                                                  \
@@ -78,6 +84,33 @@
   X(run, "--interpret", "",                                                                        \
     "run on the interpreter: no C compiler, many times slower, the same results")                  \
   X(run, "--no-physics", "", "leave out the checks of mechanics")                                  \
+  X(study, "--vary", "group.key=v1,v2,...",                                                        \
+    "run all of these values; several are crossed; from..to:step counts, and semicolons part "     \
+    "values that have commas")                                                                     \
+  X(study, "--with", "group.key=w1,w2,...",                                                        \
+    "a key that changes together with the --vary before it")                                       \
+  X(study, "--set", "group.key=value", "set a value of the deck in all runs")                      \
+  X(study, "--jobs", "N", "runs at the same time; as many as there are processors if not given")   \
+  X(study, "--threads", "N", "of all runs together")                                               \
+  X(study, "--x", "NAME", "history along x of the curves (time)")                                  \
+  X(study, "--y", "NAME", "history whose curves are drawn and whose peaks count (load)")           \
+  X(study, "--converge", "group.key",                                                              \
+    "where the answer goes as this varied value goes to 0, with order and error bar")              \
+  X(study, "--of", "peak|last", "the answer of --converge: the peak of --y, or its last value")    \
+  X(study, "--strength", "group.key=from..to:step",                                                \
+    "which values of a load that is held are borne; the key alone: around the deck's value")       \
+  X(study, "--watch", "NAME", "the monitor that must not grow while the load is held (deflection)") \
+  X(study, "--twin", "FILE",                                                                       \
+    "of --strength: a deck of the same body that is moved; its peak is told beside")               \
+  X(study, "--fit", "group.key=low..high", "a parameter that is sought between bounds")            \
+  X(study, "--to", "lab.csv", "measured curve that it is fitted to, one for each deck")            \
+  X(study, "--weight", "W", "of a curve, one for each --to (1)")                                   \
+  X(study, "--search", "bobyqa|nelder-mead", "how parameters are sought")                          \
+  X(study, "--runs", "N", "the most points that the search tries (200)")                           \
+  X(study, "-o", "NAME",                                                                           \
+    "folder of the results, and with endings table and picture; DECK_study if not given")          \
+  X(study, "--no-physics", "", "leave out the checks of mechanics")                                \
+  X(study, "--json", "", "what came out, as one JSON document on the standard output")             \
   X(drive, "--set", "key=value",                                                                   \
     "set a parameter or an option of the law, or group.key of the path; may be given several "     \
     "times")                                                                                       \

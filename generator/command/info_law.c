@@ -9,9 +9,9 @@
 
 #include "dsl/semantics/law_reads.h"
 #include "generator/check/physics.h"
-#include "generator/command/law_facts.h"
-#include "generator/command/law_facts_json.h"
-#include "generator/command/law_facts_text.h"
+#include "generator/facts/law_facts.h"
+#include "generator/facts/law_facts_json.h"
+#include "generator/facts/law_facts_text.h"
 #include "generator/interpreter/interpreted.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/material_law.h"

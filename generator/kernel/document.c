@@ -50,7 +50,8 @@ static bool write_out(document *d) {
 }
 
 int document_end(document *d, int status) {
-  json_put_text(&d->writer, "error", *first_error ? first_error : NULL);
+  json_put_text(&d->writer, d->error_key ? d->error_key : "error",
+                *first_error ? first_error : NULL);
   json_document_end(&d->writer);
   const bool good = write_out(d);
   free(d->text);

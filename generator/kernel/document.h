@@ -12,7 +12,8 @@ typedef struct document {
   char *text;
   size_t length;
   FILE *memory;
-  int standard_output; /* where it goes */
+  int standard_output;   /* where it goes */
+  const char *error_key; /* NULL: "error" */
 } document;
 
 void document_begin(document *d);

@@ -221,6 +221,7 @@ static step_status march(run *r, bool *written) {
     char detail[256];
     describe_monitors(r, detail, sizeof detail);
     progress_show(&bar, simulation_progress(r->simulation), detail);
+    if (r->options->fraction) *r->options->fraction = simulation_progress(r->simulation);
     double interval = r->deck->checkpoint.interval;
     if (first_checkpoint && interval > EARLY_CHECKPOINT) interval = EARLY_CHECKPOINT;
     if (interval > 0 && status == STEP_OK && monotonic_seconds() - last_checkpoint > interval) {

@@ -47,6 +47,7 @@ typedef struct run_options {
   bool check_only;   /* `perilat check deck.nml`: everything but the run */
   bool profile;      /* say at the end where the time went */
   bool json;         /* the command is asked for a document; run_deck looks at `report` */
+  double *fraction;  /* NULL, or is told how much of the run is done */
   bool no_physics;   /* leave out the physics checks of the deck's laws */
   diag_json *report; /* NULL, or diagnostics go here: of a check alone; of a run to stderr, too, and
                         how it ended follows them in the document */

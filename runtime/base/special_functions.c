@@ -90,3 +90,26 @@ double special_normal_above(double z) {
   if (fabs(z) < 1) return 0.5 - z * normal_between(z);
   return z < 0 ? 1 - normal_tail(-z) : normal_tail(z);
 }
+
+/* Probability of |t| < sqrt(freedom) tan(angle): Abramowitz and Stegun 1964, 26.7.3 and 26.7.4. */
+static double student_inside(double angle, long freedom) {
+  const double c = pl_cos(angle), odd = (double)(freedom % 2), half_turn = 0x1.921fb54442d18p+1;
+  double term = odd == 1 ? c : 1, sum = freedom > 1 ? term : 0;
+  for (double k = 2 + odd; k <= (double)freedom - 2; k += 2)
+    sum += term *= (k - 1) / k * c * c;
+  sum *= pl_sin(angle);
+  return odd == 1 ? 2 / half_turn * (angle + sum) : sum;
+}
+
+double special_student_quantile(double inside, long freedom) {
+  const long held = freedom > 1000000 ? 1000000 : freedom;
+  double low = 0, high = 0x1.921fb54442d18p+0;
+  for (int k = 0; k < 80; k++) {
+    const double middle = 0.5 * (low + high);
+    if (student_inside(middle, held) < inside)
+      low = middle;
+    else
+      high = middle;
+  }
+  return sqrt((double)held) * pl_tan(low);
+}

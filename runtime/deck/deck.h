@@ -334,6 +334,37 @@ typedef struct deck_simulation {
   int threads;        /* 0: as the machine offers */
 } deck_simulation;
 
+typedef struct deck_texts { /* of a key that takes several */
+  const char **items;
+  int count;
+  const span *where; /* [count] inside the quotes */
+} deck_texts;
+
+/* Many runs of a deck, which `perilat study` does; a run of the deck itself takes no notice. */
+typedef struct deck_study {
+  deck_item item;
+  deck_texts decks; /* files; none: the deck that it stands in */
+  deck_texts vary;  /* "group.key=v1, v2 with group.key=w1, w2" */
+  deck_texts set;   /* "group.key=value", in all runs */
+  const char *x, *y; /* monitors; NULL: time, and load or the first */
+  const char *result; /* what its files are called; NULL: after the file */
+  int jobs;           /* runs at the same time; 0: as many as there are processors */
+  const char *converge; /* key that goes to 0 */
+  const char *of;       /* "peak", "last" */
+  const char *strength; /* "group.key=from..to:step", or the key alone */
+  const char *watch;    /* monitor that says whether a load is borne */
+  const char *twin;     /* deck of the same body by displacement, for its peak */
+  double growth;        /* of that monitor while the load is held: more is a collapse */
+  double limit;         /* m: beyond is a collapse */
+  int longest;          /* hold, in those of the deck */
+  deck_texts fit;       /* "group.key=low..high" */
+  deck_texts to;        /* tables with measured curves, one for each deck */
+  const double *weights;
+  int weight_count;
+  const char *search; /* "bobyqa", "nelder-mead" */
+  int runs;           /* the most that the search may ask for */
+} deck_study;
+
 typedef struct deck_file { /* a table that a load was read from */
   const char *name;        /* as written, without columns */
   int source;              /* its text among the sources */
@@ -367,7 +398,8 @@ typedef struct deck_file { /* a table that a load was read from */
   LIST(monitor)                                                                                    \
   LIST(stop)                                                                                       \
   ONE(output)                                                                                      \
-  ONE(checkpoint)
+  ONE(checkpoint)                                                                                  \
+  ONE(study)
 
 typedef enum deck_group {
 #define X(group) DECK_GROUP_##group,
@@ -381,7 +413,7 @@ typedef struct deck_names deck_names;
 typedef struct deck {
   const char *name;     /* of the source */
   const char *identity; /* text that is equal for decks that compute the same: overrides applied,
-                           without comments, title, number of threads and checkpoints */
+                           without comments, title, number of threads, checkpoints and studies */
   deck_file *files;     /* each once */
   int file_count;
   const deck_interaction *interactions; /* lattice by lattice */

@@ -272,7 +272,7 @@ static void list_files(deck_reader *r, const namelist *n) {
 
 /* What may differ between a run and the run that resumes it. */
 static bool is_no_matter(const char *group, const char *key) {
-  if (strcmp(group, "checkpoint") == 0) return true;
+  if (strcmp(group, "checkpoint") == 0 || strcmp(group, "study") == 0) return true;
   return key && strcmp(group, "simulation") == 0 &&
          (strcasecmp(key, "title") == 0 || strcasecmp(key, "threads") == 0);
 }
@@ -559,4 +559,30 @@ const deck *deck_read(arena *a, source_set *sources, int file, const deck_overri
   const int errors = d->errors;
   const deck *k = deck_read_what_is_right(a, sources, file, overrides, override_count, d);
   return d->errors > errors ? NULL : k;
+}
+
+const deck_study *deck_read_study(arena *a, source_set *sources, int file, bool *whole,
+                                  diagnostics *d) {
+  const int errors = d->errors;
+  const namelist *n = namelist_read(a, sources, file, d);
+  deck *k = arena_alloc(a, sizeof *k);
+  deck_reader r = {.memory = a, .d = d, .k = k, .names_known = true};
+  *whole = false;
+  for (int g = 0; g < n->group_count; g++)
+    *whole |= strcmp(n->groups[g].name, deck_groups[DECK_GROUP_study]->name) != 0;
+  read_one(&r, n, DECK_GROUP_study);
+  return d->errors == errors ? &k->study : NULL;
+}
+
+const char *deck_read_value(arena *a, source_set *sources, int file, const deck_override *overrides,
+                            int override_count, const char *name, diagnostics *d) {
+  namelist *n = namelist_read(a, sources, file, d);
+  deck_present_names(n, &deck_grammar_of_decks, d);
+  deck_set(a, sources, n, &deck_grammar_of_decks, overrides, override_count, d);
+  const namelist_key *key = deck_find_key(a, sources, n, &deck_grammar_of_decks, name, d);
+  if (!key || key->value_count != 1) return NULL;
+  const namelist_value *v = &key->values[0];
+  return v->kind == NAMELIST_TEXT     ? arena_text(a, v->text, strlen(v->text))
+         : v->kind == NAMELIST_NUMBER ? arena_printf(a, "%.17g", v->number)
+                                      : NULL;
 }

@@ -15,4 +15,8 @@ void deck_present_names(namelist *n, const deck_grammar *grammar, diagnostics *d
 void deck_set(arena *a, source_set *sources, namelist *n, const deck_grammar *grammar,
               const deck_override *overrides, int count, diagnostics *d);
 
+/* The key that "group.key" is in an override: NULL when the group has none, or after a message. */
+const namelist_key *deck_find_key(arena *a, source_set *sources, namelist *n,
+                                  const deck_grammar *grammar, const char *name, diagnostics *d);
+
 #endif

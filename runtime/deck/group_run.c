@@ -173,3 +173,154 @@ static const deck_key_info checkpoint_keys[] = {
 };
 
 DECK_ONE(checkpoint, .doc = "State from which a stopped or killed run goes on.");
+
+/* --- many runs -------------------------------------------------------------------------------- */
+
+static const deck_key_info study_keys[] = {
+    {.name = "deck",
+     .type = DECK_NAMES,
+     .fallback = "= the file that this stands in",
+     DECK_AT(study, decks.items),
+     DECK_COUNT_AT(study, decks.count),
+     .doc = "decks that are run, beside this file; several with `fit`"},
+    {.name = "vary",
+     .type = DECK_NAMES,
+     DECK_AT(study, vary.items),
+     DECK_COUNT_AT(study, vary.count),
+     .doc = "keys with their values, which are crossed: `'lattice.spacing = 20, 10, 5 mm'`, from, "
+            "to and step `'drive.velocity = -10..-40:10 mm/s'`, values with commas "
+            "`'lattice.origin = 0, 0; 2.5 mm, 0'`; keys that change together: `'lattice.spacing = "
+            "20, 10 mm with material.S_t = 1e-4, 2e-4'`"},
+    {.name = "set",
+     .type = DECK_NAMES,
+     DECK_AT(study, set.items),
+     DECK_COUNT_AT(study, set.count),
+     .doc = "`'group.key = value'` in all runs"},
+    {.name = "x",
+     .type = DECK_NAME,
+     .fallback = "'time'",
+     DECK_AT(study, x),
+     .doc = "history along x of the curves"},
+    {.name = "y",
+     .type = DECK_NAME,
+     .fallback = "= 'load', or the first monitor",
+     DECK_AT(study, y),
+     .doc = "history whose curves are drawn and whose peaks are listed"},
+    {.name = "result",
+     .type = DECK_NAME,
+     .fallback = "= NAME_study in the working folder",
+     DECK_AT(study, result),
+     .doc = "what its files are called: a folder of results, and with endings table and picture"},
+    {.name = "jobs",
+     .type = DECK_COUNT,
+     .fallback = "0",
+     .most = 1024,
+     DECK_AT(study, jobs),
+     .doc = "runs at the same time; 0: as many as there are processors"},
+    {.name = "converge",
+     .type = DECK_NAME,
+     DECK_AT(study, converge),
+     .doc = "one of the keys that are varied: where does the answer go as its value goes to 0?"},
+    {.name = "of",
+     .type = DECK_WORD,
+     .choices = "peak|last",
+     .fallback = "'peak'",
+     DECK_AT(study, of),
+     .doc = "the answer: the peak of `y`, or its last value"},
+    {.name = "strength",
+     .type = DECK_NAME,
+     DECK_AT(study, strength),
+     .doc = "a load that is held: which values are borne? `'force.per_length = -40..-50:2 kN/m'`; "
+            "the key alone: tenths of the deck's value, then fiftieths between what is borne and "
+            "what is not"},
+    {.name = "watch",
+     .type = DECK_NAME,
+     .fallback = "'deflection'",
+     DECK_AT(study, watch),
+     .doc = "of `strength`: the monitor that must not grow while the load is held"},
+    {.name = "growth",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_POSITIVE,
+     .fallback = "0.05",
+     DECK_AT(study, growth),
+     .doc = "the load is not borne if the monitor is larger by more than this part in the second "
+            "half of the hold than in the first"},
+    {.name = "limit",
+     .type = DECK_REAL,
+     .unit = "m",
+     .bound = BOUND_POSITIVE,
+     .fallback = "'1 m'",
+     DECK_AT(study, limit),
+     .doc = "nor if it passes this"},
+    {.name = "longest",
+     .type = DECK_COUNT,
+     .fallback = "4",
+     .most = 1000,
+     DECK_AT(study, longest),
+     .doc = "a hold whose halves do not agree is doubled, up to so many times that of the deck"},
+    {.name = "twin",
+     .type = DECK_NAME,
+     DECK_AT(study, twin),
+     .doc = "of `strength`: a deck of the same body that is moved, not loaded; its peak of `y` is "
+            "told beside"},
+    {.name = "fit",
+     .type = DECK_NAMES,
+     DECK_AT(study, fit.items),
+     DECK_COUNT_AT(study, fit.count),
+     .doc = "parameters that are sought, with bounds: `'material.S_t = 1e-4..2e-4'`; the search "
+            "begins at the deck's values"},
+    {.name = "to",
+     .type = DECK_NAMES,
+     DECK_AT(study, to.items),
+     DECK_COUNT_AT(study, to.count),
+     .doc = "of `fit`: tables with measured curves, one for each deck: `'lab.csv'` with columns "
+            "named as `x` and `y`, `'lab.csv:cmod,load'`, or a band `'lab.csv:cmod,low,high'`"},
+    {.name = "weight",
+     .type = DECK_REALS,
+     .unit = "1",
+     .bound = BOUND_POSITIVE,
+     .fallback = "= 1 each",
+     DECK_AT(study, weights),
+     DECK_COUNT_AT(study, weight_count),
+     .doc = "of the curves"},
+    {.name = "search",
+     .type = DECK_WORD,
+     .choices = "bobyqa|nelder-mead",
+     .fallback = "'bobyqa'",
+     DECK_AT(study, search),
+     .doc = "how parameters are sought"},
+    {.name = "runs",
+     .type = DECK_COUNT,
+     .fallback = "200",
+     .most = 100000,
+     DECK_AT(study, runs),
+     .doc = "the most points that the search may try"},
+};
+
+/* Where each of the key's texts stands. */
+static void keep_text_places(deck_reader *r, const namelist_group *from, const char *name,
+                             deck_texts *texts) {
+  const namelist_key *key = namelist_find(from, name);
+  if (!key || key->value_count != texts->count) return;
+  span *where = arena_alloc(r->memory, ((size_t)texts->count + 1) * sizeof *where);
+  for (int k = 0; k < texts->count; k++)
+    where[k] = key->values[k].text_where;
+  texts->where = where;
+}
+
+static void check_study(deck_reader *r, const namelist_group *from, void *into) {
+  deck_study *item = into;
+  keep_text_places(r, from, "deck", &item->decks);
+  keep_text_places(r, from, "vary", &item->vary);
+  keep_text_places(r, from, "set", &item->set);
+  keep_text_places(r, from, "fit", &item->fit);
+  keep_text_places(r, from, "to", &item->to);
+  deck_refuse_both(r, from, "converge", "strength");
+  deck_refuse_both(r, from, "converge", "fit");
+  deck_refuse_both(r, from, "strength", "fit");
+}
+
+DECK_ONE(study, .check = check_study,
+         .doc = "Many runs of a deck, which `perilat study` does. It may stand in the deck, or by "
+                "itself in a file that names the deck; a run takes no notice of it.");

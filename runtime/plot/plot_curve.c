@@ -61,7 +61,8 @@ static void range_of(const curve *curves, int count, const plot_curve_options *o
   for (int c = 0; c < count; c++)
     for (long k = 0; k < curves[c].count; k++) {
       double v = of_x ? curves[c].x[k] : curves[c].y[k];
-      if (isfinite(v)) {
+      const bool beyond = !of_x && o->y_most > 0 && fabs(v) > o->y_most;
+      if (isfinite(v) && !beyond) {
         *low = pl_fmin(*low, v);
         *high = pl_fmax(*high, v);
       }

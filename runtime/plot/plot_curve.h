@@ -26,6 +26,7 @@ typedef struct plot_curve_options {
   const char *x_unit, *y_unit; /* shown unit, e.g. "mm", "kN"; NULL: a readable one is chosen */
   const char *title;           /* NULL: the result's title */
   const char *const *labels;   /* legend, one a result; NULL: file names */
+  double y_most; /* SI; larger sizes of curves are beyond the picture; 0: all are within */
   const plot_beside *beside;
   int beside_count;
 } plot_curve_options;

@@ -153,14 +153,24 @@ bool h5_write_list(hid_t file, const char *name, const int64_t *values, int rank
   return write_set(file, name, H5T_STD_I64LE, H5T_NATIVE_INT64, values, rank, shape, false, NULL);
 }
 
-bool h5_write_text(hid_t file, const char *name, const char *text) {
-  hid_t type = text_type(H5T_VARIABLE), space = H5Screate(H5S_SCALAR);
+/* Takes over the space. */
+static bool write_texts(hid_t file, const char *name, const char *const *texts, hid_t space) {
+  hid_t type = text_type(H5T_VARIABLE);
   hid_t set = H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  bool good = set >= 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &text) >= 0;
+  bool good = set >= 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, texts) >= 0;
   if (set >= 0) H5Dclose(set);
   H5Sclose(space);
   H5Tclose(type);
   return good;
+}
+
+bool h5_write_text(hid_t file, const char *name, const char *text) {
+  return write_texts(file, name, &text, H5Screate(H5S_SCALAR));
+}
+
+bool h5_write_texts(hid_t file, const char *name, const char *const *texts, int count) {
+  const hsize_t shape[] = {(hsize_t)count};
+  return write_texts(file, name, texts, H5Screate_simple(1, shape, NULL));
 }
 
 hid_t h5_make_frames(hid_t file, const char *name, int rank, const hsize_t *shape,

@@ -25,6 +25,7 @@ bool h5_write_list(hid_t file, const char *name, const int64_t *values, int rank
                    const hsize_t *shape);
 /* Texts are UTF-8 of variable length, which readers take for text, not for bytes. */
 bool h5_write_text(hid_t file, const char *name, const char *text);
+bool h5_write_texts(hid_t file, const char *name, const char *const *texts, int count);
 bool h5_attribute_text(hid_t object, const char *name, const char *text);
 bool h5_attribute_double(hid_t object, const char *name, double value);
 bool h5_attribute_integer(hid_t object, const char *name, int64_t value);

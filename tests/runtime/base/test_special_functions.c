@@ -117,12 +117,55 @@ static void cosine_of_turns(void **unused) {
   assert_true(special_cosine_of_turns(0.25) == 0 && special_cosine_of_turns(0) == 1);
 }
 
+static void assert_near(double got, double exact, double tolerance) {
+  if (!(fabs(got - exact) <= tolerance)) fail_msg("%.17g, not %.17g", got, exact);
+}
+
+/* Of cos^(freedom - 1) from 0 to `angle`, by Simpson's rule. */
+static long double cosine_power(long double angle, int freedom) {
+  enum { PIECES = 4000 };
+  long double sum = 0;
+  for (int k = 0; k <= PIECES; k++)
+    sum += (k % PIECES == 0 ? 1 : 2 + 2 * (k % 2)) * powl(cosl(angle * k / PIECES), freedom - 1);
+  return sum * angle / (3 * PIECES);
+}
+
+/* Tables (Abramowitz and Stegun 1964, table 26.10) and a quadrature of the density in the angle
+   whose tangent is t/sqrt(freedom); closed forms of 1, 2 and 4 degrees; the normal distribution. */
+static void student_distribution(void **unused) {
+  (void)unused;
+  static const struct {
+    int freedom;
+    double inside, t;
+  } known[] = {{3, 0.95, 3.182},  {5, 0.95, 2.571},  {10, 0.95, 2.228},
+               {30, 0.99, 2.750}, {60, 0.95, 2.000}, {120, 0.9, 1.658}};
+  for (size_t k = 0; k < sizeof known / sizeof *known; k++) {
+    const int freedom = known[k].freedom;
+    const double t = special_student_quantile(known[k].inside, freedom);
+    const long double part = cosine_power(atanl((long double)t / sqrtl(freedom)), freedom);
+    assert_near(t, known[k].t, 5e-4);
+    assert_near((double)(part / cosine_power(acosl(0), freedom)), known[k].inside, 1e-13);
+  }
+  for (double inside = 0.01; inside < 0.999; inside += 0.01) {
+    const double cauchy = tan(acos(-1) * inside / 2);
+    const double two = inside * sqrt(2 / (1 - inside * inside));
+    const double t = special_student_quantile(inside, 4), w = 4 + t * t;
+    assert_near(special_student_quantile(inside, 1) / cauchy, 1, 1e-12);
+    assert_near(special_student_quantile(inside, 2) / two, 1, 1e-12);
+    assert_near(t * (w + 2) / (w * sqrt(w)), inside, 1e-13);
+  }
+  const double normal = special_student_quantile(0.95, 1000000);
+  assert_near(normal, 1.959963984540054, 4e-6);
+  assert_true(special_student_quantile(0.95, 5000000000L) == normal);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(exponential_and_logarithm_near_their_zeros),
       cmocka_unit_test(gamma_function),
       cmocka_unit_test(normal_distribution),
       cmocka_unit_test(cosine_of_turns),
+      cmocka_unit_test(student_distribution),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

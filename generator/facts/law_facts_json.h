@@ -3,7 +3,7 @@
 #define PERILAT_GENERATOR_LAW_FACTS_JSON_H
 
 #include "dsl/base/json.h"
-#include "generator/command/law_facts.h"
+#include "generator/facts/law_facts.h"
 
 void law_facts_put(json *j, const law_facts *f);
 

@@ -1,4 +1,4 @@
-#include "generator/command/law_facts.h"
+#include "generator/facts/law_facts.h"
 
 #include <stdlib.h>
 

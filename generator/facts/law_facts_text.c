@@ -1,4 +1,4 @@
-#include "generator/command/law_facts_text.h"
+#include "generator/facts/law_facts_text.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,7 @@
 #ifndef PERILAT_GENERATOR_LAW_FACTS_TEXT_H
 #define PERILAT_GENERATOR_LAW_FACTS_TEXT_H
 
-#include "generator/command/law_facts.h"
+#include "generator/facts/law_facts.h"
 
 void law_facts_print(const law_facts *f);
 

@@ -1,4 +1,4 @@
-#include "generator/command/law_facts_json.h"
+#include "generator/facts/law_facts_json.h"
 
 #include <math.h>
 

@@ -1,0 +1,150 @@
+#include "generator/study/study_folder.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "generator/kernel/document.h"
+#include "generator/kernel/model.h"
+#include "generator/run/run_state.h"
+#include "runtime/result/result_read.h"
+
+struct kept_case {
+  uint64_t identity;
+  const char *name;
+};
+
+/* A study of ten thousand runs with long names stays below. */
+#define LIST_LIMIT ((size_t)64 << 20)
+
+/* --- the list --------------------------------------------------------------------------------- */
+
+/* "0123456789abcdef NAME"; a line that was not written whole, or is none, is passed over. */
+static void read_line(study_folder *f, arena *a, const char *line, size_t length) {
+  enum { DIGITS = 16 };
+  struct kept_case one;
+  if (length < DIGITS + 2 || line[DIGITS] != ' ') return;
+  one.name = arena_text(a, line + DIGITS + 1, length - DIGITS - 1);
+  if (sscanf(line, "%16" SCNx64, &one.identity) != 1) return;
+  f->kept = arena_room(a, f->kept, f->kept_count, sizeof *f->kept);
+  f->kept[f->kept_count++] = one;
+}
+
+static bool read_list(study_folder *f, arena *a, const char *path) {
+  char error[1024];
+  size_t length;
+  char *text = read_text_file(path, LIST_LIMIT, &length, error, sizeof error);
+  if (!text) {
+    say_error("%s", error);
+    return false;
+  }
+  for (const char *line = text, *end; (end = strchr(line, '\n')); line = end + 1)
+    read_line(f, a, line, (size_t)(end - line));
+  free(text);
+  return true;
+}
+
+/* Runs of a study that was killed write their checkpoints and end. */
+static bool lock(const study_folder *f) {
+  enum { TRIES = 600, TELL_AT = 20 };
+  for (int k = 0; k < TRIES; k++) {
+    if (flock(f->list, LOCK_EX | LOCK_NB) == 0) return true;
+    if (k == TELL_AT)
+      fprintf(stderr, "waiting for another study, or runs of it, to end in `%s`\n", f->path);
+    nanosleep(&(struct timespec){0, 50000000}, NULL);
+  }
+  say_error("another study is at work in the folder `%s`; let it end, or name this one with -o",
+            f->path);
+  return false;
+}
+
+bool study_folder_open(study_folder *f, arena *a, const char *path) {
+  *f = (study_folder){.path = path, .list = -1};
+  if (mkdir(path, 0777) != 0 && errno != EEXIST) {
+    say_error("cannot make the folder `%s`: %s", path, strerror(errno));
+    return false;
+  }
+  const char *list = arena_printf(a, "%s/cases.txt", path);
+  f->list = open(list, O_RDWR | O_CREAT | O_APPEND, 0666);
+  if (f->list >= 0) return lock(f) && read_list(f, a, list);
+  say_error("cannot write into the folder `%s`: %s", path, strerror(errno));
+  return false;
+}
+
+/* Runs that are still at work keep the lock. */
+void study_folder_close(study_folder *f) {
+  if (f->list >= 0) close(f->list);
+  f->list = -1;
+}
+
+/* --- cases ------------------------------------------------------------------------------------ */
+
+void study_folder_look(study_case *c, int status) {
+  char error[1024];
+  result_file *f =
+      access(c->result, F_OK) == 0 ? result_read(c->result, error, sizeof error) : NULL;
+  c->state = STUDY_FAILED;
+  c->status = status;
+  if (!f) return;
+  const double ended = result_read_number(f, "status");
+  result_read_close(f);
+  if (ended != 0 && ended != RUN_FAILED) return; /* stopped on its way */
+  c->state = STUDY_DONE;
+  c->status = (int)ended;
+}
+
+static const struct kept_case *find_kept(const study_folder *f, const char *name) {
+  for (int k = f->kept_count - 1; k >= 0; k--)
+    if (strcmp(f->kept[k].name, name) == 0) return &f->kept[k];
+  return NULL;
+}
+
+static bool clash(const study_folder *f, const study_case *c, const char *what) {
+  say_error("`%s` holds %s of another deck, law or setting than this study's\n"
+            "  name this one with -o, or move the folder away",
+            f->path, what);
+  (void)c;
+  return false;
+}
+
+/* One after the other, so that what could not be written is no half line of another's. */
+static bool keep(study_folder *f, arena *a, const study_case *c) {
+  char line[1200];
+  const int length = snprintf(line, sizeof line, "%016" PRIx64 " %s\n", c->identity, c->name);
+  if (write(f->list, line, (size_t)length) != length) {
+    const int why = errno;
+    if (write(f->list, "\n", 1) != 1) errno = why;
+    say_error("cannot write into the folder `%s`: %s", f->path, strerror(why ? why : ENOSPC));
+    return false;
+  }
+  f->kept = arena_room(a, f->kept, f->kept_count, sizeof *f->kept);
+  f->kept[f->kept_count++] = (struct kept_case){c->identity, c->name};
+  return true;
+}
+
+bool study_folder_take(study_folder *f, arena *a, study_case *cases, int count) {
+  for (int k = 0; k < count; k++) {
+    const struct kept_case *kept = find_kept(f, cases[k].name);
+    if (kept && kept->identity != cases[k].identity)
+      return clash(f, &cases[k], arena_printf(a, "a case `%s`", cases[k].name));
+    if (!kept && access(cases[k].result, F_OK) == 0)
+      return clash(f, &cases[k], arena_printf(a, "a result `%s.h5`", cases[k].name));
+  }
+  errno = 0;
+  for (int k = 0; k < count; k++) {
+    if (find_kept(f, cases[k].name)) {
+      study_folder_look(&cases[k], 0);
+      if (cases[k].state == STUDY_FAILED) cases[k].state = STUDY_WAITING;
+    } else if (!keep(f, a, &cases[k]))
+      return false;
+  }
+  fsync(f->list);
+  return true;
+}

@@ -1,0 +1,240 @@
+#include "generator/study/study_pool.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "generator/kernel/document.h"
+#include "generator/run/progress.h"
+#include "generator/run/run.h"
+#include "generator/run/run_state.h"
+
+/* --- signals ---------------------------------------------------------------------------------- */
+
+static volatile sig_atomic_t stopped_by;
+static void on_stop(int signal_number) {
+  if (!stopped_by) stopped_by = signal_number;
+}
+
+static const int stopping_signals[] = {SIGINT, SIGTERM, SIGHUP};
+enum { STOPPING_SIGNALS = sizeof stopping_signals / sizeof *stopping_signals };
+
+static void catch_signals(struct sigaction before[STOPPING_SIGNALS]) {
+  stopped_by = 0;
+  for (int k = 0; k < STOPPING_SIGNALS; k++) {
+    struct sigaction action = {.sa_handler = on_stop};
+    sigaction(stopping_signals[k], NULL, &before[k]);
+    if (before[k].sa_handler != SIG_IGN) sigaction(stopping_signals[k], &action, NULL);
+  }
+}
+
+static void release_signals(const struct sigaction before[STOPPING_SIGNALS]) {
+  for (int k = 0; k < STOPPING_SIGNALS; k++)
+    sigaction(stopping_signals[k], &before[k], NULL);
+}
+
+/* --- one run ---------------------------------------------------------------------------------- */
+
+typedef struct job {
+  pid_t child; /* 0: none */
+  int of;      /* case */
+} job;
+
+typedef struct work {
+  study_pool *pool;
+  study_case *cases;
+  int count, jobs, threads;
+  job *running;      /* [jobs] */
+  double *fractions; /* [count] of the time of each run, which its process writes */
+  bool cannot_start;
+} work;
+
+static int run_again(run_options *o, const study_case *c) {
+  char checkpoint[4200];
+  snprintf(checkpoint, sizeof checkpoint, "%s.checkpoint", c->result);
+  o->resume = access(checkpoint, F_OK) == 0;
+  const int status = run_deck(o);
+  if (!o->resume || status != INPUT_WRONG) return status;
+  o->resume = false; /* what it would go on from is damaged */
+  return run_deck(o);
+}
+
+static void write_to_log(const study_case *c) {
+  const int in = open("/dev/null", O_RDONLY);
+  const int out = open(c->log, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  if (in < 0 || out < 0 || dup2(in, 0) < 0 || dup2(out, 1) < 0 || dup2(out, 2) < 0)
+    _exit(RUN_FAILED);
+}
+
+/* In the process of its own. */
+static void run_case(const work *w, const study_case *c, double *fraction) {
+  deck_override *overrides = must_calloc((size_t)c->setting_count + 1, sizeof *overrides);
+  for (int k = 0; k < c->setting_count; k++)
+    overrides[k].text = c->settings[k];
+  char target[4200];
+  snprintf(target, sizeof target, "output.result=%s", c->result);
+  overrides[c->setting_count].text = target;
+  write_to_log(c);
+  run_options o = {.program = "perilat run",
+                   .deck_path = c->deck,
+                   .overrides = overrides,
+                   .override_count = c->setting_count + 1,
+                   .threads = w->threads,
+                   .no_physics = w->pool->request->no_physics,
+                   .fraction = fraction};
+  const int status = run_again(&o, c);
+  free(overrides);
+  fflush(stdout);
+  fflush(stderr);
+  _exit(status);
+}
+
+static pid_t start(const work *w, int of, const struct sigaction before[STOPPING_SIGNALS]) {
+  fflush(NULL);
+  const pid_t parent = getpid(), child = fork();
+  if (child != 0) return child;
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (getppid() != parent) _exit(RUN_FAILED);
+  release_signals(before);
+  run_case(w, &w->cases[of], &w->fractions[of]);
+  return 0;
+}
+
+/* --- all of them ------------------------------------------------------------------------------ */
+
+static int next_waiting(const work *w, int from) {
+  while (from < w->count && w->cases[from].state != STUDY_WAITING)
+    from++;
+  return from;
+}
+
+/* The next ones, where there is room. */
+static void start_some(work *w, int *next, const struct sigaction before[STOPPING_SIGNALS]) {
+  for (int j = 0; j < w->jobs && !stopped_by && !w->cannot_start; j++) {
+    *next = next_waiting(w, *next);
+    if (w->running[j].child || *next == w->count) continue;
+    const pid_t child = start(w, *next, before);
+    if (child < 0) {
+      say_error("cannot start a run: %s", strerror(errno));
+      w->cannot_start = true;
+      return;
+    }
+    w->running[j] = (job){child, (*next)++};
+    w->pool->started++;
+  }
+}
+
+/* One that has ended; false: none has. */
+static bool collect(work *w) {
+  int status;
+  const pid_t child = waitpid(-1, &status, WNOHANG);
+  if (child <= 0) return false;
+  for (int j = 0; j < w->jobs; j++) {
+    if (w->running[j].child != child) continue;
+    const int of = w->running[j].of,
+              code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    w->running[j].child = 0;
+    w->fractions[of] = 1;
+    study_folder_look(&w->cases[of], code);
+    if (stopped_by && w->cases[of].state == STUDY_FAILED) w->cases[of].state = STUDY_WAITING;
+  }
+  return true;
+}
+
+static int running(const work *w) {
+  int count = 0;
+  for (int j = 0; j < w->jobs; j++)
+    count += w->running[j].child > 0;
+  return count;
+}
+
+static void show(const work *w, progress *bar) {
+  double sum = 0;
+  int done = 0, failed = 0;
+  for (int k = 0; k < w->count; k++) {
+    const study_state state = w->cases[k].state;
+    sum += state == STUDY_WAITING ? w->fractions[k] : 1;
+    done += state == STUDY_DONE;
+    failed += state == STUDY_FAILED;
+  }
+  char detail[200], without[40] = "";
+  if (failed) snprintf(without, sizeof without, ", %d without a result", failed);
+  snprintf(detail, sizeof detail, "%d of %d runs done%s, %d at work", done, w->count, without,
+           running(w));
+  progress_show(bar, sum / w->count, detail);
+}
+
+static void pass_on(const work *w, int signal_number) {
+  for (int j = 0; j < w->jobs; j++)
+    if (w->running[j].child) kill(w->running[j].child, signal_number);
+}
+
+static double fraction_done(const work *w) {
+  int done = 0;
+  for (int k = 0; k < w->count; k++)
+    done += w->cases[k].state != STUDY_WAITING;
+  return (double)done / w->count;
+}
+
+static void go(work *w, const struct sigaction before[STOPPING_SIGNALS]) {
+  progress bar;
+  int next = 0;
+  bool told = false;
+  progress_begin(&bar, fraction_done(w));
+  do {
+    start_some(w, &next, before);
+    if (stopped_by && !told) pass_on(w, stopped_by);
+    told = told || stopped_by;
+    while (collect(w))
+      ;
+    show(w, &bar);
+    if (running(w)) nanosleep(&(struct timespec){0, 5000000}, NULL);
+  } while (running(w) || (!stopped_by && !w->cannot_start && next_waiting(w, next) < w->count));
+  progress_end(&bar);
+}
+
+static int processors(void) {
+  const long online = sysconf(_SC_NPROCESSORS_ONLN);
+  return online > 0 ? (int)online : 1;
+}
+
+int study_pool_jobs(const study_request *r, int count) {
+  const int wanted = r->o.jobs ? r->o.jobs : processors();
+  return wanted < count ? wanted : count > 0 ? count : 1;
+}
+
+int study_pool_run(study_pool *p, study_case *cases, int count) {
+  if (!study_folder_take(p->folder, p->request->memory, cases, count)) return -1;
+  work w = {.pool = p, .cases = cases, .count = count};
+  int waiting = 0;
+  for (int k = 0; k < count; k++)
+    waiting += cases[k].state == STUDY_WAITING;
+  if (waiting == 0) return 0;
+  w.jobs = study_pool_jobs(p->request, waiting);
+  const int threads = p->request->threads ? p->request->threads : processors();
+  w.threads = threads > w.jobs ? threads / w.jobs : 1;
+  w.running = must_calloc((size_t)w.jobs, sizeof *w.running);
+  const size_t bytes = (size_t)count * sizeof *w.fractions;
+  w.fractions = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  int status = -1;
+  if (w.fractions == MAP_FAILED) {
+    say_error("cannot start a run: %s", strerror(errno));
+  } else {
+    struct sigaction before[STOPPING_SIGNALS];
+    catch_signals(before);
+    go(&w, before);
+    release_signals(before);
+    munmap(w.fractions, bytes);
+    status = stopped_by ? stopped_by : w.cannot_start ? -1 : 0;
+  }
+  free(w.running);
+  return status;
+}

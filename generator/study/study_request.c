@@ -1,0 +1,153 @@
+#include "generator/study/study_request.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "generator/kernel/model.h"
+#include "generator/run/run.h"
+#include "runtime/deck/deck_read.h"
+
+void study_request_begin(study_request *r) {
+  *r = (study_request){.memory = arena_new()};
+  diag_begin(&r->said, &r->sources);
+}
+
+void study_request_end(study_request *r) {
+  diag_clear(&r->said);
+  source_clear(&r->sources);
+  arena_free(r->memory);
+}
+
+study_text study_option(study_request *r, const char *option, const char *text) {
+  const int file = source_add(&r->sources, option, text, strlen(text));
+  return (study_text){text, source_whole(&r->sources, file)};
+}
+
+void study_list_add(study_request *r, study_list *list, study_text text) {
+  list->items = arena_room(r->memory, list->items, list->count, sizeof *list->items);
+  list->items[list->count++] = text;
+}
+
+/* --- &study ----------------------------------------------------------------------------------- */
+
+static void take_list(study_request *r, study_list *list, const deck_texts *from) {
+  for (int k = 0; k < from->count; k++)
+    study_list_add(r, list, (study_text){from->items[k], from->where[k]});
+}
+
+/* Files beside the one that names them. */
+static void take_files(study_request *r, study_list *list, const deck_texts *from) {
+  for (int k = 0; k < from->count; k++) {
+    char *path = deck_file_path(r->files[0], from->items[k]);
+    study_list_add(r, list,
+                   (study_text){arena_text(r->memory, path, strlen(path)), from->where[k]});
+    free(path);
+  }
+}
+
+/* Behind the opening quote. */
+static study_text text_of(const deck_study *s, const char *key, const char *text) {
+  span where = deck_where(&s->item, key);
+  where.begin++;
+  return (study_text){text, text ? where : (span){0, 0, 0}};
+}
+
+static void take_group(study_request *r, const deck_study *s) {
+  deck_study *o = &r->o;
+  const bool asked = r->converge.text || r->strength.text || r->fit.count;
+  if (!r->decks.count) take_files(r, &r->decks, &s->decks);
+  if (!r->vary.count) take_list(r, &r->vary, &s->vary);
+  take_list(r, &r->set, &s->set);
+  if (!asked) {
+    r->converge = text_of(s, "converge", s->converge);
+    r->strength = text_of(s, "strength", s->strength);
+    take_list(r, &r->fit, &s->fit);
+  }
+  if (!r->to.count) take_files(r, &r->to, &s->to);
+  if (!o->x) o->x = s->x;
+  if (!o->y) o->y = s->y;
+  if (!o->result) o->result = s->result;
+  if (!o->jobs) o->jobs = s->jobs;
+  if (!o->of) o->of = s->of;
+  if (!o->watch) o->watch = s->watch;
+  if (!o->search) o->search = s->search;
+  if (!o->runs) o->runs = s->runs;
+  if (!o->twin && s->twin) {
+    char *path = deck_file_path(r->files[0], s->twin);
+    o->twin = arena_text(r->memory, path, strlen(path));
+    free(path);
+  }
+  if (!o->weight_count) {
+    o->weights = s->weights;
+    o->weight_count = s->weight_count;
+  }
+  o->growth = s->growth;
+  o->limit = s->limit;
+  o->longest = s->longest;
+}
+
+static const deck_study *read_study(study_request *r, bool *whole) {
+  char error[4096];
+  size_t length;
+  char *text = read_text_file(r->files[0], DECK_LIMIT, &length, error, sizeof error);
+  if (!text) {
+    diag_report(&r->said, DIAG_FILE, (span){0, 0, UINT16_MAX}, "%s", error);
+    return NULL;
+  }
+  const int file = source_add(&r->sources, r->files[0], text, length);
+  free(text);
+  return deck_read_study(r->memory, &r->sources, file, whole, &r->said);
+}
+
+/* --- what goes together ----------------------------------------------------------------------- */
+
+static bool refuse(study_request *r, span where, const char *sentence, const char *hint) {
+  diag_report(&r->said, DIAG_CONFLICT, where, "%s", sentence);
+  diag_hint(&r->said, "%s", hint);
+  return false;
+}
+
+static bool is_sensible(study_request *r) {
+  const bool fits = r->fit.count > 0;
+  const span whole = {0, 0, UINT16_MAX};
+  if (!r->vary.count && !r->strength.text && !fits)
+    return refuse(r, r->converge.text ? r->converge.where : whole, "nothing is varied",
+                  "say what: --vary lattice.spacing=20,10,5 mm; or --strength, --fit");
+  if (r->vary.count && (fits || r->strength.text))
+    return refuse(r, r->vary.items[0].where, "--vary goes with --converge, or stands by itself",
+                  "give it another value for all runs with --set");
+  if (!fits && (r->decks.count > 1))
+    return refuse(r, r->decks.items[1].where, "only --fit takes several decks",
+                  "make a study of each");
+  if (fits && r->to.count != r->decks.count)
+    return refuse(r, r->to.count ? r->to.items[0].where : r->fit.items[0].where,
+                  "--fit needs one measured curve for each deck", "--to lab.csv, as many as decks");
+  if (fits && r->o.weight_count && r->o.weight_count != r->decks.count)
+    return refuse(r, whole, "as many weights as decks are needed", "--weight W, one for each --to");
+  return true;
+}
+
+bool study_request_complete(study_request *r) {
+  bool whole = false;
+  const deck_study *s = read_study(r, &whole);
+  if (!s) return false;
+  const bool names_decks = r->file_count == 1 && s->decks.count > 0;
+  for (int k = 0; k < r->file_count && !names_decks; k++)
+    study_list_add(r, &r->decks, study_option(r, "perilat study", r->files[k]));
+  take_group(r, s);
+  if (!whole && s->decks.count == 0)
+    return refuse(r, s->item.where, "this file holds no deck, and names none",
+                  "&study deck = 'beam.nml' ... /");
+  return is_sensible(r);
+}
+
+const char *study_name(study_request *r) {
+  const char *given = r->o.result ? r->o.result : r->files[0];
+  const char *slash = strrchr(given, '/'), *name = !r->o.result && slash ? slash + 1 : given;
+  const char *base = strrchr(name, '/'), *dot = strrchr(base ? base : name, '.');
+  const size_t length = !r->o.result && dot ? (size_t)(dot - name) : strlen(name);
+  const char *end = "_study";
+  const bool named = r->o.result || (length >= strlen(end) &&
+                                     strncmp(name + length - strlen(end), end, strlen(end)) == 0);
+  return arena_printf(r->memory, "%.*s%s", (int)length, name, named ? "" : end);
+}

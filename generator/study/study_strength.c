@@ -1,0 +1,412 @@
+#include "generator/study/study_strength.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/units.h"
+#include "generator/kernel/document.h"
+#include "generator/kernel/model.h"
+#include "generator/run/run.h"
+#include "generator/study/held_load.h"
+#include "generator/study/study_publish.h"
+#include "runtime/base/quantity.h"
+#include "runtime/deck/deck_read.h"
+
+enum { MOST_LOADS = 1000, TENTHS = 20, PARTS = 5 };
+
+typedef struct load {
+  double value; /* in the unit of the key, with its sign */
+  study_case run;
+  double hold; /* s: of that run */
+  bool judged;
+  bool failed; /* its run has no result */
+  held_load found;
+} load;
+
+typedef struct scan {
+  study_request *request;
+  study_pool *pool;
+  const char *key, *unit; /* "force.per_length", "kN/m" */
+  double held;            /* s: from then on the load is held, */
+  double hold;            /* s: as long in the deck */
+  load *loads;            /* ascending in size */
+  int count;
+  study_case twin; /* where there is one */
+} scan;
+
+/* --- what the deck says ----------------------------------------------------------------------- */
+
+typedef struct deck_text { /* of the deck, to ask it for values */
+  source_set sources;
+  int file;
+  deck_override *overrides;
+  int override_count;
+} deck_text;
+
+static bool open_deck(study_request *r, deck_text *t) {
+  char error[4096];
+  size_t length;
+  char *text = read_text_file(r->decks.items[0].text, DECK_LIMIT, &length, error, sizeof error);
+  *t = (deck_text){.override_count = r->set.count};
+  if (!text) {
+    diag_report(&r->said, DIAG_FILE, r->decks.items[0].where, "%s", error);
+    return false;
+  }
+  t->file = source_add(&t->sources, r->decks.items[0].text, text, length);
+  t->overrides = arena_alloc(r->memory, ((size_t)r->set.count + 1) * sizeof *t->overrides);
+  for (int k = 0; k < r->set.count; k++)
+    t->overrides[k].text = r->set.items[k].text;
+  free(text);
+  return true;
+}
+
+/* NULL where the deck gives none, or after messages, which are printed; *good is kept. */
+static const char *value_of(study_request *r, deck_text *t, const char *name, bool *good) {
+  diagnostics said;
+  diag_begin(&said, &t->sources);
+  const char *value = deck_read_value(r->memory, &t->sources, t->file, t->overrides,
+                                      t->override_count, name, &said);
+  diag_print(&said, stderr);
+  *good = *good && said.errors == 0;
+  diag_clear(&said);
+  return value;
+}
+
+/* s; 0 where the deck gives none. */
+static double time_of(study_request *r, deck_text *t, const char *name, bool *good) {
+  const char *text = value_of(r, t, name, good);
+  double value = 0;
+  return text && quantity_read(text, strlen(text), "s", &value) ? value : 0;
+}
+
+/* "force[1].per_length" and "rise" are "force[1].rise". */
+static const char *beside(study_request *r, const char *key, const char *other) {
+  const char *bracket = strrchr(key, ']'), *dot = strrchr(bracket ? bracket : key, '.');
+  return arena_printf(r->memory, "%.*s.%s", (int)(dot - key), key, other);
+}
+
+/* When the load has grown, and how long it is held. */
+static bool read_times(scan *s, deck_text *t) {
+  study_request *r = s->request;
+  bool good = true;
+  const double end = time_of(r, t, "simulation.end_time", &good);
+  s->held = time_of(r, t, beside(r, s->key, "start"), &good) +
+            time_of(r, t, beside(r, s->key, "rise"), &good);
+  s->hold = end - s->held;
+  if (!good || s->hold > 0) return good;
+  diag_report(&r->said, DIAG_BAD_VALUE, r->strength.where,
+              "the deck ends before the load of `%s` has grown: there is no hold to look at",
+              s->key);
+  diag_hint(&r->said, "a held load has history 'ramp and hold', and an end_time beyond its rise");
+  return false;
+}
+
+/* --- the loads -------------------------------------------------------------------------------- */
+
+static int by_size(const void *a, const void *b) {
+  const double x = fabs(((const load *)a)->value), y = fabs(((const load *)b)->value);
+  return x < y ? -1 : x > y;
+}
+
+static study_case case_of(const scan *s, double value, double hold) {
+  study_request *r = s->request;
+  const char *keys[] = {s->key, "simulation.end_time"};
+  const char *values[] = {study_value_text(r->memory, value, s->unit),
+                          study_value_text(r->memory, 1e3 * (s->held + hold), "ms")};
+  return study_case_of(r, r->decks.items[0].text, keys, values, 2);
+}
+
+static bool is_scanned(const scan *s, double value) {
+  for (int k = 0; k < s->count; k++)
+    if (fabs(s->loads[k].value - value) <= 1e-9 * fabs(value)) return true;
+  return false;
+}
+
+static void add_load(scan *s, double value) {
+  if (is_scanned(s, value)) return;
+  s->loads = arena_room(s->request->memory, s->loads, s->count, sizeof *s->loads);
+  s->loads[s->count++] = (load){.value = value, .hold = s->hold, .run = case_of(s, value, s->hold)};
+  qsort(s->loads, (size_t)s->count, sizeof *s->loads, by_size);
+}
+
+/* from..to:step */
+static bool add_range(scan *s) {
+  study_axis axis;
+  study_request *r = s->request;
+  double value;
+  if (!study_axis_read(r->memory, &r->strength, &axis, &r->said)) return false;
+  if (axis.key_count > 1 || axis.count > MOST_LOADS) {
+    diag_report(&r->said, DIAG_BAD_VALUE, r->strength.where,
+                axis.key_count > 1 ? "a scan of loads has one key" : "these are too many loads");
+    return false;
+  }
+  for (int k = 0; k < axis.count; k++) {
+    if (!study_split_number(axis.keys[0].values[k], &value, &s->unit)) {
+      diag_report(&r->said, DIAG_BAD_VALUE, r->strength.where, "`%s` is no number",
+                  axis.keys[0].values[k]);
+      return false;
+    }
+    add_load(s, value);
+  }
+  return true;
+}
+
+/* Of the key alone: tenths of the deck's value. */
+static bool add_tenths(scan *s, deck_text *t) {
+  study_request *r = s->request;
+  bool good = true;
+  double value = 0;
+  const char *text = value_of(r, t, s->key, &good);
+  if (!good) return false;
+  if (!text || !study_split_number(text, &value, &s->unit) || value == 0) {
+    diag_report(&r->said, DIAG_BAD_VALUE, r->strength.where,
+                "the deck gives no value for `%s` to scan around", s->key);
+    diag_hint(&r->said, "say which loads: --strength \"%s=10..20:1 kN\"", s->key);
+    return false;
+  }
+  for (int k = 1; k <= TENTHS; k++)
+    add_load(s, k * value / 10);
+  return true;
+}
+
+/* --- runs and verdicts ------------------------------------------------------------------------ */
+
+/* The first load that is not borne, as far as is known; `count`: none. */
+static int first_not_borne(const scan *s) {
+  int k = 0;
+  while (k < s->count &&
+         (!s->loads[k].judged || (!s->loads[k].failed && s->loads[k].found.verdict == HELD_BORNE)))
+    k++;
+  return k;
+}
+
+/* Those whose verdict counts and is not known, at most as many as run at the same time. */
+static int next_loads(const scan *s, load **next, int most) {
+  const int limit = first_not_borne(s);
+  int count = 0;
+  for (int k = 0; k < limit && k < s->count && count < most; k++)
+    if (!s->loads[k].judged) next[count++] = &s->loads[k];
+  return count;
+}
+
+/* Twice as long, up to the longest; beyond, what grows on has collapsed. */
+static void prolong(const scan *s, load *l) {
+  if (2 * l->hold > s->request->o.longest * s->hold * (1 + 1e-9)) {
+    l->found.verdict = HELD_COLLAPSED;
+    l->judged = true;
+    return;
+  }
+  l->hold *= 2;
+  l->run = case_of(s, l->value, l->hold);
+}
+
+/* False after a message. */
+static bool judge(const scan *s, load *l) {
+  study_request *r = s->request;
+  study_row row;
+  if (l->run.state != STUDY_DONE || l->run.status != 0) {
+    l->judged = l->failed = true;
+    return true;
+  }
+  if (!study_row_read(r->memory, &l->run, NULL, r->o.watch, &row)) return false;
+  l->found = held_load_judge(row.time, row.y, row.count, s->held, r->o.growth, r->o.limit);
+  l->judged = l->found.verdict != HELD_UNDECIDED;
+  if (!l->judged) prolong(s, l);
+  return true;
+}
+
+/* Runs what is asked for together, and the twin with the first of them. 0, a signal, or -1. */
+static int run_batch(scan *s, load **next, int count) {
+  const int extra = s->request->o.twin && s->twin.state == STUDY_WAITING;
+  study_case *cases =
+      arena_alloc(s->request->memory, ((size_t)(count + extra) + 1) * sizeof *cases);
+  for (int k = 0; k < count; k++) {
+    cases[k] = next[k]->run;
+    if (!study_case_check(s->request, &cases[k])) return -1;
+  }
+  if (extra) cases[count] = s->twin;
+  const int stopped = study_pool_run(s->pool, cases, count + extra);
+  for (int k = 0; k < count; k++)
+    next[k]->run = cases[k];
+  if (extra) s->twin = cases[count];
+  return stopped;
+}
+
+static int scan_loads(scan *s) {
+  load *next[MOST_LOADS];
+  const int most = study_pool_jobs(s->request, MOST_LOADS);
+  for (int count; (count = next_loads(s, next, most)) > 0;) {
+    const int stopped = run_batch(s, next, count);
+    if (stopped) return stopped;
+    for (int k = 0; k < count; k++)
+      if (!judge(s, next[k])) return -1;
+  }
+  return 0;
+}
+
+/* Between what is borne and what is not, where the key alone was given. */
+static int refine(scan *s) {
+  const int first = first_not_borne(s);
+  if (first == s->count) return 0;
+  const double high = s->loads[first].value, low = first ? s->loads[first - 1].value : 0;
+  for (int k = 1; k < PARTS; k++)
+    add_load(s, low + (high - low) * k / PARTS);
+  return scan_loads(s);
+}
+
+/* --- what comes out --------------------------------------------------------------------------- */
+
+static const char *verdict_word(const load *l) {
+  if (!l->judged) return "not needed";
+  if (l->failed) return "no result";
+  return l->found.verdict == HELD_BORNE ? "borne" : "collapsed";
+}
+
+typedef struct strength {
+  bool has_lower, has_upper;
+  double lower, upper; /* sizes, SI */
+  double peak;         /* of the twin, SI of the load; NaN without one */
+  const char *unit;    /* SI */
+} strength;
+
+/* Of the key in SI. */
+static double si_factor(const scan *s, const char **si_unit, arena *a) {
+  unit u = {.factor = 1};
+  const char *bad;
+  size_t length;
+  char text[64];
+  if (*s->unit && !unit_parse(s->unit, strlen(s->unit), &u, &bad, &length)) return 1;
+  dim_unit(u.dim, text, sizeof text);
+  *si_unit = arena_text(a, text, strlen(text));
+  return u.factor;
+}
+
+/* The twin's largest load, as a load of the key: by what a held load amounts to. False after a
+   message. */
+static bool find_peak(const scan *s, double factor, double *peak) {
+  study_request *r = s->request;
+  study_row twin, held;
+  *peak = NAN;
+  if (!r->o.twin || s->twin.state != STUDY_DONE) return true;
+  if (!study_row_read(r->memory, &s->twin, NULL, r->o.y, &twin)) return false;
+  for (int k = 0; k < s->count; k++) {
+    const load *l = &s->loads[k];
+    if (!l->judged || l->failed) continue;
+    if (!study_row_read(r->memory, &l->run, NULL, r->o.y, &held)) return false;
+    const study_history *h = study_row_history(&held, held.y_name);
+    if (h && h->last != 0) *peak = fabs(twin.peak * l->value * factor / h->last);
+    return true;
+  }
+  return true;
+}
+
+static bool conclude(const scan *s, strength *found) {
+  const int first = first_not_borne(s);
+  const double factor = si_factor(s, &found->unit, s->request->memory);
+  found->has_lower = first > 0;
+  found->has_upper = first < s->count && !s->loads[first].failed;
+  if (found->has_lower) found->lower = fabs(s->loads[first - 1].value) * factor;
+  if (found->has_upper) found->upper = fabs(s->loads[first].value) * factor;
+  return find_peak(s, factor, &found->peak);
+}
+
+static void put_end(json *w, const char *name, bool known, double value) {
+  json_key(w, name);
+  if (known)
+    json_number(w, value);
+  else
+    json_null(w);
+}
+
+static void tell(const scan *s, const strength *f, json *w) {
+  const int first = first_not_borne(s);
+  const char *unit_text = s->unit;
+  const double factor = f->has_lower   ? f->lower / fabs(s->loads[first - 1].value)
+                        : f->has_upper ? f->upper / fabs(s->loads[first].value)
+                                       : 1;
+  if (f->has_lower) printf("  bears %.6g %s", f->lower / factor, unit_text);
+  if (f->has_upper)
+    printf("%s %.6g %s", f->has_lower ? ", not" : "  does not bear", f->upper / factor, unit_text);
+  if (!f->has_upper)
+    printf("%s", first < s->count ? "; the next run has no result" : "; no load made it collapse");
+  if (isfinite(f->peak))
+    printf("; moved, not loaded, its peak is %.6g %s", f->peak / factor, unit_text);
+  putchar('\n');
+  if (!w) return;
+  json_put_text(w, "key", s->key);
+  json_put_text(w, "unit", f->unit);
+  put_end(w, "lower", f->has_lower, f->lower);
+  put_end(w, "upper", f->has_upper, f->upper);
+  put_end(w, "peak", isfinite(f->peak), f->peak);
+}
+
+/* Loads that were run, as rows. */
+static bool publish(const scan *s, json *w) {
+  study_request *r = s->request;
+  const char *const keys[] = {study_key_shown(&s->key, 1, 0), "end_time"};
+  study_outcome o = {.request = r, .keys = keys, .key_count = 2, .y = r->o.watch};
+  o.cases = arena_alloc(r->memory, ((size_t)s->count + 1) * sizeof *o.cases);
+  const size_t rows = (size_t)s->count + 1;
+  study_column halves[] = {{.name = "first half", .unit = "m"},
+                           {.name = "second half", .unit = "m"}},
+               verdict = {.name = "verdict", .shown = true};
+  halves[0].values = arena_alloc(r->memory, rows * sizeof(double));
+  halves[1].values = arena_alloc(r->memory, rows * sizeof(double));
+  verdict.texts = arena_alloc(r->memory, rows * sizeof *verdict.texts);
+  for (int k = 0; k < s->count; k++) {
+    const load *l = &s->loads[k];
+    if (!l->judged) continue;
+    halves[0].values[o.count] = l->failed ? NAN : l->found.first;
+    halves[1].values[o.count] = l->failed ? NAN : l->found.second;
+    verdict.texts[o.count] = verdict_word(l);
+    if (!l->failed && l->found.verdict == HELD_BORNE)
+      o.y_most = fmax(o.y_most, 2 * fmax(l->found.first, l->found.second));
+    o.cases[o.count++] = l->run;
+  }
+  const study_column more[] = {halves[0], halves[1], verdict};
+  o.more = more;
+  o.more_count = 3;
+  return study_read_rows(&o) && study_publish(&o, w);
+}
+
+static int tell_stopped(const scan *s, int signal_number) {
+  int judged = 0;
+  for (int k = 0; k < s->count; k++)
+    judged += s->loads[k].judged;
+  printf("stopped as asked: %d loads are judged; the same command goes on from here\n", judged);
+  return 128 + signal_number;
+}
+
+static bool prepare(scan *s) {
+  study_request *r = s->request;
+  deck_text t;
+  study_range range;
+  if (!study_range_read(r->memory, &r->strength, &range, &r->said) || !open_deck(r, &t))
+    return false;
+  s->key = range.key.name;
+  s->unit = "";
+  const bool good = read_times(s, &t) && (range.low ? add_range(s) : add_tenths(s, &t));
+  source_clear(&t.sources);
+  if (!good || !r->o.twin) return good;
+  s->twin = study_case_of(r, r->o.twin, NULL, NULL, 0);
+  return study_case_check(r, &s->twin);
+}
+
+int study_strength(study_request *r, study_pool *pool, json *w) {
+  scan s = {.request = r, .pool = pool};
+  strength found = {.peak = NAN};
+  study_range range;
+  if (!prepare(&s)) return 1;
+  for (int k = 0; k < s.count; k++) /* before anything runs */
+    if (!study_case_check(r, &s.loads[k].run)) return 1;
+  if (!study_folder_open(pool->folder, r->memory, study_name(r))) return 2;
+  int stopped = scan_loads(&s);
+  if (!stopped && study_range_read(r->memory, &r->strength, &range, &r->said) && !range.low)
+    stopped = refine(&s);
+  if (stopped > 0) return tell_stopped(&s, stopped);
+  if (stopped < 0 || !publish(&s, w) || !conclude(&s, &found)) return 2;
+  tell(&s, &found, w);
+  return found.has_lower && found.has_upper ? 0 : 2;
+}
