@@ -10,14 +10,7 @@
 #ifndef PERILAT_GENERATOR_CURVE_GAP_H
 #define PERILAT_GENERATOR_CURVE_GAP_H
 
-#include <stdbool.h>
-
-/* Points in the order in which they were taken; what is no number is left out. low and high are the
-   same where there is no band. */
-typedef struct curve_points {
-  const double *x, *low, *high;
-  long count;
-} curve_points;
+#include "generator/results/first_reach.h"
 
 typedef struct curve_gap {
   double from, to;  /* the common range of x, as the computed curve goes through it */

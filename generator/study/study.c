@@ -6,6 +6,7 @@
 
 #include "generator/kernel/document.h"
 #include "generator/study/study_converge.h"
+#include "generator/study/study_fit.h"
 #include "generator/study/study_publish.h"
 #include "generator/study/study_strength.h"
 
@@ -86,7 +87,9 @@ static int run_crossed(study_request *r, study_pool *pool, json *w) {
 static int run_any(study_request *r, json *w) {
   study_folder folder = {.list = -1};
   study_pool pool = {r, &folder, 0};
-  const int status = r->strength.text ? study_strength(r, &pool, w) : run_crossed(r, &pool, w);
+  const int status = r->strength.text ? study_strength(r, &pool, w)
+                     : r->fit.count   ? study_fit(r, &pool, w)
+                                      : run_crossed(r, &pool, w);
   study_folder_close(&folder);
   return status;
 }

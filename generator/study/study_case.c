@@ -8,6 +8,7 @@
 
 #include "dsl/base/hash.h"
 #include "generator/interpreter/interpreted.h"
+#include "generator/kernel/document.h"
 #include "generator/kernel/material_law.h"
 #include "generator/kernel/version.h"
 #include "generator/plan/plan.h"
@@ -27,8 +28,13 @@ static const char *last_part(const char *key) {
   return dot ? dot + 1 : key;
 }
 
-/* Two keys may have one last part: then both are written whole. */
+/* Two keys may have one last part: then both are written whole. So is one that is called as a
+   column of all tables. */
 const char *study_key_shown(const char *const *keys, int count, int k) {
+  static const char *const taken[] = {"case",   "steps", "time step", "wall",
+                                      "status", "ended", "verdict"};
+  for (size_t t = 0; t < sizeof taken / sizeof *taken; t++)
+    if (strcmp(last_part(keys[k]), taken[t]) == 0) return keys[k];
   for (int other = 0; other < count; other++)
     if (other != k && strcmp(last_part(keys[other]), last_part(keys[k])) == 0) return keys[k];
   return last_part(keys[k]);
@@ -197,9 +203,34 @@ static bool take_law(const deck *k, int interaction, study_case *c, uint64_t *ha
   return good;
 }
 
+/* The energies' last parts are histories, too. */
+static bool is_history(const deck *k, const char *name) {
+  static const char *const energies[] = {"kinetic", "stored", "external", "imbalance"};
+  bool found = !name || strcmp(name, "time") == 0 || strchr(name, '/') ||
+               strncmp(name, "dissipated", strlen("dissipated")) == 0 ||
+               deck_find_monitor(k, name) >= 0;
+  for (size_t e = 0; e < sizeof energies / sizeof *energies; e++)
+    found = found || strcmp(name, energies[e]) == 0;
+  return found;
+}
+
+/* Hours of computing must not end in a curve that is not there. */
+static bool has_curves(const study_request *r, const study_case *c, const deck *k) {
+  const char *const names[] = {r->o.x, r->o.y, r->strength.text && !c->twin ? r->o.watch : NULL};
+  for (size_t n = 0; n < sizeof names / sizeof *names; n++)
+    if (!is_history(k, names[n])) {
+      say_error("`%s` has no monitor `%s`", c->deck, names[n]);
+      for (int m = 0; m < k->monitor_count; m++)
+        fprintf(stderr, "%s`%s`%s", m ? ", " : "  it has ", k->monitors[m].name,
+                m + 1 < k->monitor_count ? "" : "\n");
+      return false;
+    }
+  return true;
+}
+
 /* Of a deck in hand, as it is without the place of its result. */
-static bool identify(arena *memory, study_case *c, source_set *sources, int file,
-                     diagnostics *said) {
+static bool identify(const study_request *r, arena *memory, study_case *c, source_set *sources,
+                     int file, diagnostics *said) {
   deck_override *overrides =
       arena_alloc(memory, ((size_t)c->setting_count + 1) * sizeof *overrides);
   for (int k = 0; k < c->setting_count; k++)
@@ -212,7 +243,7 @@ static bool identify(arena *memory, study_case *c, source_set *sources, int file
     const source *table = &sources->items[k->files[f].source];
     hash = hash_more(hash, table->text, table->length);
   }
-  bool good = true;
+  bool good = has_curves(r, c, k);
   for (int n = 0; n < k->interaction_count && good; n++)
     good = take_law(k, n, c, &hash, said);
   c->identity = hash;
@@ -232,7 +263,7 @@ bool study_case_check(study_request *r, study_case *c) {
   diagnostics said;
   diag_begin(&said, &sources);
   const bool good =
-      identify(memory, c, &sources, source_add(&sources, c->deck, text, length), &said);
+      identify(r, memory, c, &sources, source_add(&sources, c->deck, text, length), &said);
   if (!good) diag_print(&said, stderr);
   diag_clear(&said);
   source_clear(&sources);

@@ -15,8 +15,9 @@ typedef enum study_state {
 } study_state;
 
 typedef struct study_case {
-  const char *name;    /* of its files: "spacing=10mm,E=30GPa" */
-  const char *deck;    /* path */
+  const char *name; /* of its files: "spacing=10mm,E=30GPa" */
+  const char *deck; /* path */
+  bool twin; /* of another motion of the body: it need not have the monitor that is watched */
   const char **values; /* [value_count] what is varied, as the table shows it */
   int value_count;
   const char **settings; /* [setting_count] all that is set */

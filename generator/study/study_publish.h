@@ -14,6 +14,7 @@ typedef struct study_outcome {
   study_row *rows; /* [count] */
   int count;
   const char *x, *y; /* of the picture; NULL: the usual ones */
+  const bool *drawn; /* [count] and printed; NULL: all */
   double y_most;     /* of the picture; 0: all that there is */
   const plot_beside *beside;
   int beside_count;

@@ -6,13 +6,10 @@
 #include <string.h>
 
 #include "dsl/base/units.h"
-#include "generator/kernel/document.h"
-#include "generator/kernel/model.h"
-#include "generator/run/run.h"
 #include "generator/study/held_load.h"
+#include "generator/study/study_deck.h"
 #include "generator/study/study_publish.h"
 #include "runtime/base/quantity.h"
-#include "runtime/deck/deck_read.h"
 
 enum { MOST_LOADS = 1000, TENTHS = 20, PARTS = 5 };
 
@@ -38,45 +35,9 @@ typedef struct scan {
 
 /* --- what the deck says ----------------------------------------------------------------------- */
 
-typedef struct deck_text { /* of the deck, to ask it for values */
-  source_set sources;
-  int file;
-  deck_override *overrides;
-  int override_count;
-} deck_text;
-
-static bool open_deck(study_request *r, deck_text *t) {
-  char error[4096];
-  size_t length;
-  char *text = read_text_file(r->decks.items[0].text, DECK_LIMIT, &length, error, sizeof error);
-  *t = (deck_text){.override_count = r->set.count};
-  if (!text) {
-    diag_report(&r->said, DIAG_FILE, r->decks.items[0].where, "%s", error);
-    return false;
-  }
-  t->file = source_add(&t->sources, r->decks.items[0].text, text, length);
-  t->overrides = arena_alloc(r->memory, ((size_t)r->set.count + 1) * sizeof *t->overrides);
-  for (int k = 0; k < r->set.count; k++)
-    t->overrides[k].text = r->set.items[k].text;
-  free(text);
-  return true;
-}
-
-/* NULL where the deck gives none, or after messages, which are printed; *good is kept. */
-static const char *value_of(study_request *r, deck_text *t, const char *name, bool *good) {
-  diagnostics said;
-  diag_begin(&said, &t->sources);
-  const char *value = deck_read_value(r->memory, &t->sources, t->file, t->overrides,
-                                      t->override_count, name, &said);
-  diag_print(&said, stderr);
-  *good = *good && said.errors == 0;
-  diag_clear(&said);
-  return value;
-}
-
 /* s; 0 where the deck gives none. */
-static double time_of(study_request *r, deck_text *t, const char *name, bool *good) {
-  const char *text = value_of(r, t, name, good);
+static double time_of(study_request *r, const study_deck *t, const char *name, bool *good) {
+  const char *text = study_deck_value(t, r, name, good);
   double value = 0;
   return text && quantity_read(text, strlen(text), "s", &value) ? value : 0;
 }
@@ -88,7 +49,7 @@ static const char *beside(study_request *r, const char *key, const char *other) 
 }
 
 /* When the load has grown, and how long it is held. */
-static bool read_times(scan *s, deck_text *t) {
+static bool read_times(scan *s, const study_deck *t) {
   study_request *r = s->request;
   bool good = true;
   const double end = time_of(r, t, "simulation.end_time", &good);
@@ -154,13 +115,10 @@ static bool add_range(scan *s) {
 }
 
 /* Of the key alone: tenths of the deck's value. */
-static bool add_tenths(scan *s, deck_text *t) {
+static bool add_tenths(scan *s, const char *given) {
   study_request *r = s->request;
-  bool good = true;
   double value = 0;
-  const char *text = value_of(r, t, s->key, &good);
-  if (!good) return false;
-  if (!text || !study_split_number(text, &value, &s->unit) || value == 0) {
+  if (!given || !study_split_number(given, &value, &s->unit) || value == 0) {
     diag_report(&r->said, DIAG_BAD_VALUE, r->strength.where,
                 "the deck gives no value for `%s` to scan around", s->key);
     diag_hint(&r->said, "say which loads: --strength \"%s=10..20:1 kN\"", s->key);
@@ -381,16 +339,20 @@ static int tell_stopped(const scan *s, int signal_number) {
 
 static bool prepare(scan *s) {
   study_request *r = s->request;
-  deck_text t;
+  study_deck t;
   study_range range;
-  if (!study_range_read(r->memory, &r->strength, &range, &r->said) || !open_deck(r, &t))
+  if (!study_range_read(r->memory, &r->strength, &range, &r->said) ||
+      !study_deck_open(&t, r, &r->decks.items[0]))
     return false;
   s->key = range.key.name;
   s->unit = "";
-  const bool good = read_times(s, &t) && (range.low ? add_range(s) : add_tenths(s, &t));
-  source_clear(&t.sources);
+  bool good = true;
+  const char *given = study_deck_value(&t, r, s->key, &good);
+  good = good && read_times(s, &t) && (range.low ? add_range(s) : add_tenths(s, given));
+  study_deck_close(&t);
   if (!good || !r->o.twin) return good;
   s->twin = study_case_of(r, r->o.twin, NULL, NULL, 0);
+  s->twin.twin = true;
   return study_case_check(r, &s->twin);
 }
 

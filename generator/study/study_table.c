@@ -110,7 +110,7 @@ study_table study_table_of(arena *a, const study_row *rows, int count, const cha
     add_histories(a, &t, rows, model);
   }
   add_number(a, &t, rows, "steps", "1", ROW_STEPS, true);
-  add_number(a, &t, rows, "step", "s", ROW_STEP, false);
+  add_number(a, &t, rows, "time step", "s", ROW_STEP, false);
   add_number(a, &t, rows, "wall", "s", ROW_WALL, true);
   study_column *status = add_column(a, &t, "status", "1"), *ended;
   for (int r = 0; r < count; r++)
@@ -149,8 +149,9 @@ static void cell_of(const study_column *c, int row, bool whole, char *text, size
 
 enum { CELL = 120 };
 
-void study_table_print(const study_table *t, FILE *out) {
+void study_table_print(const study_table *t, const bool *wanted, FILE *out) {
   for (int row = -1; row < t->rows; row++) {
+    if (row >= 0 && wanted && !wanted[row]) continue;
     fputs(" ", out);
     for (int k = 0; k < t->column_count; k++) {
       const study_column *c = &t->columns[k];

@@ -21,8 +21,8 @@ typedef struct study_table {
 study_table study_table_of(arena *a, const study_row *rows, int count, const char *const *keys,
                            int key_count);
 void study_table_add(arena *a, study_table *t, const study_column *c);
-/* Prints the columns that people look at. */
-void study_table_print(const study_table *t, FILE *out);
+/* Prints the columns that people look at, of all rows, or of those that are `wanted`. */
+void study_table_print(const study_table *t, const bool *wanted, FILE *out);
 /* Comma-separated values, which appear whole or not at all. False after a message. */
 bool study_table_csv(const study_table *t, const char *path);
 /* The same as /table/NAME, with the curves as /cases/NAME/{x, y, time}. */

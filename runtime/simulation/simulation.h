@@ -12,6 +12,7 @@
 #include <signal.h>
 
 #include "dsl/base/c_linkage.h"
+#include "runtime/analysis/material.h"
 #include "runtime/analysis/step_limit.h"
 #include "runtime/deck/deck.h"
 #include "runtime/kernel.h"
@@ -19,7 +20,6 @@
 #include "runtime/lattice/rows.h"
 #include "runtime/simulation/bad_state.h"
 #include "runtime/simulation/frame_field.h"
-#include "runtime/simulation/material.h"
 #include "runtime/simulation/run_clock.h"
 
 C_LINKAGE_BEGIN

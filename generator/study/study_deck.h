@@ -1,0 +1,22 @@
+/* A study's deck, to be asked for single values: with what is set in all runs, as --set would take
+   them. */
+#ifndef PERILAT_GENERATOR_STUDY_DECK_H
+#define PERILAT_GENERATOR_STUDY_DECK_H
+
+#include "generator/study/study_request.h"
+
+typedef struct study_deck {
+  source_set sources;
+  int file;
+  deck_override *overrides;
+  int override_count;
+} study_deck;
+
+/* False after a message. To be closed in either case. */
+bool study_deck_open(study_deck *t, study_request *r, const study_text *path);
+void study_deck_close(study_deck *t);
+/* "-42 kN/m" of "force.per_length". NULL where the deck gives none, or after messages, which are
+   printed; then *good is false, which else stays. */
+const char *study_deck_value(const study_deck *t, study_request *r, const char *name, bool *good);
+
+#endif

@@ -1,0 +1,256 @@
+/* perilat study: tables against single runs, whatever is stopped, killed, damaged or asked wrong. */
+#define _GNU_SOURCE
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+
+#include "tests/dsl/json_valid.h"
+#include "tests/generator/command_tools.h"
+
+static void write_decks(workplace *w) {
+  write_text(w, "two_study.nml",
+             "! two speeds, two laws\n"
+             "&study  deck = 'beam.nml'  vary = 'drive.velocity = -20, -40 mm/s', 'material.beta = "
+             "0, 0.2'  jobs = 2  /\n");
+}
+
+static int set_up(void **state) {
+  const int failed = set_up_workplace(state);
+  if (!failed) write_decks(*state);
+  return failed;
+}
+
+/* Field number `column` (from 1) of the table's line `line`, names in quotes without commas. */
+static void expect_cell(workplace *w, const char *table, int line, const char *title,
+                        const char *value) {
+  assert_int_equal(shell(w,
+                         "python3 -c \"import csv; r = list(csv.reader(open('%s'))); "
+                         "print(r[%d][r[0].index('%s')])\"",
+                         table, line, title),
+                   0);
+  w->said[strcspn(w->said, "\n")] = 0;
+  assert_string_equal(w->said, value);
+}
+
+/* What the table says of a case is what a run of it says. */
+static void a_row_is_a_run(void **state) {
+  workplace *w = *state;
+  expect(w, "study two_study.nml", 0, "wrote two_study.csv, two_study.h5, two_study.png");
+  assert_true(exists(w, "two_study.png"));
+  expect(w, "run beam.nml --set drive.velocity='-40 mm/s' --set material.beta=0.2", 0, "beam.h5");
+  expect_same_results(w, "beam.h5", "two_study/velocity=-40mm_s,beta=0.2.h5");
+  expect_cell(w, "two_study.csv", 4, "velocity [mm/s]", "-40");
+  expect_cell(w, "two_study.csv", 4, "beta", "0.2");
+  expect_cell(w, "two_study.csv", 4, "status", "0");
+  assert_int_equal(
+      shell(w, "$P export beam.h5 --history load --json | python3 -c \"\n"
+               "import csv, json, sys\n"
+               "load = json.load(sys.stdin)['columns'][1]['values']\n"
+               "r = list(csv.reader(open('two_study.csv')))\n"
+               "print(float(r[4][r[0].index('load peak [N]')]) == max(load, key=abs))\"\n"),
+      0);
+  assert_string_equal(w->said, "True\n");
+}
+
+/* Options and group say the same. */
+static void options_or_group(void **state) {
+  workplace *w = *state;
+  expect(w, "study two_study.nml", 0, "wrote");
+  expect(w,
+         "study beam.nml --vary drive.velocity=-20,-40mm/s --vary material.beta=0,0.2 -o options",
+         0, "wrote options.csv");
+  assert_int_equal(shell(w, "cut -d, -f1-30 two_study.csv | sed 's/,[0-9.e-]*,0,end/,0,end/' > a; "
+                            "sed 's/,[0-9.e-]*,0,end/,0,end/' options.csv > b; cmp a b"),
+                   0);
+}
+
+/* All but the time that runs took. */
+static const char without_wall[] =
+    "python3 -c \"import csv, sys; r = list(csv.reader(open(sys.argv[1]))); k = r[0].index('wall "
+    "[s]'); "
+    "print([c[:k] + c[k+1:] for c in r])\"";
+
+static void start_study(const workplace *w, pid_t *child) {
+  *child = fork();
+  assert_true(*child >= 0);
+  if (*child) return;
+  if (chdir(w->folder) != 0 || !freopen("said_long", "w", stdout) ||
+      dup2(fileno(stdout), fileno(stderr)) < 0)
+    _exit(99);
+  setenv("PERILAT_MODELS", SOURCE_DIR "/models", 1);
+  execl(PERILAT_PROGRAM, "perilat", "study", "long.nml", "--vary",
+        "drive.velocity=-10,-20,-40 mm/s", "--jobs", "2", "-o", "killed", (char *)NULL);
+  _exit(99);
+}
+
+/* Killed again and again, at other moments, it ends with the table of one that was left alone. */
+static void killed_again_and_again(void **state) {
+  workplace *w = *state;
+  enum { KILLS = 12 };
+  write_long_deck(w);
+  expect(w, "study long.nml --vary 'drive.velocity=-10,-20,-40 mm/s' -o alone", 0, "wrote");
+  for (int k = 0; k < KILLS; k++) {
+    pid_t child;
+    start_study(w, &child);
+    for (int wait = 0; wait < 15 * (k + 1); wait++)
+      wait_a_little();
+    kill(child, k % 3 == 2 ? SIGTERM : SIGKILL);
+    end_of(child);
+  }
+  expect(w, "study long.nml --vary 'drive.velocity=-10,-20,-40 mm/s' -o killed", 0, "wrote");
+  assert_int_equal(
+      shell(w, "%s alone.csv > a; %s killed.csv > b; cmp a b", without_wall, without_wall), 0);
+  expect_same_results(w, "alone/velocity=-10mm_s.h5", "killed/velocity=-10mm_s.h5");
+  expect_same_results(w, "alone/velocity=-40mm_s.h5", "killed/velocity=-40mm_s.h5");
+}
+
+static void stopped_by_a_signal(void **state) {
+  workplace *w = *state;
+  pid_t child;
+  write_long_deck(w);
+  start_study(w, &child);
+  for (int k = 0; k < 20000 && !exists(w, "killed/velocity=-10mm_s.h5.frames"); k++)
+    wait_a_little();
+  kill(child, SIGINT);
+  assert_int_equal(end_of(child), 130);
+  assert_int_equal(shell(w, "cat said_long"), 0);
+  assert_non_null(strstr(w->said, "the same command goes on from here"));
+  assert_false(exists(w, "killed.csv"));
+}
+
+/* What is done is not done again. */
+static void gone_on_with(void **state) {
+  workplace *w = *state;
+  expect(w, "study two_study.nml", 0, "wrote");
+  assert_int_equal(shell(w, "stat -c %%y two_study/*.h5 > before; $P study two_study.nml; "
+                            "stat -c %%y two_study/*.h5 | cmp - before"),
+                   0);
+  assert_int_equal(shell(w, "rm 'two_study/velocity=-20mm_s,beta=0.h5'; $P study two_study.nml"),
+                   0);
+  assert_non_null(strstr(w->said, "3 of 4 runs done"));
+  /* widened */
+  expect(w,
+         "study beam.nml --vary 'drive.velocity=-20,-40,-80 mm/s' --vary material.beta=0,0.2 -o "
+         "two_study",
+         0, "4 of 6 runs done");
+}
+
+static void a_run_that_fails_is_a_row(void **state) {
+  workplace *w = *state;
+  expect(w, "study beam.nml --vary drive.region=loader,nowhere -o failed", 1, "nowhere");
+  assert_false(exists(w, "failed"));
+  expect(w, "study beam.nml --vary 'body.size=38.1 mm,12 mm; 1 um,1 um' -o failed", 2,
+         "wrote failed.csv");
+  expect_cell(w, "failed.csv", 1, "status", "0");
+  expect_cell(w, "failed.csv", 2, "status", "1");
+  expect_cell(w, "failed.csv", 2, "load peak [N]", "");
+  expect(w,
+         "study beam.nml --vary 'simulation.step=0.3 us, 20 us' --set output.energy=.false. "
+         "--no-physics -o bad",
+         2, "wrote bad.csv");
+  expect_cell(w, "bad.csv", 2, "status", "1");
+}
+
+static void clashes(void **state) {
+  workplace *w = *state;
+  expect(w, "study two_study.nml", 0, "wrote");
+  assert_int_equal(shell(w, "cp two_study.csv before; sed -i 's/1 ms/2 ms/' beam.nml"), 0);
+  expect(w, "study two_study.nml", 2, "of another deck, law or setting");
+  expect(w, "study two_study.nml --set material.nu=0.1", 2, "name this one with -o");
+  assert_int_equal(shell(w, "cmp two_study.csv before"), 0);
+  expect(w, "study two_study.nml -o other", 0, "wrote other.csv");
+  /* a result that this study has not made */
+  assert_int_equal(shell(w, "mkdir own; cp 'other/velocity=-20mm_s,beta=0.h5' own"), 0);
+  expect(w, "study two_study.nml -o own", 2, "holds a result `velocity=-20mm_s,beta=0.h5`");
+}
+
+/* A law's text is part of what a case is. */
+static void another_law(void **state) {
+  workplace *w = *state;
+  assert_int_equal(shell(w, "cp " SOURCE_DIR "/models/mplm_bilinear.plm own.plm"), 0);
+  expect(w, "study beam.nml --set material.model=./own.plm --vary material.beta=0,0.2 -o law", 0,
+         "wrote");
+  assert_int_equal(shell(w, "echo '! changed' >> own.plm"), 0);
+  expect(w, "study beam.nml --set material.model=./own.plm --vary material.beta=0,0.2 -o law", 2,
+         "another deck, law or setting");
+}
+
+static void damaged_files(void **state) {
+  workplace *w = *state;
+  expect(w, "study two_study.nml", 0, "wrote");
+  assert_int_equal(
+      shell(
+          w,
+          "%s two_study.csv > a; f='two_study/velocity=-20mm_s,beta=0.h5'; truncate -s 3000 "
+          "\"$f\"; "
+          "printf 'half a li' >> two_study/cases.txt; $P study two_study.nml && %s two_study.csv > "
+          "b && cmp a b",
+          without_wall, without_wall),
+      0);
+}
+
+/* A full disk: no run is taken for done, and all is made up for when there is room. */
+static void no_room(void **state) {
+  workplace *w = *state;
+  expect(w, "study two_study.nml -o alone", 0, "wrote");
+  assert_int_equal(shell(w, "(ulimit -f 4; $P study two_study.nml)"), 2);
+  assert_int_equal(
+      shell(w, "$P study two_study.nml && %s two_study.csv > a && %s alone.csv > b && cmp a b",
+            without_wall, without_wall),
+      0);
+  assert_int_equal(shell(w, "touch taken; $P study two_study.nml -o taken"), 2);
+  assert_non_null(strstr(w->said, "cannot write into the folder `taken`"));
+}
+
+static void two_at_once(void **state) {
+  workplace *w = *state;
+  write_long_deck(w);
+  assert_int_equal(
+      shell(w,
+            "$P study long.nml --vary 'drive.velocity=-10,-20 mm/s' -o same > one & sleep 0.3; $P "
+            "study long.nml --vary 'drive.velocity=-10,-20 mm/s' -o same > two; wait; "
+            "diff one two | grep -v wrote | grep -c ended"),
+      1);
+}
+
+static void documents(void **state) {
+  workplace *w = *state;
+  assert_int_equal(shell(w, "$P study two_study.nml --json 2>/dev/null"), 0);
+  assert_true(json_is_valid(w->said));
+  assert_non_null(strstr(w->said, "\"load peak\": "));
+  assert_non_null(strstr(w->said, "\"error\": null"));
+  assert_int_equal(shell(w, "$P study beam.nml --vary nix=1 --json 2>/dev/null"), 1);
+  assert_true(json_is_valid(w->said));
+  assert_non_null(strstr(w->said, "form group.key=values"));
+}
+
+/* The same values with one process and two. */
+static void jobs(void **state) {
+  workplace *w = *state;
+  expect(w, "study two_study.nml --jobs 1 -o one", 0, "wrote");
+  expect(w, "study two_study.nml --jobs 4 -o four", 0, "wrote");
+  assert_int_equal(shell(w, "%s one.csv > a; %s four.csv > b; cmp a b", without_wall, without_wall),
+                   0);
+}
+
+int main(void) {
+#define WITH(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down_workplace)
+  const struct CMUnitTest tests[] = {WITH(a_row_is_a_run),
+                                     WITH(options_or_group),
+                                     WITH(killed_again_and_again),
+                                     WITH(gone_on_with),
+                                     WITH(a_run_that_fails_is_a_row),
+                                     WITH(stopped_by_a_signal),
+                                     WITH(clashes),
+                                     WITH(another_law),
+                                     WITH(damaged_files),
+                                     WITH(no_room),
+                                     WITH(two_at_once),
+                                     WITH(documents),
+                                     WITH(jobs)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
