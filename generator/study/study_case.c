@@ -16,7 +16,7 @@
 #include "runtime/analysis/implied.h"
 #include "runtime/deck/deck_read.h"
 #include "runtime/deck/lattice_kind.h"
-#include "runtime/simulation/material.h"
+#include "runtime/analysis/material.h"
 
 enum { MOST_CASES = 10000, LONGEST_NAME = 120 };
 
