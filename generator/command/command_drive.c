@@ -23,7 +23,7 @@
 #include "generator/kernel/material_law.h"
 #include "generator/kernel/settings.h"
 #include "generator/run/run.h"
-#include "runtime/simulation/material.h"
+#include "runtime/analysis/material.h"
 
 #define PATH_LIMIT_BYTES ((size_t)16 << 20)
 enum { INPUT_WRONG = 1, DRIVE_FAILED = 2, ERROR_LENGTH = 4096 };

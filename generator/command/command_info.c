@@ -15,10 +15,12 @@
 #include "generator/kernel/standard_input.h"
 #include "generator/results/result_table.h"
 #include "generator/run/run.h"
+#include "generator/study/study_request.h"
 #include "runtime/result/result_fields.h"
 #include "runtime/result/result_find.h"
 #include "runtime/result/result_names.h"
 #include "runtime/result/result_read.h"
+#include "runtime/simulation/modes.h"
 
 /* --- --builtins ------------------------------------------------------------------------------- */
 
@@ -264,13 +266,22 @@ static int info_result(const char *path, json *w) {
 typedef struct info_options {
   const char *file;
   info_law_options law;
+  int modes; /* 0: not asked for */
   bool builtins, json;
 } info_options;
 
 static bool asks_about_law(const info_options *o) {
   const info_law_options *l = &o->law;
-  return l->spacing || l->thickness || l->area || l->lattice || l->horizon || l->shells ||
-         l->setting_count;
+  return l->spacing || l->thickness || l->area || l->lattice || l->horizon || l->shells;
+}
+
+static bool read_modes(const char *text, int *modes) {
+  char *end;
+  const long value = strtol(text, &end, 10);
+  *modes = (int)value;
+  if (!*end && end != text && value >= 1 && value <= MODES_MOST) return true;
+  say_error("--modes needs a whole number from 1 to %d, not `%s`", MODES_MOST, text);
+  return false;
 }
 
 static bool read_options(int argc, char **argv, const char **settings, info_options *o) {
@@ -293,6 +304,8 @@ static bool read_options(int argc, char **argv, const char **settings, info_opti
       o->law.horizon = value;
     else if ((value = option_value(argc, argv, &at, "--shells", &bad)))
       o->law.shells = value;
+    else if ((value = option_value(argc, argv, &at, "--modes", &bad)))
+      bad = bad || !read_modes(value, &o->modes);
     else if ((value = option_value(argc, argv, &at, "--set", &bad)))
       settings[o->law.setting_count++] = value;
     else if (is_option_like(argv[at]))
@@ -307,7 +320,7 @@ static bool read_options(int argc, char **argv, const char **settings, info_opti
     return false;
   }
   o->law.settings = settings;
-  if (!bad && o->builtins && (o->json || asks_about_law(o))) {
+  if (!bad && o->builtins && (o->json || o->modes || o->law.setting_count || asks_about_law(o))) {
     say_error("--builtins takes no other option");
     return false;
   }
@@ -323,16 +336,44 @@ static int info_about_law(const info_options *o, json *w) {
   return info_law(&asked);
 }
 
+/* Options that do not go with the file; false after a message. */
+static bool options_fit(const info_options *o, file_kind kind) {
+  const char *what = kind == FILE_DECK ? "deck" : kind == FILE_RESULT ? "result" : "law";
+  const bool is_law = kind != FILE_DECK && kind != FILE_RESULT;
+  const char *why = NULL;
+  if (!is_law && asks_about_law(o))
+    why = "--lattice, --spacing and their like ask about a law";
+  else if (kind == FILE_RESULT && o->law.setting_count)
+    why = "--set is for laws and decks";
+  else if (kind == FILE_DECK && o->json && !o->modes)
+    why = "--json is for laws, results and, with --modes, decks";
+  else if (kind != FILE_DECK && o->modes)
+    why = "--modes is for decks";
+  if (why) say_error("`%s` is a %s; %s", o->file, what, why);
+  return !why;
+}
+
+static int info_deck(const info_options *o, json *w) {
+  const int count = o->law.setting_count;
+  deck_override *overrides = must_calloc((size_t)count + 1, sizeof *overrides);
+  for (int k = 0; k < count; k++)
+    overrides[k].text = o->law.settings[k];
+  diag_json report;
+  if (w) diag_json_begin(&report, w, o->file);
+  const int status = run_deck(&(run_options){.deck_path = o->file,
+                                             .overrides = overrides,
+                                             .override_count = count,
+                                             .modes = o->modes,
+                                             .report = w ? &report : NULL,
+                                             .check_only = true});
+  free(overrides);
+  return status;
+}
+
 /* w: of the document, or NULL. */
 static int info_file(const info_options *o, json *w) {
-  file_kind kind = kind_of_file(o->file);
-  const bool asks_law = asks_about_law(o);
-  if ((asks_law && kind == FILE_RESULT) || ((asks_law || o->json) && kind == FILE_DECK)) {
-    say_error("`%s` is a %s; %s", o->file, kind == FILE_DECK ? "deck" : "result",
-              asks_law ? "--lattice, --spacing, --set and their like ask about a law"
-                       : "--json is for laws and results");
-    return 1;
-  }
+  const file_kind kind = kind_of_file(o->file);
+  if (!options_fit(o, kind)) return 1;
   if (!file_suits(o->file, FILES(LAW) | FILES(DECK) | FILES(RESULT), "perilat info",
                   "a law, a deck or a result"))
     return 1;
@@ -341,9 +382,9 @@ static int info_file(const info_options *o, json *w) {
     return 1;
   }
   if (kind == FILE_RESULT) return info_result(o->file, w);
-  if (kind == FILE_DECK && drive_refuse_path("info", o->file)) return 1;
-  if (kind == FILE_DECK) return run_deck(&(run_options){.deck_path = o->file, .check_only = true});
-  return info_about_law(o, w);
+  if (kind == FILE_DECK && (drive_refuse_path("info", o->file) || study_refuse("info", o->file)))
+    return 1;
+  return kind == FILE_DECK ? info_deck(o, w) : info_about_law(o, w);
 }
 
 static int info_as_asked(const info_options *o) {

@@ -169,8 +169,12 @@
     "neighbours up to so many spacings away; the nearest ones if not given")                       \
   X(info, "--shells", "N", "neighbours of so many shells")                                         \
   X(info, "--set", "name=value",                                                                   \
-    "set a parameter or an option of the law; may be given several times")                         \
-  X(info, "--json", "", "of a law or a result: as one JSON document on the standard output")       \
+    "set a parameter or an option of the law, or group.key of the deck; may be given several "     \
+    "times")                                                                                       \
+  X(info, "--modes", "N",                                                                          \
+    "of a deck: the N lowest frequencies of its bodies as they are held, at most 100")             \
+  X(info, "--json", "",                                                                            \
+    "of a law, a result, or a deck's modes: as one JSON document on the standard output")          \
   X(info, "--builtins", "", "quantities and functions that laws may use; takes no file")           \
   X(explain, "--markdown", "", "as Markdown (default)")                                            \
   X(explain, "--latex", "", "as a LaTeX document")                                                 \

@@ -14,6 +14,7 @@
 #include "generator/run/progress.h"
 #include "generator/run/run_document.h"
 #include "generator/run/run_laws.h"
+#include "generator/run/run_modes.h"
 #include "generator/run/run_profile.h"
 #include "generator/run/run_report.h"
 #include "generator/run/run_result.h"
@@ -365,10 +366,10 @@ int run_deck(const run_options *o) {
   tell_all(&r);
   if (!o->report && !status && !o->check_only)
     diag_print_topics(stderr); /* of these messages, not of the run's */
-  if (o->report && !o->check_only) diag_json_end(o->report, status == 0);
+  if (o->report && (!o->check_only || o->modes)) diag_json_end(o->report, status == 0);
   if (!status) {
     if (!o->report || !o->check_only) announce(&r);
-    status = o->check_only ? 0 : start(&r);
+    status = !o->check_only ? start(&r) : o->modes ? tell_modes(&r) : 0;
   }
   if (o->report && !o->check_only) put_run(o->report->document, &r);
   let_go(&r);

@@ -45,6 +45,7 @@ typedef struct run_options {
   bool interpret;    /* no compiler: run on the interpreter */
   bool check_kernel; /* compare kernel and interpreter on random states first */
   bool check_only;   /* `perilat check deck.nml`: everything but the run */
+  int modes;         /* of `check_only`: so many of the lowest modes are told, too */
   bool profile;      /* say at the end where the time went */
   bool json;         /* the command is asked for a document; run_deck looks at `report` */
   double *fraction;  /* NULL, or is told how much of the run is done */

@@ -1,8 +1,10 @@
 #include "generator/study/study_publish.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "generator/kernel/document.h"
+#include "runtime/result/result_read.h"
 
 enum { MOST_CURVES = 64 };
 
@@ -30,13 +32,55 @@ int study_rows_good(const study_outcome *o) {
 
 /* --- the picture ------------------------------------------------------------------------------ */
 
+static bool is_drawn(const study_outcome *o, int k) {
+  return o->rows[k].there && (!o->drawn || o->drawn[k]);
+}
+
+/* All cases that are drawn have it. */
+static bool is_common(const study_outcome *o, int key) {
+  const char *first = NULL;
+  int drawn = 0;
+  for (int k = 0; k < o->count; k++) {
+    if (!is_drawn(o, k)) continue;
+    const char *value = o->cases[k].values[key];
+    if (first && strcmp(first, value) != 0) return false;
+    first = value;
+    drawn++;
+  }
+  return drawn > 1;
+}
+
+/* With six digits at most. */
+static const char *value_shown(arena *a, const char *value) {
+  double number;
+  const char *symbol_text;
+  if (!study_split_number(value, &number, &symbol_text)) return value;
+  return arena_printf(a, "%.6g%s%s", number, *symbol_text ? " " : "", symbol_text);
+}
+
 /* "spacing = 10 mm, E = 30 GPa" */
 static const char *label_of(const study_outcome *o, const study_case *c) {
-  const char *label = "";
+  arena *a = o->request->memory;
+  const char *label = o->request->decks.count > 1 ? c->deck : "";
+  const char *slash = strrchr(label, '/');
+  label = slash ? slash + 1 : label;
   for (int k = 0; k < c->value_count && k < o->key_count; k++)
-    label = arena_printf(o->request->memory, "%s%s%s = %s", label, k ? ", " : "", o->keys[k],
-                         c->values[k]);
+    if (!is_common(o, k))
+      label = arena_printf(a, "%s%s%s = %s", label, *label ? ", " : "", o->keys[k],
+                           value_shown(a, c->values[k]));
   return *label ? label : c->name;
+}
+
+/* Of the deck, which may tell the value that is varied: "Plain beam" of "Plain beam, 42 kN/m". */
+static const char *title_of(const study_outcome *o, const char *path) {
+  char error[1024];
+  result_file *f = result_read(path, error, sizeof error);
+  if (!f) return "";
+  char *title = result_read_title(f);
+  const char *kept = arena_text(o->request->memory, title, strcspn(title, ",:;"));
+  free(title);
+  result_read_close(f);
+  return kept;
 }
 
 /* False after a message. A study without a result has none. */
@@ -45,7 +89,7 @@ static bool draw(const study_outcome *o, const char *path) {
   char error[2048];
   int count = 0;
   for (int k = 0; k < o->count && count < MOST_CURVES - o->beside_count; k++) {
-    if (!o->rows[k].there || (o->drawn && !o->drawn[k])) continue;
+    if (!is_drawn(o, k)) continue;
     results[count] = o->cases[k].result;
     labels[count++] = label_of(o, &o->cases[k]);
     x = o->rows[k].x_name;
@@ -55,6 +99,7 @@ static bool draw(const study_outcome *o, const char *path) {
                                       .x = x,
                                       .y = y,
                                       .labels = labels,
+                                      .title = count ? title_of(o, results[0]) : NULL,
                                       .y_most = o->y_most,
                                       .beside = o->beside,
                                       .beside_count = o->beside_count};

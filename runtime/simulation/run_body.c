@@ -6,12 +6,12 @@
 #include <strings.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/analysis/material.h"
 #include "runtime/analysis/stability.h"
 #include "runtime/interaction/interaction.h"
 #include "runtime/lattice/lattice.h"
 #include "runtime/lattice/linked.h"
 #include "runtime/simulation/law_fits.h"
-#include "runtime/simulation/material.h"
 #include "runtime/simulation/step_choice.h"
 
 /* --- what fits -------------------------------------------------------------------------------- */

@@ -9,7 +9,7 @@
 #include "generator/kernel/material_law.h"
 #include "generator/run/run.h"
 #include "runtime/deck/deck_read.h"
-#include "runtime/simulation/material.h"
+#include "runtime/analysis/material.h"
 #include "tests/benchmark/measure.h"
 
 void trial_plate_text(char *text, size_t size, double particles, const char *model_name,

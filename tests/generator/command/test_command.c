@@ -72,6 +72,14 @@ static void arguments_are_checked(void **state) {
       {"info splm_elastic --lattice square --horizon 3.015", 0,
        "wave speeds           none: the virgin lattice has no stiffness"},
       {"info --builtins --json", 1, "--builtins takes no other option"},
+      {"info --builtins --modes 1", 1, "--builtins takes no other option"},
+      {"info beam.nml --modes 0", 1, "--modes needs a whole number from 1 to 100, not `0`"},
+      {"info beam.nml --modes 99999999999", 1, "from 1 to 100, not `99999999999`"},
+      {"info beam.nml --modes 2x", 1, "from 1 to 100, not `2x`"},
+      {"info beam.nml --modes 57", 1, "has only 56 modes: 56 components of its particles can move"},
+      {"info beam.nml --modes 56", 0, "the lowest 56; 56 components of particles can move"},
+      {"info beam.nml --modes 1 --set material.E=-1", 1, "`E` = -1 Pa is not in"},
+      {"info mplm_bilinear --modes 1", 1, "--modes is for decks"},
   };
   expect_all(*state, list, COUNT(list));
 }

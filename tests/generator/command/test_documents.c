@@ -189,7 +189,8 @@ static void results_are_told_whole(void **state) {
   assert_true(number_after(at, "last") == load[count - 1]);
   free(load);
   free(text);
-  expect_document(w, "info beam.nml --json", 1, "--json is for laws and results");
+  expect_document(w, "info beam.nml --json", 1,
+                  "--json is for laws, results and, with --modes, decks");
   expect_document(w, "info none.h5 --json", 1, "\"error\": \"cannot read");
 }
 
@@ -303,6 +304,7 @@ static void the_reference_tells_of_every_key(void **state) {
   const char *reference = section_of_reference();
   write_text(w, "lab.csv", "time [ms],load [kN]\n0,0\n1,1\n");
   static const char *const commands[] = {"run beam.nml --json",
+                                         "info beam.nml --modes 2 --json",
                                          "info beam.h5 --json",
                                          "info cohesive --json",
                                          "info mplm_bilinear --json",

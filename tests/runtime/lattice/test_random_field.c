@@ -13,7 +13,7 @@
 #include "runtime/lattice/lattice.h"
 #include "runtime/lattice/parameter_planes.h"
 #include "runtime/lattice/random_field.h"
-#include "runtime/simulation/material.h"
+#include "runtime/analysis/material.h"
 #include "tests/runtime/small_run.h"
 
 /* With a probability of 0.001 the Kolmogorov distance of n values is more than 1.95/sqrt(n), and a

@@ -1,4 +1,4 @@
-#include "runtime/simulation/material.h"
+#include "runtime/analysis/material.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,0 +1,10 @@
+/* The lowest modes of a deck's bodies, told as a table, or in the document. */
+#ifndef PERILAT_GENERATOR_RUN_MODES_H
+#define PERILAT_GENERATOR_RUN_MODES_H
+
+#include "generator/run/run_state.h"
+
+/* As many as the options ask for, of a simulation that has not begun. Returns the exit status. */
+int tell_modes(run *r);
+
+#endif
