@@ -14,6 +14,7 @@
 #include "generator/kernel/toolchain_compiler.h"
 #include "generator/lower/lowered.h"
 #include "generator/run/run.h"
+#include "generator/study/study_request.h"
 #include "generator/target/c_text.h"
 #include "runtime/deck/deck_read.h"
 
@@ -314,7 +315,8 @@ int command_build(int argc, char **argv) {
   }
   const file_kind kind = kind_of_file(path);
   if (!file_suits(path, FILES(LAW) | FILES(DECK), "perilat build", "a law or a deck")) return 1;
-  if (kind == FILE_DECK && drive_refuse_path("build", path)) return 1;
+  if (kind == FILE_DECK && (drive_refuse_path("build", path) || study_refuse("build", path)))
+    return 1;
   if (kind == FILE_DECK && uses) {
     say_error("`--for` says what the kernel of a law is for; a deck says that by its lattices");
     return 1;

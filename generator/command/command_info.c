@@ -15,6 +15,7 @@
 #include "generator/kernel/standard_input.h"
 #include "generator/results/result_table.h"
 #include "generator/run/run.h"
+#include "generator/study/study_request.h"
 #include "runtime/result/result_fields.h"
 #include "runtime/result/result_find.h"
 #include "runtime/result/result_names.h"
@@ -381,7 +382,8 @@ static int info_file(const info_options *o, json *w) {
     return 1;
   }
   if (kind == FILE_RESULT) return info_result(o->file, w);
-  if (kind == FILE_DECK && drive_refuse_path("info", o->file)) return 1;
+  if (kind == FILE_DECK && (drive_refuse_path("info", o->file) || study_refuse("info", o->file)))
+    return 1;
   return kind == FILE_DECK ? info_deck(o, w) : info_about_law(o, w);
 }
 

@@ -17,12 +17,13 @@
 #include "generator/kernel/settings.h"
 #include "generator/plan/plan.h"
 #include "generator/run/run.h"
+#include "generator/study/study.h"
 #include "runtime/deck/deck_read.h"
 #include "runtime/simulation/simulation.h"
 
 static bool is_runnable(const run_options *o) {
   return file_suits(o->deck_path, FILES(DECK), "perilat run", "a deck") &&
-         !drive_refuse_path("run", o->deck_path);
+         !drive_refuse_path("run", o->deck_path) && !study_refuse("run", o->deck_path);
 }
 
 int command_run(int argc, char **argv) {
@@ -186,6 +187,22 @@ static int dump_deck(const run_options *o, const char *stage) {
   return status;
 }
 
+/* What is set is set in all of its runs. */
+static int check_study(const run_options *o) {
+  study_request r;
+  study_request_begin(&r);
+  r.check_only = true;
+  const char *files[] = {o->deck_path};
+  r.files = files;
+  r.file_count = 1;
+  for (int k = 0; k < o->override_count; k++)
+    study_list_add(&r, &r.set, study_option(&r, "--set", o->overrides[k].text));
+  const int status = study_run(&r, NULL);
+  if (o->report) diag_json_add(o->report, &r.said);
+  study_request_end(&r);
+  return status;
+}
+
 static int check_file(const run_options *o, const char *dump) {
   if (!file_suits(o->deck_path, FILES(LAW) | FILES(DECK), "perilat check", "a law or a deck"))
     return 1;
@@ -201,7 +218,9 @@ static int check_file(const run_options *o, const char *dump) {
     status = dump_deck(o, dump);
   else if (drive_is_path(o->deck_path))
     status = check_path(o);
-  else if (!(status = run_deck(o)) && !o->report)
+  else if (study_is_alone(o->deck_path)) {
+    if (!(status = check_study(o)) && !o->report) printf("%s: no errors\n", o->deck_path);
+  } else if (!(status = run_deck(o)) && !o->report)
     printf("%s: no errors\n", o->deck_path);
   free(found);
   return status;

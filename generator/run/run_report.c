@@ -382,8 +382,28 @@ static void announce_laws(const run *r, int lattice) {
   }
 }
 
+static double hertz(double omega) {
+  return omega / (2 * M_PI);
+}
+
+/* What the deck gives by frequencies. */
+static void announce_frequencies(const run *r) {
+  const deck *k = simulation_deck(r->simulation);
+  if (k->simulation.periods > 0) {
+    const double frequency = hertz(simulation_omega(r->simulation, 1));
+    printf("  periods    %.6g of %.6g ms, mode 1 at %.6g Hz\n", k->simulation.periods,
+           1e3 / frequency, frequency);
+  }
+  for (int n = 0; n < k->damping_count; n++) {
+    const deck_damping *b = &k->dampings[n];
+    if (b->ratio > 0)
+      printf("  damping    %.4g of the critical one of mode %d at %.6g Hz: rate %.6g 1/s\n",
+             b->ratio, b->mode, hertz(simulation_omega(r->simulation, b->mode)), b->rate);
+  }
+}
+
 void announce(const run *r) {
-  const deck_simulation *s = &r->deck->simulation;
+  const deck_simulation *s = &simulation_deck(r->simulation)->simulation;
   const step_limit *limit = simulation_step_limit(r->simulation);
   printf("%s\n", s->title ? s->title : r->options->deck_path);
   for (int k = 0; k < r->deck->lattice_count; k++) {
@@ -413,6 +433,7 @@ void announce(const run *r) {
   if (r->deck->lattice_count > 1)
     printf(" of %s", r->deck->lattices[simulation_ruling_body(r->simulation)].name);
   puts(" rules)");
+  announce_frequencies(r);
   printf("  machine    %d thread%s, %.1f MiB\n", simulation_threads(r->simulation),
          simulation_threads(r->simulation) == 1 ? "" : "s",
          simulation_memory(r->simulation) / 1048576.0);

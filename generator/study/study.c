@@ -74,6 +74,7 @@ static int run_crossed(study_request *r, study_pool *pool, json *w) {
   if (r->converge.text && !study_converge_check(r, axes, r->vary.count)) return 1;
   o.keys = column_names(r, axes, r->vary.count, &o.key_count);
   if (!check_cases(r, o.cases, o.count)) return 1;
+  if (r->check_only) return 0;
   if (!study_folder_open(pool->folder, r->memory, study_name(r))) return 2;
   const int stopped = study_pool_run(pool, o.cases, o.count);
   if (stopped > 0) return tell_stopped(o.cases, o.count, stopped);

@@ -14,9 +14,9 @@
 #include "generator/plan/plan.h"
 #include "generator/run/run.h"
 #include "runtime/analysis/implied.h"
+#include "runtime/analysis/material.h"
 #include "runtime/deck/deck_read.h"
 #include "runtime/deck/lattice_kind.h"
-#include "runtime/analysis/material.h"
 
 enum { MOST_CASES = 10000, LONGEST_NAME = 120 };
 

@@ -391,11 +391,18 @@ static int search(fit *f, json *w) {
 static bool prepare(fit *f) {
   study_request *r = f->request;
   if (!read_parameters(f)) return false;
+  double start[FIT_MOST];
+  for (int p = 0; p < f->count; p++)
+    start[p] = f->parameters[p].start;
   f->decks = r->decks.count;
   f->targets = arena_alloc(r->memory, (size_t)f->decks * sizeof *f->targets);
   for (int k = 0; k < f->decks; k++) {
     f->targets[k] = (target){.deck = r->decks.items[k].text, .table = r->to.items[k]};
     if (!find_table(f, &f->targets[k])) return false;
+  }
+  for (int k = 0; k < f->decks; k++) {
+    study_case c = case_of(f, k, start);
+    if (!study_case_check(r, &c)) return false;
   }
   if (r->o.runs >= 2 * f->count + 2) return true;
   diag_report(&r->said, DIAG_BAD_VALUE, r->fit.items[0].where,
@@ -416,8 +423,9 @@ int study_fit(study_request *r, study_pool *pool, json *w) {
   fit f = {.request = r, .pool = pool};
   int status = 1;
   if (prepare(&f)) {
-    status = 2;
-    if (study_folder_open(pool->folder, r->memory, study_name(r))) status = search(&f, w);
+    status = r->check_only ? 0 : 2;
+    if (!r->check_only && study_folder_open(pool->folder, r->memory, study_name(r)))
+      status = search(&f, w);
   }
   let_go(&f);
   return status;

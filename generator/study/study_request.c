@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
 #include "generator/run/run.h"
 #include "runtime/deck/deck_read.h"
@@ -139,6 +140,25 @@ bool study_request_complete(study_request *r) {
     return refuse(r, s->item.where, "this file holds no deck, and names none",
                   "&study deck = 'beam.nml' ... /");
   return is_sensible(r);
+}
+
+bool study_is_alone(const char *path) {
+  study_request r;
+  bool whole = true;
+  study_request_begin(&r);
+  r.files = &path;
+  const deck_study *s = kind_of_file(path) == FILE_DECK ? read_study(&r, &whole) : NULL;
+  const bool alone = s && !whole && s->item.key_count > 0;
+  study_request_end(&r);
+  return alone;
+}
+
+bool study_refuse(const char *command, const char *path) {
+  if (!study_is_alone(path)) return false;
+  say_error("`%s` is a study of a deck that it names, not a deck for `perilat %s`\n"
+            "  perilat study %s",
+            path, command, path);
+  return true;
 }
 
 const char *study_name(study_request *r) {

@@ -23,6 +23,7 @@ typedef struct study_request {
   study_text converge, strength; /* text NULL: not asked */
   deck_study o;                  /* the rest; its lists are those above */
   bool json, no_physics;
+  bool check_only; /* nothing is run */
   int threads; /* of all runs together; 0: as many as there are processors */
 } study_request;
 
@@ -34,6 +35,11 @@ void study_list_add(study_request *r, study_list *list, study_text text);
 /* What was not given by options is taken from the `&study` of the file, or from its defaults; names
    of files that it gives are those beside it. False after messages, in r->said. */
 bool study_request_complete(study_request *r);
+/* The file holds a `&study` and nothing else: it is no deck. */
+bool study_is_alone(const char *path);
+/* True, after a sentence on the standard error stream, when it does, and `perilat COMMAND` needs a
+   deck. */
+bool study_refuse(const char *command, const char *path);
 /* Path without its ending, in the working folder: "NAME_study". */
 const char *study_name(study_request *r);
 

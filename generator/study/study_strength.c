@@ -363,6 +363,7 @@ int study_strength(study_request *r, study_pool *pool, json *w) {
   if (!prepare(&s)) return 1;
   for (int k = 0; k < s.count; k++) /* before anything runs */
     if (!study_case_check(r, &s.loads[k].run)) return 1;
+  if (r->check_only) return 0;
   if (!study_folder_open(pool->folder, r->memory, study_name(r))) return 2;
   int stopped = scan_loads(&s);
   if (!stopped && study_range_read(r->memory, &r->strength, &range, &r->said) && !range.low)

@@ -212,7 +212,9 @@ typedef struct deck_protect { /* bonds that touch a particle within radius * spa
 
 typedef struct deck_damping { /* kind 'mass': force -rate * mass * velocity on every particle */
   deck_item item;
-  double rate;        /* 1/s */
+  double rate;        /* 1/s; of a ratio it is known when the mode's frequency is (simulation.h) */
+  double ratio;       /* of the critical damping of a mode; 0: the rate is given */
+  int mode;           /* from 1 */
   double from, until; /* s; until may be infinite */
 } deck_damping;
 
@@ -328,7 +330,8 @@ typedef struct deck_relaxation { /* increments 0: a dynamic run */
 typedef struct deck_simulation {
   deck_item item;
   const char *title;
-  double end_time;    /* s */
+  double end_time;    /* s; of a number of periods it is 0 until their length is known */
+  double periods;     /* of the lowest mode; 0: the time is given */
   double step;        /* s; 0: auto */
   double step_safety; /* default 0.25; of quasi-static runs 0.9 */
   int threads;        /* 0: as the machine offers */

@@ -50,6 +50,9 @@ static void print_type(const deck_key_info *key, FILE *out) {
   case DECK_STEP:
     fprintf(out, "%s or `'auto'`", shown);
     break;
+  case DECK_END:
+    fprintf(out, "%s or `'100 periods'`", shown);
+    break;
   case DECK_ANGLE:
     fputs("degrees, or `'0.3 rad'`", out);
     break;

@@ -290,6 +290,9 @@ static void check_quasi_static(deck_reader *r) {
   if (k->damping_count > 0)
     diag_report(r->d, DIAG_CONFLICT, k->dampings[0].item.where,
                 "a quasi-static run chooses its damping itself: no `&damping` with `&relaxation`");
+  if (k->simulation.periods > 0)
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&k->simulation.item, "end_time"),
+                "the time of a quasi-static run is only an order: it has no periods");
   if (k->initial_velocity_count > 0)
     diag_report(r->d, DIAG_CONFLICT, k->initial_velocitys[0].item.where,
                 "a quasi-static run begins at rest: no `&initial_velocity` with `&relaxation`");

@@ -17,6 +17,7 @@ typedef enum deck_type {
   DECK_FIXED,  /* list of directions, kept as bits: 1 << place in DECK_COMPONENTS */
   DECK_REAL,
   DECK_STEP,      /* a time or 'auto', which is kept as 0 */
+  DECK_END,       /* a time or a number of periods, which is kept, a double, at count_offset */
   DECK_PAIR,      /* two reals */
   DECK_PLACE,     /* two reals in the plane, three in space */
   DECK_DIRECTION, /* three reals, not all 0 */

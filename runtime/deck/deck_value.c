@@ -303,6 +303,33 @@ static bool read_count(const deck_key_info *info, const namelist_value *v, int *
   return true;
 }
 
+/* '100 periods' */
+static bool is_of_periods(const namelist_value *v, double *periods) {
+  if (v->kind != NAMELIST_TEXT) return false;
+  const char *p = v->text + strspn(v->text, " \t");
+  const size_t used = namelist_number(p, strlen(p), periods);
+  p += used + strspn(p + used, " \t");
+  const size_t length = strcspn(p, " \t");
+  const bool named = (length == 7 && strncmp(p, "periods", length) == 0) ||
+                     (length == 6 && strncmp(p, "period", length) == 0);
+  return used > 0 && named && p[length + strspn(p + length, " \t")] == '\0';
+}
+
+static bool read_end(const deck_key_info *info, const namelist_key *key, char *item,
+                     diagnostics *d) {
+  const namelist_value *v = &key->values[0];
+  double value = 0;
+  if (!deck_values_counted(key, 1, d)) return false;
+  const bool periods = is_of_periods(v, &value);
+  const bool good = periods ? isfinite(value)
+                                  ? within(v, info->name, value, info->bound, d) &&
+                                        computable(v, info->name, value, "1", BOUND_NOT_NEGATIVE, d)
+                                  : too_large(v, info->name, d)
+                            : deck_real_read(v, info->name, info->unit, info->bound, &value, d);
+  if (good) memcpy(item + (periods ? info->count_offset : info->offset), &value, sizeof value);
+  return good;
+}
+
 enum { MOST_TURNS = 1000 }; /* more have lost digits that matter */
 
 static bool read_angle(const deck_key_info *info, const namelist_value *v, double *angle,
@@ -438,6 +465,8 @@ bool deck_field_read(arena *a, const deck_key_info *info, const namelist_key *ke
            read_reals(info, key, field, d);
   case DECK_DIRECTION:
     return read_direction(info, key, field, d);
+  case DECK_END:
+    return read_end(info, key, base, d);
   case DECK_NAMES:
     if (info->count_offset == 0) /* a pair of names: no structure begins with a count */
       return deck_values_counted(key, 2, d) && read_names(a, info, key, field, d);

@@ -308,9 +308,23 @@ static const deck_key_info damping_keys[] = {
      .type = DECK_REAL,
      .unit = "1/s",
      .bound = BOUND_POSITIVE,
-     .required = true,
+     .fallback = "= that of `ratio`",
      DECK_AT(damping, rate),
      .doc = "how fast velocities decay"},
+    {.name = "ratio",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_POSITIVE,
+     .fallback = "= none",
+     DECK_AT(damping, ratio),
+     .doc = "or give this part of the critical damping of a mode: a rate of twice its angular "
+            "frequency times this"},
+    {.name = "mode",
+     .type = DECK_COUNT,
+     .fallback = "1",
+     .most = 100,
+     DECK_AT(damping, mode),
+     .doc = "of a `ratio`: number of the mode, from the lowest on"},
     {.name = "from",
      .type = DECK_REAL,
      .unit = "s",
@@ -327,8 +341,25 @@ static const deck_key_info damping_keys[] = {
      .doc = "end"},
 };
 
+/* Just one of the two. */
+static void check_strength(deck_reader *r, const namelist_group *from, const deck_damping *item) {
+  deck_refuse_both(r, from, "rate", "ratio");
+  if (item->rate == 0 && item->ratio == 0) {
+    diag_report(r->d, DIAG_MISSING_KEY, item->item.where, "`&damping` needs `rate` or `ratio`");
+    diag_hint(r->d, "rate = '1000 1/s' is a rate, ratio = 0.2 a fifth of the critical damping of "
+                    "the lowest mode");
+  } else if (item->ratio == 0 && namelist_find(from, "mode")) {
+    diag_report(r->d, DIAG_UNKNOWN_KEY, namelist_find(from, "mode")->name_where,
+                "`mode` goes with `ratio`");
+  } else if (item->mode < 1) {
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "mode"),
+                "modes are counted from 1");
+  }
+}
+
 static void check_damping(deck_reader *r, const namelist_group *from, void *into) {
   deck_damping *item = into;
+  check_strength(r, from, item);
   if (!namelist_find(from, "until")) item->until = INFINITY;
   deck_warn_late(r, &item->item, "from", item->from);
   if (item->until > item->from) return;

@@ -11,12 +11,13 @@ static const deck_key_info simulation_keys[] = {
      DECK_AT(simulation, title),
      .doc = "heading of pictures and results"},
     {.name = "end_time",
-     .type = DECK_REAL,
+     .type = DECK_END,
      .unit = "s",
      .bound = BOUND_POSITIVE,
      .required = true,
      DECK_AT(simulation, end_time),
-     .doc = "the run begins at 0 and ends here"},
+     DECK_COUNT_AT(simulation, periods),
+     .doc = "the run begins at 0 and ends here; periods are those of the lowest mode"},
     {.name = "step",
      .type = DECK_STEP,
      .unit = "s",
@@ -43,7 +44,7 @@ static const deck_key_info simulation_keys[] = {
 static void check_simulation(deck_reader *r, const namelist_group *from, void *into) {
   deck_simulation *item = into;
   (void)from;
-  if (item->step > item->end_time)
+  if (item->periods == 0 && item->step > item->end_time)
     diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "step"),
                 "`step` is longer than the run");
 }
@@ -136,6 +137,19 @@ static const deck_key_info output_keys[] = {
             "imbalance is checked, too. Takes time, of some laws more than the steps themselves"},
 };
 
+/* False after a message. */
+bool deck_samples_fit(const deck_output *item, double end, diagnostics *d) {
+  enum { MOST_SAMPLES = 10000000 };
+  const int before = d->errors;
+  if (item->sample > end)
+    diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "sample"),
+                "`sample` is longer than the run");
+  else if (item->sample > 0 && end / item->sample > MOST_SAMPLES)
+    diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "sample"),
+                "`sample` gives %.3g samples; the most is %d", end / item->sample, MOST_SAMPLES);
+  return d->errors == before;
+}
+
 /* Which fields a law has is known later only. */
 static void keep_field_places(deck_reader *r, const namelist_group *from, deck_output *item) {
   const namelist_key *fields = namelist_find(from, "fields");
@@ -148,16 +162,9 @@ static void keep_field_places(deck_reader *r, const namelist_group *from, deck_o
 
 static void check_output(deck_reader *r, const namelist_group *from, void *into) {
   deck_output *item = into;
-  enum { MOST_SAMPLES = 10000000 };
-  double end = r->k->simulation.end_time;
+  const double end = r->k->simulation.end_time;
   keep_field_places(r, from, item);
-  if (end <= 0 || item->sample <= 0) return;
-  if (item->sample > end)
-    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "sample"),
-                "`sample` is longer than the run");
-  else if (end / item->sample > MOST_SAMPLES)
-    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "sample"),
-                "`sample` gives %.3g samples; the most is %d", end / item->sample, MOST_SAMPLES);
+  if (end > 0) deck_samples_fit(item, end, r->d);
 }
 
 DECK_ONE(output, .check = check_output, .doc = "What is written, and how often.");

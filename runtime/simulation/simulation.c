@@ -1,12 +1,15 @@
 #include "runtime/simulation/simulation.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
 #include "runtime/base/subnormals.h"
+#include "runtime/deck/group_run.h"
 #include "runtime/simulation/law_fits.h"
 #include "runtime/simulation/link_limit.h"
+#include "runtime/simulation/modes.h"
 #include "runtime/simulation/simulation_state.h"
 #include "runtime/simulation/time_loop.h"
 
@@ -43,8 +46,7 @@ static bool choose_step(simulation *s, diagnostics *d) {
   free(touching);
   if (!known) return false;
   const run_body *rules = &s->bodies[s->ruling];
-  return step_choose(s->deck, rules->law, s->body_count > 1 ? rules->name : NULL, &s->limit, d) &&
-         step_plan_make(s->deck, &s->limit, &s->plan, d);
+  return step_choose(s->deck, rules->law, s->body_count > 1 ? rules->name : NULL, &s->limit, d);
 }
 
 static int most(int a, int b) {
@@ -76,6 +78,61 @@ static bool open_bodies(simulation *s, diagnostics *d) {
   return good;
 }
 
+/* --- what follows from frequencies ------------------------------------------------------------ */
+
+static bool is_held(const simulation *s) {
+  for (int b = 0; b < s->body_count; b++)
+    if (s->bodies[b].loads->constraint_count > 0) return true;
+  return false;
+}
+
+/* The highest mode that the deck asks about, 0 where it asks about none; *where it does so. */
+static int modes_asked(const simulation *s, span *where) {
+  const deck *k = s->deck;
+  int most = k->simulation.periods > 0;
+  *where = deck_where(&k->simulation.item, "end_time");
+  for (int n = 0; n < k->damping_count; n++)
+    if (k->dampings[n].ratio > 0 && k->dampings[n].mode > most) {
+      most = k->dampings[n].mode;
+      *where = deck_where(&k->dampings[n].item, "ratio");
+    }
+  return most;
+}
+
+/* Their frequencies. False after a message. */
+static bool find_omegas(simulation *s, int most, span where, diagnostics *d) {
+  mode *modes = must_calloc((size_t)most, sizeof *modes);
+  mode_count count = {.found = 0};
+  const char *why = is_held(s) ? modes_find(s, most, modes, &count) : "nothing holds them";
+  s->omegas = must_calloc((size_t)most, sizeof *s->omegas);
+  for (int k = 0; k < count.found; k++)
+    s->omegas[k] = modes[k].omega;
+  modes_free(modes, count.found, s->body_count);
+  free(modes);
+  if (why)
+    diag_report(d, DIAG_BAD_VALUE, where, "the bodies have no frequency to go by: %s", why);
+  else if (count.found < most)
+    diag_report(d, DIAG_BAD_VALUE, where, "the bodies have no mode %d, but %d", most, count.found);
+  else
+    return true;
+  diag_hint(d, "give `end_time` in seconds, and damping as a `rate`");
+  return false;
+}
+
+static bool take_frequencies(simulation *s, diagnostics *d) {
+  deck *k = &s->own;
+  span where;
+  const int most_asked = modes_asked(s, &where);
+  if (most_asked == 0) return true;
+  if (!find_omegas(s, most_asked, where, d)) return false;
+  for (int n = 0; n < k->damping_count; n++)
+    if (s->dampings[n].ratio > 0)
+      s->dampings[n].rate = 2 * s->dampings[n].ratio * s->omegas[s->dampings[n].mode - 1];
+  if (k->simulation.periods == 0) return true;
+  k->simulation.end_time = k->simulation.periods * (2 * M_PI / s->omegas[0]);
+  return deck_samples_fit(&k->output, k->simulation.end_time, d);
+}
+
 static void open_clock(simulation *s) {
   if (s->deck->relaxation.increments > 0)
     s->relaxation =
@@ -104,12 +161,22 @@ static bool open_frames(simulation *s, diagnostics *d) {
 
 static bool set_up(simulation *s, rows *const *lattices, diagnostics *d) {
   if (!is_sound(s, lattices, d) || deck_lacks(s->deck, NULL)) return false;
-  if (!choose_step(s, d) || !open_bodies(s, d)) return false;
+  if (!choose_step(s, d) || !open_bodies(s, d) || !take_frequencies(s, d)) return false;
+  if (!step_fits(s->deck, &s->limit, d) || !step_plan_make(s->deck, &s->limit, &s->plan, d))
+    return false;
   open_clock(s);
   if (!open_monitors(s, d) || !open_frames(s, d)) return false;
   run_contacts_warn(s->deck, s->bodies, d);
   s->bad = bad_search_new(s->bodies, s->body_count, &s->clock);
   return true;
+}
+
+static void take_deck(simulation *s, const deck *k) {
+  const size_t count = (size_t)k->damping_count;
+  s->own = *k;
+  s->deck = &s->own;
+  s->own.dampings = s->dampings = must_alloc((count + 1) * sizeof *s->dampings);
+  if (count > 0) memcpy(s->dampings, k->dampings, count * sizeof *s->dampings);
 }
 
 static void take_laws(simulation *s, const simulation_law *laws) {
@@ -131,7 +198,7 @@ static void take_laws(simulation *s, const simulation_law *laws) {
 simulation *simulation_new_on(rows *const *lattices, const deck *k, const simulation_law *laws,
                               diagnostics *d) {
   simulation *s = must_calloc(1, sizeof *s);
-  s->deck = k;
+  take_deck(s, k);
   s->body_count = k->lattice_count;
   s->bodies = must_calloc((size_t)s->body_count + 1, sizeof *s->bodies);
   take_laws(s, laws);
@@ -156,6 +223,8 @@ void simulation_free(simulation *s) {
   for (int b = 0; b < s->body_count; b++)
     run_body_free(&s->bodies[b]);
   team_free(s->team);
+  free(s->dampings);
+  free(s->omegas);
   free(s->bodies);
   free(s->laws);
   free(s);
@@ -171,6 +240,14 @@ const parameter_planes *simulation_planes(const simulation *s, int interaction) 
 
 const rows *simulation_law_rows(const simulation *s, int interaction) {
   return s->laws[interaction].rows;
+}
+
+const deck *simulation_deck(const simulation *s) {
+  return s->deck;
+}
+
+double simulation_omega(const simulation *s, int number) {
+  return s->omegas[number - 1];
 }
 
 const rows *simulation_rows(const simulation *s, int number) {

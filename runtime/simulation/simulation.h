@@ -53,6 +53,11 @@ void simulation_free(simulation *s);
 
 /* As many as the deck has lattices, in their order. */
 int simulation_bodies(const simulation *s);
+/* The deck as the run takes it: with end and dampings that it gives by frequencies as times and
+   rates. */
+const deck *simulation_deck(const simulation *s);
+/* rad/s of a mode, from 1, that the deck gives something by. */
+double simulation_omega(const simulation *s, int mode);
 const rows *simulation_rows(const simulation *s, int body);
 /* Of an interaction of the deck: the rows of its body with the bonds that the law has a part in,
    and the parameters that differ in space (NULL without). */

@@ -16,7 +16,10 @@
 #include "runtime/simulation/step_choice.h"
 
 struct simulation {
-  const deck *deck;
+  const deck *deck; /* `own` */
+  struct deck own;  /* the caller's, but for what follows from frequencies */
+  deck_damping *dampings;
+  double *omegas;   /* rad/s of the lowest modes, as many as the deck asks about; else NULL */
   run_body *bodies; /* [body_count] in the order of the deck's lattices */
   int body_count;
   run_link *links; /* [link_count] between bodies */

@@ -18,8 +18,7 @@ static bool is_stable_at_rest(const step_limit *limit, const pl_law *law, span w
   return false;
 }
 
-/* Of a dynamic run: the time of others is only an order. */
-static bool ends_after_a_step(const step_limit *limit, const deck *k, diagnostics *d) {
+bool step_fits(const deck *k, const step_limit *limit, diagnostics *d) {
   const double end = k->simulation.end_time;
   if (k->relaxation.increments > 0 || limit->step <= end) return true;
   diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&k->simulation.item, "end_time"),
@@ -60,7 +59,7 @@ bool step_choose(const deck *of, const pl_law *law, const char *lattice, step_li
     return false;
   }
   limit->step = k->step > 0 ? k->step : k->step_safety * most;
-  if (isfinite(limit->step) && limit->step > 0) return ends_after_a_step(limit, of, d);
+  if (isfinite(limit->step) && limit->step > 0) return true;
   diag_report(d, DIAG_UNSTABLE_STEP, k->item.where,
               "the law `%s` has no stiffness to choose a step from", law->name);
   diag_hint(d, "give `step` in &simulation");

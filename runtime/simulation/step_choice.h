@@ -26,6 +26,9 @@ bool step_limit_check(const deck *k, span where, const pl_law *law, const step_l
    `lattice` where there are others, too (else NULL). */
 bool step_choose(const deck *k, const pl_law *law, const char *lattice, step_limit *limit,
                  diagnostics *d);
+/* False with a diagnostic where a dynamic run is shorter than a step; the time of others is only an
+   order. */
+bool step_fits(const deck *k, const step_limit *limit, diagnostics *d);
 /* False with a diagnostic where there are too many steps. */
 bool step_plan_make(const deck *k, const step_limit *limit, step_plan *plan, diagnostics *d);
 

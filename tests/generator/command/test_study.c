@@ -228,6 +228,31 @@ static void documents(void **state) {
   assert_non_null(strstr(w->said, "form group.key=values"));
 }
 
+/* A file with a study alone: its runs are checked, and no other command takes it for a deck. */
+static void a_file_of_its_own(void **state) {
+  workplace *w = *state;
+  expect(w, "check two_study.nml", 0, "two_study.nml: no errors");
+  assert_false(exists(w, "two_study"));
+  expect(w, "check two_study.nml --set material.nu=7", 1, "nu");
+  expect(w, "run two_study.nml", 1, "perilat study two_study.nml");
+  expect(w, "info two_study.nml", 1, "perilat study two_study.nml");
+  expect(w, "build two_study.nml", 1, "perilat study two_study.nml");
+  expect(w, "study two_study.nml", 0, "wrote");
+  expect(w, "info two_study.h5", 1, "is the table of a study");
+}
+
+/* In the deck it changes nothing of a run. */
+static void in_the_deck(void **state) {
+  workplace *w = *state;
+  expect(w, "run beam.nml --set output.result=alone.h5", 0, "alone.h5");
+  assert_int_equal(shell(w, "echo \"&study vary = 'drive.velocity=-20, -40 mm/s' /\" >> beam.nml"),
+                   0);
+  expect(w, "run beam.nml", 0, "beam.h5");
+  expect_same_results(w, "beam.h5", "alone.h5");
+  expect(w, "study beam.nml", 0, "wrote beam_study.csv");
+  expect(w, "check beam.nml --set study.jobs=x", 1, "jobs");
+}
+
 /* The same values with one process and two. */
 static void jobs(void **state) {
   workplace *w = *state;
@@ -251,6 +276,8 @@ int main(void) {
                                      WITH(no_room),
                                      WITH(two_at_once),
                                      WITH(documents),
-                                     WITH(jobs)};
+                                     WITH(jobs),
+                                     WITH(a_file_of_its_own),
+                                     WITH(in_the_deck)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -34,7 +34,8 @@ static void open_block(chosen *c) {
 static bool choose(chosen *c) {
   return step_limit_of(&c->deck, 0, &elastic_bar, c->parameters, NULL, c->rows.rows, &c->limit,
                        &c->rows.said) &&
-         step_choose(&c->deck, &elastic_bar, NULL, &c->limit, &c->rows.said);
+         step_choose(&c->deck, &elastic_bar, NULL, &c->limit, &c->rows.said) &&
+         step_fits(&c->deck, &c->limit, &c->rows.said);
 }
 
 static void must_refuse(chosen *c, diag_code code, const char *sentence) {
