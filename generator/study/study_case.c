@@ -164,11 +164,14 @@ static uint64_t hash_of_law(uint64_t hash, const model *m) {
   return hash;
 }
 
+/* However the lattice is turned. */
 static double crack_energy_of(const pl_law *of, const double *values, const deck_lattice *l) {
   if (of->kind == PL_STATE || deck_lattice_is_irregular(l) || deck_lattice_is_bar(l) ||
       deck_lattice_is_link(l))
     return NAN;
-  rows *w = implied_lattice_like(l, material_density(of, values));
+  deck_lattice straight = *l;
+  straight.rotation = 0;
+  rows *w = implied_lattice_like(&straight, material_density(of, values));
   const double energy = w ? implied_crack_energy(of, values, w, 0) : (double)NAN;
   if (w) rows_free(w);
   return energy;
