@@ -238,8 +238,8 @@ static const deck_key_info study_keys[] = {
      .type = DECK_NAME,
      DECK_AT(study, strength),
      .doc = "a load that is held: which values are borne? `'force.per_length = -40..-50:2 kN/m'`; "
-            "the key alone: tenths of the deck's value, then fiftieths between what is borne and "
-            "what is not"},
+            "the key alone: tenths of the deck's value up to twice it, then fifths of the step "
+            "between what is borne and what is not"},
     {.name = "watch",
      .type = DECK_NAME,
      .fallback = "'deflection'",
