@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/base/elementary.h"
 #include "dsl/base/units.h"
 #include "generator/study/convergence.h"
 
@@ -88,8 +89,8 @@ static bool work_moves(const study_outcome *o, double *least, double *largest) {
   for (int r = 0; r < o->count; r++) {
     const double work = o->cases[r].crack_energy;
     if (!(work > 0) || !isfinite(work)) return false;
-    *least = fmin(*least, work);
-    *largest = fmax(*largest, work);
+    *least = pl_fmin(*least, work);
+    *largest = pl_fmax(*largest, work);
   }
   return *largest > (1 + same) * *least;
 }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/base/elementary.h"
 #include "dsl/base/units.h"
 #include "generator/study/held_load.h"
 #include "generator/study/study_deck.h"
@@ -356,7 +357,7 @@ static bool publish(const scan *s, json *w) {
     halves[1].values[o.count] = l->failed ? NAN : l->found.second;
     verdict.texts[o.count] = verdict_word(l);
     if (!l->failed && l->found.verdict == HELD_BORNE)
-      o.y_most = fmax(o.y_most, 2 * fmax(l->found.first, l->found.second));
+      o.y_most = pl_fmax(o.y_most, 2 * pl_fmax(l->found.first, l->found.second));
     o.cases[o.count++] = l->run;
   }
   const study_column more[] = {halves[0], halves[1], verdict};
