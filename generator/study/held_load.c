@@ -26,9 +26,9 @@ held_load held_load_judge(const double *time, const double *u, long count, doubl
     h.verdict = HELD_COLLAPSED;
   else if (!reaches(time, count, end))
     h.verdict = HELD_CUT;
-  else if (!(h.second <= 2 * h.first))
+  else if (!(h.second <= (1 + growth) * h.first))
     h.verdict = HELD_COLLAPSED;
-  else if (h.second <= (1 + growth) * h.first)
+  else if ((1 + growth) * h.second >= h.first)
     h.verdict = HELD_BORNE;
   return h;
 }

@@ -12,9 +12,9 @@
 #include <stdbool.h>
 
 typedef enum held_verdict {
-  HELD_BORNE,     /* the second half is no larger than the first, but for `growth` */
-  HELD_UNDECIDED, /* it is: a longer hold may tell */
-  HELD_COLLAPSED, /* it passes the limit, or is twice as large */
+  HELD_BORNE,     /* the halves agree, but for `growth` */
+  HELD_UNDECIDED, /* the second is smaller: still coming to rest, a longer hold may tell */
+  HELD_COLLAPSED, /* the second is larger, or it passes the limit */
   HELD_CUT        /* the run ended before the hold did: nobody knows */
 } held_verdict;
 

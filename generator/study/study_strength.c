@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "dsl/base/elementary.h"
 #include "dsl/base/units.h"
@@ -71,7 +72,8 @@ static bool read_times(scan *s, const study_deck *t) {
       !read_time(r, t, beside(r, s->key, "start"), &start) ||
       !read_time(r, t, beside(r, s->key, "rise"), &rise))
     return false;
-  if (!(rise > 0) || (history && strcmp(history, "ramp and hold") != 0))
+  if (strncasecmp(s->key, "drive", strlen("drive")) == 0 || !(rise > 0) ||
+      (history && strcmp(history, "ramp and hold") != 0))
     return refuse_hold(r, "this is no load that grows and is held:", s->key);
   s->held = start + rise;
   s->hold = end - s->held;
@@ -165,10 +167,10 @@ static int next_loads(const scan *s, load **next, int most) {
   return count;
 }
 
-/* Twice as long, up to the longest; beyond, what grows on has collapsed. */
+/* Twice as long, up to the longest; what comes to rest even then is borne. */
 static void prolong(const scan *s, load *l) {
   if (2 * l->hold > s->request->o.longest * s->hold * (1 + 1e-9)) {
-    l->found.verdict = HELD_COLLAPSED;
+    l->found.verdict = HELD_BORNE;
     l->judged = true;
     return;
   }

@@ -265,7 +265,9 @@ static const deck_key_info study_keys[] = {
      .fallback = "4",
      .most = 1000,
      DECK_AT(study, longest),
-     .doc = "a hold whose halves do not agree is doubled, up to so many times that of the deck"},
+     .doc = "while the second half of the hold is smaller by more than that, the body still comes "
+            "to rest: "
+            "the hold is doubled, up to so many times that of the deck"},
     {.name = "twin",
      .type = DECK_NAME,
      DECK_AT(study, twin),
