@@ -266,7 +266,8 @@ static int info_result(const char *path, json *w) {
 typedef struct info_options {
   const char *file;
   info_law_options law;
-  int modes; /* 0: not asked for */
+  int modes;          /* 0: not asked for */
+  const char *shapes; /* result that is written of them, or NULL */
   bool builtins, json;
 } info_options;
 
@@ -306,6 +307,8 @@ static bool read_options(int argc, char **argv, const char **settings, info_opti
       o->law.shells = value;
     else if ((value = option_value(argc, argv, &at, "--modes", &bad)))
       bad = bad || !read_modes(value, &o->modes);
+    else if ((value = option_value(argc, argv, &at, "-o", &bad)))
+      o->shapes = value;
     else if ((value = option_value(argc, argv, &at, "--set", &bad)))
       settings[o->law.setting_count++] = value;
     else if (is_option_like(argv[at]))
@@ -320,7 +323,8 @@ static bool read_options(int argc, char **argv, const char **settings, info_opti
     return false;
   }
   o->law.settings = settings;
-  if (!bad && o->builtins && (o->json || o->modes || o->law.setting_count || asks_about_law(o))) {
+  if (!bad && o->builtins &&
+      (o->json || o->modes || o->shapes || o->law.setting_count || asks_about_law(o))) {
     say_error("--builtins takes no other option");
     return false;
   }
@@ -349,6 +353,10 @@ static bool options_fit(const info_options *o, file_kind kind) {
     why = "--json is for laws, results and, with --modes, decks";
   else if (kind != FILE_DECK && o->modes)
     why = "--modes is for decks";
+  else if (kind != FILE_DECK && o->shapes)
+    why = "-o is for the shapes of a deck's modes";
+  else if (o->shapes && !o->modes)
+    why = "-o is for the shapes of its modes; add --modes N";
   if (why) say_error("`%s` is a %s; %s", o->file, what, why);
   return !why;
 }
@@ -364,6 +372,7 @@ static int info_deck(const info_options *o, json *w) {
                                              .overrides = overrides,
                                              .override_count = count,
                                              .modes = o->modes,
+                                             .shapes = o->shapes,
                                              .report = w ? &report : NULL,
                                              .check_only = true});
   free(overrides);

@@ -173,6 +173,7 @@
     "times")                                                                                       \
   X(info, "--modes", "N",                                                                          \
     "of a deck: the N lowest frequencies of its bodies as they are held, at most 100")             \
+  X(info, "-o", "FILE", "of --modes: a result whose frames are the shapes, to be drawn as maps")   \
   X(info, "--json", "",                                                                            \
     "of a law, a result, or a deck's modes: as one JSON document on the standard output")          \
   X(info, "--builtins", "", "quantities and functions that laws may use; takes no file")           \

@@ -153,7 +153,8 @@ static int set_up(run *r) {
   r->model_of = must_calloc(laws, sizeof *r->model_of);
   r->lattices = must_calloc(lattices, sizeof *r->lattices);
   choose_paths(r);
-  if (!r->options->check_only) result_can_be_written(r);
+  const bool writes = !r->options->check_only || r->options->shapes;
+  if (writes) result_can_be_written(r);
   build_lattices(r);
   const int status = load_laws(r);
   take_threads(r);
@@ -161,7 +162,7 @@ static int set_up(run *r) {
   if (has_lattices(r)) r->simulation = simulation_new_on(r->lattices, r->deck, r->laws, &r->said);
   if (status) return status;
   if (!r->simulation) return INPUT_WRONG;
-  if (!r->options->check_only) fingerprint(r);
+  if (writes) fingerprint(r);
   return 0;
 }
 

@@ -42,14 +42,15 @@ typedef struct run_options {
   int override_count;
   int threads; /* 0: as the deck or the machine says */
   bool resume;
-  bool interpret;    /* no compiler: run on the interpreter */
-  bool check_kernel; /* compare kernel and interpreter on random states first */
-  bool check_only;   /* `perilat check deck.nml`: everything but the run */
-  int modes;         /* of `check_only`: so many of the lowest modes are told, too */
-  bool profile;      /* say at the end where the time went */
-  bool json;         /* the command is asked for a document; run_deck looks at `report` */
-  double *fraction;  /* NULL, or is told how much of the run is done */
-  bool no_physics;   /* leave out the physics checks of the deck's laws */
+  bool interpret;     /* no compiler: run on the interpreter */
+  bool check_kernel;  /* compare kernel and interpreter on random states first */
+  bool check_only;    /* `perilat check deck.nml`: everything but the run */
+  int modes;          /* of `check_only`: so many of the lowest modes are told, too */
+  const char *shapes; /* NULL, or the result that is written of their shapes */
+  bool profile;       /* say at the end where the time went */
+  bool json;          /* the command is asked for a document; run_deck looks at `report` */
+  double *fraction;   /* NULL, or is told how much of the run is done */
+  bool no_physics;    /* leave out the physics checks of the deck's laws */
   diag_json *report; /* NULL, or diagnostics go here: of a check alone; of a run to stderr, too, and
                         how it ended follows them in the document */
 } run_options;

@@ -5,6 +5,7 @@
 
 #include "dsl/base/arena.h"
 #include "generator/kernel/document.h"
+#include "generator/run/run_shapes.h"
 #include "runtime/simulation/modes.h"
 
 static const char *const share_names[MODES_SHARES] = {"x", "y", "z", "turning"};
@@ -64,6 +65,9 @@ static void print_modes(const run *r, const found_modes *f) {
   printf("  last  %12.6g  %12.6g  %12.6g  at most: the stable step is %.4g us\n",
          limit->omega_max / (2 * M_PI), 1e3 * 2 * M_PI / limit->omega_max, limit->omega_max,
          1e6 * limit->limit);
+  if (r->options->shapes)
+    printf("  written    %s (%d frame%s) and its .xdmf for ParaView\n", r->result_path,
+           f->count.found, f->count.found == 1 ? "" : "s");
 }
 
 /* --- in the document -------------------------------------------------------------------------- */
@@ -93,9 +97,20 @@ static void put_modes(json *w, const run *r, const found_modes *f) {
   for (int k = 0; k < f->count.found; k++)
     put_mode(w, f, k);
   json_array_end(w);
+  json_put_text(w, "result", r->options->shapes ? r->result_path : NULL);
+}
+
+static int tell(run *r, const found_modes *f) {
+  if (r->options->shapes && !write_shapes(r, f->modes, f->count.found)) return RUN_FAILED;
+  if (r->options->report)
+    put_modes(r->options->report->document, r, f);
+  else
+    print_modes(r, f);
+  return 0;
 }
 
 int tell_modes(run *r) {
+  int status = INPUT_WRONG;
   const int asked = r->options->modes;
   found_modes f = about(r);
   f.modes = must_calloc((size_t)asked, sizeof *f.modes);
@@ -106,11 +121,9 @@ int tell_modes(run *r) {
     say_error("`%s` has only %d mode%s: %ld components of its particles can move",
               r->options->deck_path, f.count.found, f.count.found == 1 ? "" : "s",
               f.count.freedoms);
-  else if (r->options->report)
-    put_modes(r->options->report->document, r, &f);
   else
-    print_modes(r, &f);
+    status = tell(r, &f);
   modes_free(f.modes, f.count.found, simulation_bodies(r->simulation));
   free(f.modes);
-  return f.count.found == asked ? 0 : INPUT_WRONG;
+  return status;
 }

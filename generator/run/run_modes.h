@@ -1,4 +1,5 @@
-/* The lowest modes of a deck's bodies, told as a table, or in the document. */
+/* The lowest modes of a deck's bodies, told as a table, or in the document; their shapes as a
+   result where the options ask for it. */
 #ifndef PERILAT_GENERATOR_RUN_MODES_H
 #define PERILAT_GENERATOR_RUN_MODES_H
 

@@ -22,9 +22,10 @@
 
 /* --- paths and fingerprint -------------------------------------------------------------------- */
 
-/* The result stands in the working folder, named by the deck or after it. */
+/* The result stands in the working folder, named by the deck or after it; that of shapes where it
+   is asked for. */
 void choose_paths(run *r) {
-  const char *given = r->deck->output.result;
+  const char *given = r->options->shapes ? r->options->shapes : r->deck->output.result;
   char path[4096];
   if (given) {
     snprintf(path, sizeof path, "%s", given);
@@ -62,9 +63,15 @@ static bool has_room(const run *r) {
   return room;
 }
 
+/* What has named the result, to be told. */
+static span namer(const run *r) {
+  return r->options->shapes ? (span){0, 0, UINT16_MAX}
+                            : deck_where(&r->deck->output.item, "result");
+}
+
 /* Hours of computing must not end in a path that cannot be written. */
 bool result_can_be_written(run *r) {
-  const span where = deck_where(&r->deck->output.item, "result");
+  const span where = namer(r);
   char sidecar[WHOLE_FILE_PATH];
   result_sidecar(r->result_path, sidecar, sizeof sidecar);
   const char *slash = strrchr(r->result_path, '/');
@@ -80,15 +87,17 @@ bool result_can_be_written(run *r) {
                 folder > 0 ? folder : 1, folder > 0 ? r->result_path : ".", strerror(errno));
   else
     return true;
-  diag_hint(&r->said, "give `result` another path in &output, or --set output.result=PATH");
+  diag_hint(&r->said, r->options->shapes
+                          ? "give another path with -o"
+                          : "give `result` another path in &output, or --set output.result=PATH");
   return false;
 }
 
 static bool result_spares(run *r, const char *input) {
   if (!same_file(r->result_path, input)) return true;
-  diag_report(&r->said, DIAG_FILE, deck_where(&r->deck->output.item, "result"),
-              "the result would overwrite `%s`", input);
-  diag_hint(&r->said, "give `result` another name in &output");
+  diag_report(&r->said, DIAG_FILE, namer(r), "the result would overwrite `%s`", input);
+  diag_hint(&r->said, r->options->shapes ? "give it another name with -o"
+                                         : "give `result` another name in &output");
   return false;
 }
 
@@ -343,7 +352,7 @@ static char *list_overrides(run *r) {
   return text;
 }
 
-bool open_result(run *r) {
+result_header describe_result(run *r) {
   result_header h = {.path = r->result_path,
                      .fingerprint = r->fingerprint,
                      .title = r->deck->simulation.title ? r->deck->simulation.title : "",
@@ -360,19 +369,28 @@ bool open_result(run *r) {
   name_compiler(r, &h);
   particle_table(r, &h);
   bond_table(r, &h);
-  frame_table(r, &h);
+  return h;
+}
+
+bool open_described(run *r, const result_header *h) {
   char error[ERROR_LENGTH];
-  r->result = result_open(&h, r->options->resume, error, sizeof error);
+  r->result = result_open(h, r->options->resume, error, sizeof error);
   if (!r->result) {
     say_error("%s", error);
     return false;
   }
   whole_file_clear(r->checkpoint_path);
   size_t total = 0;
-  for (int k = 0; k < h.field_count; k++)
-    total += (size_t)(h.fields[k].count * h.fields[k].components);
+  for (int k = 0; k < h->field_count; k++)
+    total += (size_t)(h->fields[k].count * h->fields[k].components);
   r->frame_buffer = must_alloc((total + 1) * sizeof(double));
   return true;
+}
+
+bool open_result(run *r) {
+  result_header h = describe_result(r);
+  frame_table(r, &h);
+  return open_described(r, &h);
 }
 
 /* Its frames are about to go. */

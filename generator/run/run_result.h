@@ -12,8 +12,12 @@ bool result_spares_inputs(run *r);
 /* What a checkpoint belongs to: the program, the kernels and the deck as overridden, a line
    each. */
 void fingerprint(run *r);
-/* Takes the result for this run alone; nothing is changed yet. */
+/* What a result says of the run's input and particles, but for the fields of its frames. */
+result_header describe_result(run *r);
+/* Takes the result for this run alone; nothing is changed yet. Of frames as the simulation offers
+   them, or as described. */
 bool open_result(run *r);
+bool open_described(run *r, const result_header *h);
 /* Either comes next. Anew: the checkpoint of an earlier run goes before the frames that it counts
    on. */
 bool begin_anew(run *r);

@@ -296,6 +296,23 @@ static long increment_at(result_file *f, double time) {
   return at;
 }
 
+/* Frames that are modes have numbers in place of times, and a sample each. */
+static double frequency_of(result_file *f, long frame) {
+  char unit_text[64], none[256];
+  long count = 0;
+  double found = NAN;
+  double *numbers =
+      result_read_series(f, "time", &count, unit_text, sizeof unit_text, none, sizeof none);
+  const bool of_modes = numbers && strcmp(unit_text, "1") == 0;
+  free(numbers);
+  if (!of_modes) return NAN;
+  double *all =
+      result_read_series(f, "frequency", &count, unit_text, sizeof unit_text, none, sizeof none);
+  if (all && frame >= 0 && frame < count) found = all[frame];
+  free(all);
+  return found;
+}
+
 static bool read_frame(result_file *f, const char *path, plot_frame *m, const plot_map_options *o,
                        char *error, size_t size) {
   m->reference = result_read_reference(f, &m->particles, &m->dimensions);
@@ -314,6 +331,7 @@ static bool read_frame(result_file *f, const char *path, plot_frame *m, const pl
   m->time = times && k >= 0 && k < frames ? times[k] : NAN;
   free(times);
   m->increment = increment_at(f, m->time);
+  m->frequency = frequency_of(f, k);
   m->spacing = spacing_of(m);
   char *title = result_read_title(f);
   snprintf(m->title, sizeof m->title, "%s", o->title ? o->title : title);

@@ -32,7 +32,8 @@ typedef struct plot_frame {
   double axes[3][2];     /* of a body in space: unit vectors along x, y, z in the picture, m a m */
   char extents[128]; /* of a body in space: "x 0 to 100 mm, ...", where it stood in the beginning */
   double time, factor, spacing;
-  long increment; /* of a quasi-static run, whose time means nothing; -1: a dynamic one */
+  long increment;   /* of a quasi-static run, whose time means nothing; -1: a dynamic one */
+  double frequency; /* Hz: of the mode that the frame is, whose number is `time`; NaN: of none */
 } plot_frame;
 
 /* False with a sentence in `error`. To be freed in either case. */

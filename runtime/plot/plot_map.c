@@ -357,7 +357,9 @@ static void draw_mark_legend(canvas *c, const sheet *s, const char *mark) {
 /* --- head and foot ---------------------------------------------------------------------------- */
 
 static void say_when(const plot_frame *f, char *text, size_t size) {
-  if (f->increment < 0)
+  if (!isnan(f->frequency))
+    snprintf(text, size, "mode %.0f: %.5g Hz", f->time, f->frequency);
+  else if (f->increment < 0)
     snprintf(text, size, "t = %.5g ms", 1e3 * f->time);
   else
     snprintf(text, size, "increment %ld", f->increment);

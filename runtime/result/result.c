@@ -123,13 +123,14 @@ static bool write_input(hid_t file, const result_header *h) {
 }
 
 /* A data set of times is the scale of the first dimension of what stands beside it. */
-static bool write_times(hid_t file, const char *name, const char *long_name, const double *times,
-                        long count, h5_scale *scale) {
+static bool write_times(hid_t file, const result_header *h, const char *name, const char *long_name,
+                        const double *times, long count, h5_scale *scale) {
   const hsize_t n[1] = {(hsize_t)count};
-  if (!h5_write_doubles(file, name, times, 1, n, "s")) return false;
+  if (!h5_write_doubles(file, name, times, 1, n, h->numbers ? "1" : "s")) return false;
   const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
   if (set < 0) return false;
-  if (h5_attribute_text(set, "long_name", long_name) && h5_scale_begin(scale, set, "time"))
+  if (h5_attribute_text(set, "long_name", h->numbers ? h->numbers : long_name) &&
+      h5_scale_begin(scale, set, "time"))
     return true;
   H5Dclose(set);
   return false;
@@ -166,10 +167,11 @@ static bool write_series(hid_t file, h5_scale *times, long count, const result_s
   return good;
 }
 
-static bool write_history(hid_t file, const result_ending *e) {
+static bool write_history(hid_t file, const result_header *h, const result_ending *e) {
   if (!h5_make_group(file, "/history") || !h5_make_group(file, "/history/energy")) return false;
   h5_scale times;
-  if (!write_times(file, "/history/time", "time of the sample", e->time, e->history_count, &times))
+  if (!write_times(file, h, "/history/time", "time of the sample", e->time, e->history_count,
+                   &times))
     return false;
   bool good = true;
   for (int k = 0; good && k < e->series_count; k++)
@@ -226,7 +228,8 @@ static bool put_frame(void *context, int64_t frame, const double *record) {
 
 static bool describe_fields(hid_t file, const frame_sets *s) {
   h5_scale times;
-  if (!write_times(file, "/frames/time", "time of the frame", s->times, s->count, &times))
+  if (!write_times(file, s->header, "/frames/time", "time of the frame", s->times, s->count,
+                   &times))
     return false;
   bool good = true;
   for (int k = 0; good && k < s->header->field_count; k++) {
@@ -271,7 +274,7 @@ static bool write_hdf5(const result *r, const result_ending *e, frame_sets *fram
   const hid_t file = sealed_file_create(path);
   if (file < 0) return false;
   const bool good = write_attributes(file, &r->header, e) && write_input(file, &r->header) &&
-                    write_particles(file, &r->header) && write_history(file, e) &&
+                    write_particles(file, &r->header) && write_history(file, &r->header, e) &&
                     write_frames(file, r, frames, error, size) &&
                     views_write(file, &r->header, frames->count);
   if (good) return sealed_file_close(file, path);

@@ -15,9 +15,9 @@
      /particles/resolved    [N] 1 where the bonds resolve all strains, else 0; only of particles
                             that stand on no lattice
      /bonds/<interaction>   [M, 2] particle indices
-     /history/time          [T] s; /history/<monitor> [T], attributes units and long_name;
+     /history/time          [T] s, or pure numbers of what the samples are of; /history/<monitor> [T], attributes units and long_name;
                             /history/energy/<term> [T] J
-     /frames/time           [F] s; /frames/<field> [F, N, components];
+     /frames/time           [F] likewise; /frames/<field> [F, N, components];
                             /frames/<interaction>/<bond field> [F, M], attributes units, long_name
                             and kind ("state", "damage", "output" of the law, "other")
      /cracks/<monitor>      [F, N, 2] m: place along the monitor's line and width of each crack in
@@ -79,6 +79,7 @@ typedef struct result_bonds { /* of an interaction */
 typedef struct result_header {
   const char *path;        /* of the final file */
   const char *fingerprint; /* says which run the frames belong to */
+  const char *numbers;     /* "number of the mode": what stands in place of times; NULL: times */
   const char *title, *started, *version, *kernel_key;
   const char *compiler, *flags; /* of the kernels */
   int threads;

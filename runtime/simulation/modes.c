@@ -277,7 +277,6 @@ static double rounded(double omega) {
 }
 
 static void take_shape(const whole *w, const double *x, mode *m) {
-  const double longest = longest_way(w, x);
   double largest = 0;
   m->shape = must_calloc((size_t)w->body_count, sizeof *m->shape);
   for (int b = 0; b < w->body_count; b++)
@@ -287,8 +286,7 @@ static void take_shape(const whole *w, const double *x, mode *m) {
   for (long k = 0; k < count_of(w); k++) {
     const freedom *f = &w->freedoms[k];
     const rows *g = w->bodies[f->body].lattice_rows;
-    m->shape[f->body][f->component * g->size + f->site] =
-        (largest < 0 ? -1 : 1) * f->scale * x[k] * g->spacing / longest;
+    m->shape[f->body][f->component * g->size + f->site] = (largest < 0 ? -1 : 1) * f->scale * x[k];
     m->share[f->component < g->dimensions ? f->component : MODES_SHARES - 1] += x[k] * x[k];
   }
 }

@@ -13,7 +13,8 @@ typedef struct mode {
   double
       residual; /* omega surely lies within this part of it, but for rounding; NaN where it is 0 */
   double share[MODES_SHARES]; /* of the kinetic energy: along x, y, z, and turning; in sum 1 */
-  double **shape; /* [bodies][dof * size of its rows] m, rad; the longest way is a spacing */
+  double **shape; /* [bodies][dof * size of its rows] m, rad; of modal mass 1 kg, the sum of the
+                     masses times its squares */
 } mode;
 
 typedef struct mode_count {

@@ -328,7 +328,7 @@ static double part_of(simulation *s, const mode *m) {
 
 /* Begins in the second mode; what is left of it at the end, and the end's time. */
 static double swing(small_run *r, int number, const char *text, mode *m, double *time) {
-  static const double small = 1e-6;
+  static const double small = 1e-8; /* of a mode of 1 kg */
   mode modes[3];
   mode_count count;
   small_open(r, &elastic_beam, text);
