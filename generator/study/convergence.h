@@ -9,9 +9,9 @@
      U = F |Q_finest - Q0| + sigma + |Q_finest - fit|,   F = 1.25 for 0.5 <= p <= 2.1, else 3,
 
    sigma the standard deviation from the fit; above 2.1 the limit is that of order 2. Here they
-   answer a scatter of sigma >= (largest - smallest)/(sizes - 1) with a wider bar, and this does with
-   "not converged". Each orientation or seed has a limit of its own, linearised about the mean one;
-   the 95 % interval of their mean (Student's t) joins U as a sum of squares. */
+   answer a scatter of sigma >= (largest - smallest)/(sizes - 1) with a wider bar, and this does
+   with "not converged". Each orientation or seed has a limit of its own, linearised about the mean
+   one; the 95 % interval of their mean (Student's t) joins U as a sum of squares. */
 #ifndef PERILAT_GENERATOR_CONVERGENCE_H
 #define PERILAT_GENERATOR_CONVERGENCE_H
 

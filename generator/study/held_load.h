@@ -1,5 +1,5 @@
-/* Is a load that is held borne? Gerstle, Honarvar Gheitanbaf and Asadollahi (2013, section 5) let it
-   grow, hold it, and look: here the deflections of the two halves of the hold are compared.
+/* Is a load that is held borne? Gerstle, Honarvar Gheitanbaf and Asadollahi (2013, section 5) let
+   it grow, hold it, and look: here the deflections of the two halves of the hold are compared.
 
        |u|      ___ first    _____ second half of the hold
         |    /\/   \/\/\/\/\/

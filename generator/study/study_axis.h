@@ -1,10 +1,10 @@
 /* What a study varies: "lattice.spacing = 20, 10, 5 mm with material.S_t = 1e-4, 1.2e-4, 1.5e-4" is
-   an axis of three points and two keys that change together. Values are separated by commas, or, where
-   they have commas themselves, by semicolons; "40..60:5 kN" counts up, or down. A unit behind the last
-   number is that of those before it that have none.
+   an axis of three points and two keys that change together. Values are separated by commas, or,
+   where they have commas themselves, by semicolons; "40..60:5 kN" counts up, or down. A unit behind
+   the last number is that of those before it that have none.
 
-   The room: many runs of one deck: cases, their processes, table and picture; strength, convergence,
-   parameters from curves. */
+   The room: many runs of one deck: cases, their processes, table and picture; strength,
+   convergence, parameters from curves. */
 #ifndef PERILAT_GENERATOR_STUDY_AXIS_H
 #define PERILAT_GENERATOR_STUDY_AXIS_H
 

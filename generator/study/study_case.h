@@ -31,8 +31,8 @@ typedef struct study_case {
   int status; /* exit status of its run */
 } study_case;
 
-/* The points of all axes crossed, the first one changing most slowly. NULL after messages: there are
-   too many, or two are the same. */
+/* The points of all axes crossed, the first one changing most slowly. NULL after messages: there
+   are too many, or two are the same. */
 study_case *study_cross(study_request *r, const study_axis *axes, int axis_count, int *count);
 /* A case of a deck, with `count` keys set to the values; `folder` is that of the study. */
 study_case study_case_of(study_request *r, const char *path, const char *const *keys,

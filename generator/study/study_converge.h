@@ -5,8 +5,8 @@
 
 #include "generator/study/study_publish.h"
 
-/* Which of the varied keys it is, in their order. Its values are numbers other than 0, with units that
-   are known. Negative after a message. */
+/* Which of the varied keys it is, in their order. Its values are numbers other than 0, with units
+   that are known. Negative after a message. */
 int study_converge_key(study_request *r, const study_axis *axes, int axis_count);
 /* Tells it, and puts `converged`, `order`, `value`, `error`, `unit` and `reason` into the document.
    Exit status: 0 it converges, 2 not. `key`: which of the outcome's keys it is. */

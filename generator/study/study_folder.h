@@ -17,10 +17,10 @@ typedef struct study_folder {
    after a message. */
 bool study_folder_open(study_folder *f, arena *a, const char *path);
 void study_folder_close(study_folder *f);
-/* Takes up those cases that are not in the list, and finds out which are done. False after a message:
-   a name is that of another case, or the list cannot be written. */
+/* Takes up those cases that are not in the list, and finds out which are done. False after a
+   message: a name is that of another case, or the list cannot be written. */
 bool study_folder_take(study_folder *f, arena *a, study_case *cases, int count);
-/* What has become of a case whose run ended with `status`, or which is found: is there its result? */
+/* What has become of a case whose run ended with `status`, or which is found. */
 void study_folder_look(study_case *c, int status);
 
 #endif

@@ -1,5 +1,5 @@
-/* What a case has come to, as its result tells: the curve y(x) and its peak, the other monitors, the
-   energies at the end. */
+/* What a case has come to, as its result tells: the curve y(x) and its peak, the other monitors,
+   the energies at the end. */
 #ifndef PERILAT_GENERATOR_STUDY_ROW_H
 #define PERILAT_GENERATOR_STUDY_ROW_H
 
@@ -25,8 +25,8 @@ typedef struct study_row {
   double peak, at; /* of y, and the x there */
 } study_row;
 
-/* x NULL: time; y NULL: load, or else the first monitor. False after a message: the result is there,
-   but has no such history. */
+/* x NULL: time; y NULL: load, or else the first monitor. False after a message: the result is
+   there, but has no such history. */
 bool study_row_read(arena *a, const study_case *c, const char *x, const char *y, study_row *row);
 /* NULL: the row has none of that name. */
 const study_history *study_row_history(const study_row *row, const char *name);

@@ -269,8 +269,8 @@ static const load *borne(const scan *s) {
   return NULL;
 }
 
-/* The twin's largest load, as a load of the key: by what a load that is borne amounts to. False after
-   a message. */
+/* The twin's largest load, as a load of the key: by what a load that is borne amounts to. False
+   after a message. */
 static bool find_peak(const scan *s, double factor, strength *f) {
   study_request *r = s->request;
   const load *l = borne(s);

@@ -15,8 +15,8 @@ typedef struct lowest_mode {
 } lowest_mode;
 
 /* Values up to `nothing` are 0: only counted, and no further than LOWEST_MOST_ZEROS. Of the others
-   the lowest, ascending: `most`, or as many as there are; their vectors are malloc'ed. Returns NULL,
-   or why there are none: "there is not enough memory ..." */
+   the lowest, ascending: `most`, or as many as there are; their vectors are malloc'ed. Returns
+   NULL, or why there are none: "there is not enough memory ..." */
 enum { LOWEST_MOST_ZEROS = 12 };
 const char *lowest_modes_find(const sparse_matrix *a, double nothing, int most, lowest_mode *modes,
                               int *count, int *zeros);

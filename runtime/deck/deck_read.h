@@ -19,13 +19,13 @@ const deck *deck_read_what_is_right(arena *a, source_set *sources, int file,
                                     const deck_override *overrides, int override_count,
                                     diagnostics *d);
 
-/* The `&study` of a file alone, or its defaults where it has none; *whole: the file has other groups,
-   too. NULL after messages. */
+/* The `&study` of a file alone, or its defaults where it has none; *whole: the file has other
+   groups, too. NULL after messages. */
 const deck_study *deck_read_study(arena *a, source_set *sources, int file, bool *whole,
                                   diagnostics *d);
 
-/* What the deck, with its overrides, gives for "group.key", as --set would take it: "-42 kN/m". NULL
-   where it gives none, or after messages. */
+/* What the deck, with its overrides, gives for "group.key", as --set would take it: "-42 kN/m".
+   NULL where it gives none, or after messages. */
 const char *deck_read_value(arena *a, source_set *sources, int file, const deck_override *overrides,
                             int override_count, const char *name, diagnostics *d);
 

@@ -304,7 +304,8 @@ const namelist_key *deck_find_key(arena *a, source_set *sources, namelist *n,
                                   const deck_grammar *grammar, const char *name, diagnostics *d) {
   const char *text = arena_printf(a, "%s=", name), *group;
   const int file = source_add(sources, name, text, strlen(text));
-  setter s = {.memory = a, .sources = sources, .groups = n, .grammar = grammar, .d = d, .file = file};
+  setter s = {
+      .memory = a, .sources = sources, .groups = n, .grammar = grammar, .d = d, .file = file};
   s.text = sources->items[file].text;
   if (!split(&s, &group) || !find_names(&s, group)) return NULL;
   const namelist_group *g = find_group(&s);

@@ -15,7 +15,8 @@
      /particles/resolved    [N] 1 where the bonds resolve all strains, else 0; only of particles
                             that stand on no lattice
      /bonds/<interaction>   [M, 2] particle indices
-     /history/time          [T] s, or pure numbers of what the samples are of; /history/<monitor> [T], attributes units and long_name;
+     /history/time          [T] s, or pure numbers of what the samples are of;
+                            /history/<monitor> [T], attributes units and long_name;
                             /history/energy/<term> [T] J
      /frames/time           [F] likewise; /frames/<field> [F, N, components];
                             /frames/<interaction>/<bond field> [F, M], attributes units, long_name

@@ -24,8 +24,8 @@ typedef struct mode_count {
 } mode_count;
 
 struct simulation;
-/* modes[most] of a run before its first step, whose state stays as it is; to be freed. Returns NULL,
-   or why there are none. */
+/* modes[most] of a run before its first step, whose state stays as it is; to be freed. Returns
+   NULL, or why there are none. */
 const char *modes_find(struct simulation *s, int most, mode *modes, mode_count *count);
 void modes_free(mode *modes, int count, int body_count);
 

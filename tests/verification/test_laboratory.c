@@ -1,6 +1,6 @@
-/* The laboratory's beam with a notch off the middle and its L-shaped panel, with the parameters stated with
-   the tests: how far the curves are from the measured ones is what the page says, and the runs are
-   quasi-static. */
+/* The laboratory's beam with a notch off the middle and its L-shaped panel, with the parameters
+   stated with the tests: how far the curves are from the measured ones is what the page says, and
+   the runs are quasi-static. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -34,8 +34,8 @@ static void says(const laboratory *l, const char *form, double value) {
   page_line_says(FOLDER "README.md", l->row, figure);
 }
 
-/* Inertia has no part: little kinetic energy up to the peak, the feet carry the load, and the ledger
-   closes. */
+/* Inertia has no part: little kinetic energy up to the peak, the feet carry the load, and the
+   ledger closes. */
 static void is_quasi_static(const laboratory *l, const deck_case *c, long peak) {
   const double *kinetic = deck_case_series(c, "energy/kinetic"),
                *work = deck_case_series(c, "energy/external"), *load = deck_case_series(c, "load");

@@ -1,4 +1,5 @@
-/* perilat study: tables against single runs, whatever is stopped, killed, damaged or asked wrong. */
+/* perilat study: tables against single runs, whatever is stopped, killed, damaged or asked wrong.
+   */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
