@@ -31,7 +31,7 @@ bool fit_curve_begin(fit_curve *c, const curve_points *measured, double weight) 
   double **columns[] = {&c->x, &c->y, &c->factor};
   for (int i = 0; i < 3; i++)
     *columns[i] = must_alloc((size_t)c->count * sizeof(double));
-  const double all = weight / sqrt((double)c->count), mean = width / (double)c->count;
+  const double all = sqrt(weight / (double)c->count), mean = width / (double)c->count;
   long n = 0;
   for (long k = 0; k < measured->count; k++) {
     if (!is_point(measured, k)) continue;

@@ -12,9 +12,10 @@
 #include <stdbool.h>
 
 typedef enum held_verdict {
-  HELD_BORNE,     /* the second half is no larger than the first, but for `growth` */
-  HELD_UNDECIDED, /* it is: a longer hold may tell */
-  HELD_COLLAPSED  /* it passes the limit, or is twice as large */
+  HELD_BORNE,     /* the halves agree, but for `growth` */
+  HELD_UNDECIDED, /* the second is smaller: still coming to rest, a longer hold may tell */
+  HELD_COLLAPSED, /* the second is larger, or it passes the limit */
+  HELD_CUT        /* the run ended before the hold did: nobody knows */
 } held_verdict;
 
 typedef struct held_load {
@@ -22,9 +23,9 @@ typedef struct held_load {
   held_verdict verdict;
 } held_load;
 
-/* Of a monitor u(t), [count] samples, with the load held from the time `held` on. Samples that are no
-   number are a collapse. */
-held_load held_load_judge(const double *time, const double *u, long count, double held,
+/* Of a monitor u(t), [count] samples, with the load held from the time `held` until `end`. Samples
+   that are no number are a collapse. */
+held_load held_load_judge(const double *time, const double *u, long count, double held, double end,
                           double growth, double limit);
 
 #endif

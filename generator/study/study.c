@@ -28,11 +28,31 @@ static int tell_stopped(const study_case *cases, int count, int signal_number) {
 
 /* --- values crossed --------------------------------------------------------------------------- */
 
+/* The last of two would silently win. */
+static bool is_new(study_request *r, const study_axis *axes, int axis, int key) {
+  const study_key *own = &axes[axis].keys[key];
+  for (int a = 0; a <= axis; a++)
+    for (int k = 0; k < (a < axis ? axes[a].key_count : key); k++)
+      if (study_same_key(axes[a].keys[k].name, own->name)) {
+        diag_report(&r->said, DIAG_DUPLICATE_KEY, own->where, "`%s` is varied twice", own->name);
+        diag_hint(&r->said, "give all its values at once");
+        return false;
+      }
+  return true;
+}
+
+static bool keys_differ(study_request *r, const study_axis *axes) {
+  for (int a = 0; a < r->vary.count; a++)
+    for (int k = 0; k < axes[a].key_count; k++)
+      if (!is_new(r, axes, a, k)) return false;
+  return true;
+}
+
 static study_axis *read_axes(study_request *r) {
   study_axis *axes = arena_alloc(r->memory, ((size_t)r->vary.count + 1) * sizeof *axes);
   for (int k = 0; k < r->vary.count; k++)
     if (!study_axis_read(r->memory, &r->vary.items[k], &axes[k], &r->said)) return NULL;
-  return axes;
+  return keys_differ(r, axes) ? axes : NULL;
 }
 
 /* The names of all varied keys, whole where two have one last part. */
@@ -51,15 +71,6 @@ static const char **column_names(study_request *r, const study_axis *axes, int a
   return shown;
 }
 
-/* Of the key that goes to 0, which is there. */
-static int position_of(const study_request *r, const study_axis *axes) {
-  int at = 0;
-  for (int a = 0; a < r->vary.count; a++)
-    for (int k = 0; k < axes[a].key_count; k++, at++)
-      if (study_key_is(&axes[a].keys[k], r->converge.text)) return at;
-  return 0;
-}
-
 /* What is wrong with the first case is likely wrong with all. */
 static bool check_cases(study_request *r, study_case *cases, int count) {
   for (int k = 0; k < count; k++)
@@ -71,7 +82,8 @@ static int run_crossed(study_request *r, study_pool *pool, json *w) {
   study_outcome o = {.request = r, .x = r->o.x, .y = r->o.y};
   const study_axis *axes = read_axes(r);
   if (!axes || !(o.cases = study_cross(r, axes, r->vary.count, &o.count))) return 1;
-  if (r->converge.text && !study_converge_check(r, axes, r->vary.count)) return 1;
+  const int sizes = r->converge.text ? study_converge_key(r, axes, r->vary.count) : 0;
+  if (sizes < 0) return 1;
   o.keys = column_names(r, axes, r->vary.count, &o.key_count);
   if (!check_cases(r, o.cases, o.count)) return 1;
   if (r->check_only) return 0;
@@ -79,7 +91,7 @@ static int run_crossed(study_request *r, study_pool *pool, json *w) {
   const int stopped = study_pool_run(pool, o.cases, o.count);
   if (stopped > 0) return tell_stopped(o.cases, o.count, stopped);
   if (stopped < 0 || !study_read_rows(&o) || !study_publish(&o, w)) return 2;
-  if (r->converge.text) return study_converge(&o, position_of(r, axes), w);
+  if (r->converge.text) return study_converge(&o, sizes, w);
   return study_rows_good(&o) == o.count ? 0 : 2;
 }
 

@@ -2,6 +2,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -84,6 +85,20 @@ static bool add_value(arena *a, study_key *key, int *count, piece value, diagnos
   key->values = arena_room(a, key->values, *count, sizeof *key->values);
   key->values[(*count)++] = value.text;
   return true;
+}
+
+/* Without the number of the first one. */
+static size_t without_first(const char *name, char *text, size_t size) {
+  const char *first = strstr(name, "[1].");
+  return (size_t)(first ? snprintf(text, size, "%.*s%s", (int)(first - name), name, first + 3)
+                        : snprintf(text, size, "%s", name));
+}
+
+bool study_same_key(const char *a, const char *b) {
+  char texts[2][400];
+  return without_first(a, texts[0], sizeof texts[0]) < sizeof texts[0] &&
+         without_first(b, texts[1], sizeof texts[1]) < sizeof texts[1] &&
+         strcasecmp(texts[0], texts[1]) == 0;
 }
 
 bool study_key_is(const study_key *key, const char *given) {
@@ -172,7 +187,10 @@ static bool read_values(arena *a, const study_text *given, size_t begin, size_t 
                         int *count, diagnostics *d) {
   const char *text = given->text;
   *count = 0;
-  if (find(text, begin, end, "..") < end) {
+  const piece first = piece_of(a, given, begin, find(text, begin, end, ".."));
+  double number;
+  const char *rest;
+  if (find(text, begin, end, "..") < end && study_split_number(first.text, &number, &rest)) {
     study_range r = {.low = NULL};
     return read_ends(a, given, begin, end, &r, d) &&
            count_up(a, &r, piece_of(a, given, begin, end).where, key, count, d);

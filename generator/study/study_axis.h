@@ -39,6 +39,9 @@ bool study_axis_read(arena *a, const study_text *given, study_axis *axis, diagno
 /* Given in full, or by its last part, whatever the case. */
 bool study_key_is(const study_key *key, const char *given);
 
+/* "material.E" and "Material[1].e" are one. */
+bool study_same_key(const char *a, const char *b);
+
 /* A range "group.key = low..high" and its step; the values in SI where they are read as numbers by
    `study_number`. Without a step *step is NULL. *high NULL: the key alone, or one value. */
 typedef struct study_range {

@@ -209,12 +209,11 @@ static bool take_law(const deck *k, int interaction, study_case *c, uint64_t *ha
 /* The energies' last parts are histories, too. */
 static bool is_history(const deck *k, const char *name) {
   static const char *const energies[] = {"kinetic", "stored", "external", "imbalance"};
-  bool found = !name || strcmp(name, "time") == 0 || strchr(name, '/') ||
-               strncmp(name, "dissipated", strlen("dissipated")) == 0 ||
-               deck_find_monitor(k, name) >= 0;
+  if (!name || strcmp(name, "time") == 0 || deck_find_monitor(k, name) >= 0) return true;
+  bool energy = strncmp(name, "energy/", 7) == 0 || strncmp(name, "dissipated", 10) == 0;
   for (size_t e = 0; e < sizeof energies / sizeof *energies; e++)
-    found = found || strcmp(name, energies[e]) == 0;
-  return found;
+    energy = energy || strcmp(name, energies[e]) == 0;
+  return energy && k->output.energy;
 }
 
 /* Hours of computing must not end in a curve that is not there. */

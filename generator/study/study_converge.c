@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/base/elementary.h"
 #include "dsl/base/units.h"
 #include "generator/study/convergence.h"
 
@@ -20,28 +21,31 @@ static double size_of(const char *text) {
   return number * u.factor;
 }
 
-bool study_converge_check(study_request *r, const study_axis *axes, int axis_count) {
-  const study_axis *axis = NULL;
-  const study_key *key = NULL;
-  for (int a = 0; a < axis_count && !key; a++)
-    for (int k = 0; k < axes[a].key_count && !key; k++)
-      if (study_key_is(&axes[a].keys[k], r->converge.text)) {
-        axis = &axes[a];
-        key = &axis->keys[k];
-      }
-  if (!key) {
-    diag_report(&r->said, DIAG_UNKNOWN_NAME, r->converge.where, "`%s` is not varied",
-                r->converge.text);
-    diag_hint(&r->said, "--converge names one of the keys of --vary");
-    return false;
-  }
+static int refuse(study_request *r, span where, const char *sentence) {
+  diag_report(&r->said, DIAG_BAD_VALUE, where, "`%s` %s", r->converge.text, sentence);
+  diag_hint(&r->said, "--converge names one of the keys of --vary, whose values could go to 0");
+  return -1;
+}
+
+static bool has_sizes(const study_axis *axis, const study_key *key) {
+  bool sizes = true;
   for (int k = 0; k < axis->count; k++)
-    if (!(fabs(size_of(key->values[k])) > 0)) {
-      diag_report(&r->said, DIAG_BAD_VALUE, key->where, "`%s` = %s is no size that could go to 0",
-                  key->name, key->values[k]);
-      return false;
+    sizes = sizes && fabs(size_of(key->values[k])) > 0;
+  return sizes;
+}
+
+int study_converge_key(study_request *r, const study_axis *axes, int axis_count) {
+  int found = -1, at = 0;
+  for (int a = 0; a < axis_count; a++)
+    for (int k = 0; k < axes[a].key_count; k++, at++) {
+      const study_key *key = &axes[a].keys[k];
+      if (!study_key_is(key, r->converge.text)) continue;
+      if (found >= 0)
+        return refuse(r, r->converge.where, "may be two of the keys; name it in full");
+      if (!has_sizes(&axes[a], key)) return refuse(r, key->where, "has a value that is no size");
+      found = at;
     }
-  return true;
+  return found < 0 ? refuse(r, r->converge.where, "is not varied") : found;
 }
 
 /* --- the levels ------------------------------------------------------------------------------- */
@@ -88,8 +92,8 @@ static bool work_moves(const study_outcome *o, double *least, double *largest) {
   for (int r = 0; r < o->count; r++) {
     const double work = o->cases[r].crack_energy;
     if (!(work > 0) || !isfinite(work)) return false;
-    *least = fmin(*least, work);
-    *largest = fmax(*largest, work);
+    *least = pl_fmin(*least, work);
+    *largest = pl_fmax(*largest, work);
   }
   return *largest > (1 + same) * *least;
 }

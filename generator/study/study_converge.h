@@ -5,9 +5,9 @@
 
 #include "generator/study/study_publish.h"
 
-/* The key is one of those varied, and its values are numbers in one unit, other than 0. False after a
-   message. */
-bool study_converge_check(study_request *r, const study_axis *axes, int axis_count);
+/* Which of the varied keys it is, in their order. Its values are numbers other than 0, with units that
+   are known. Negative after a message. */
+int study_converge_key(study_request *r, const study_axis *axes, int axis_count);
 /* Tells it, and puts `converged`, `order`, `value`, `error`, `unit` and `reason` into the document.
    Exit status: 0 it converges, 2 not. `key`: which of the outcome's keys it is. */
 int study_converge(const study_outcome *o, int key, json *w);

@@ -34,6 +34,7 @@ typedef struct fit {
   study_case *cases; /* all that were asked for, deck by deck of a point */
   double *squares;   /* [case_count] of its curve */
   int case_count;
+  int without; /* runs that gave no curve, since it was set to 0 */
   int stopped; /* a signal, or -1 */
 } fit;
 
@@ -47,7 +48,7 @@ static bool convert(const char *text, const char *wanted, double *value) {
   if (!study_split_number(text, value, &own)) return false;
   if (*own && !unit_parse(own, strlen(own), &from, &bad, &length)) return false;
   if (*wanted && !unit_parse(wanted, strlen(wanted), &to, &bad, &length)) return false;
-  if (*own && !dim_equal(from.dim, to.dim)) return false;
+  if (*own && *wanted && !dim_equal(from.dim, to.dim)) return false; /* without one it is in SI */
   *value *= from.factor / to.factor;
   return true;
 }
@@ -70,6 +71,9 @@ static bool read_bounds(fit *f, const study_text *given, const study_range *rang
     return refuse_bounds(r, given, "the bounds have different units");
   if (!(p->lower < p->upper))
     return refuse_bounds(r, given, "the lower bound is not below the upper one");
+  for (int k = 0; k < f->count; k++)
+    if (study_same_key(f->keys[k], range->key.name))
+      return refuse_bounds(r, given, "this parameter is there twice");
   f->units[f->count] = high_unit;
   f->keys[f->count] = range->key.name;
   return true;
@@ -198,8 +202,10 @@ static bool residuals_of(fit *f, int of, int at, double *residuals) {
   if (ran && !study_row_read(r->memory, c, r->o.x, r->o.y, &row)) return false;
   if (ran)
     fit_curve_residuals(&t->curve, row.x, row.y, row.count, residuals);
-  else
+  else {
     fit_curve_failed(&t->curve, residuals);
+    f->without++;
+  }
   f->squares[at] = 0;
   for (long k = 0; k < t->curve.count; k++)
     f->squares[at] += residuals[k] * residuals[k];
@@ -262,6 +268,14 @@ static const char *unit_shown(const char *unit_text) {
   return *unit_text ? unit_text : "1";
 }
 
+/* Of all curves, as they are weighted; a band counts more where it is narrow. */
+static double root_mean_square(const fit *f, const fit_found *found) {
+  double weights = 0;
+  for (int k = 0; k < f->decks; k++)
+    weights += f->request->o.weight_count ? f->request->o.weights[k] : 1;
+  return sqrt(found->squares / weights);
+}
+
 static void tell(const fit *f, const fit_problem *q, const fit_found *found,
                  const fit_uncertainty *u) {
   for (int p = 0; p < f->count; p++) {
@@ -276,11 +290,11 @@ static void tell(const fit *f, const fit_problem *q, const fit_found *found,
       if (fabs(u->correlation[p][q2]) > 0.5)
         printf("  correlation of %s and %s: %.3f\n", f->keys[q2], f->keys[p],
                u->correlation[p][q2]);
-  printf(
-      "  root of the mean square: %.3g %% of the largest measured value; %d points tried, %d more "
-      "for the intervals%s\n",
-      100 * sqrt(found->squares / f->decks), found->runs, u->runs,
-      found->end == FIT_LIMIT ? "; the search was cut short: more with --runs" : "");
+  printf("  root of the mean square, as weighted: %.3g %% of the largest measured value; %d points "
+         "tried, %d more "
+         "for the intervals%s\n",
+         100 * root_mean_square(f, found), found->runs, u->runs,
+         found->end == FIT_LIMIT ? "; the search was cut short: more with --runs" : "");
 }
 
 static void put(const fit *f, const fit_problem *q, const fit_found *found,
@@ -310,7 +324,7 @@ static void put(const fit *f, const fit_problem *q, const fit_found *found,
     json_array_end(w);
   }
   json_array_end(w);
-  json_put_number(w, "rms", sqrt(found->squares / f->decks));
+  json_put_number(w, "rms", root_mean_square(f, found));
   json_put_bool(w, "found", found->end == FIT_FOUND);
   json_put_integer(w, "points", found->runs);
   json_put_integer(w, "points_of_intervals", u->runs);
@@ -363,6 +377,20 @@ static bool all_told(const fit *f, const fit_uncertainty *u) {
   return told;
 }
 
+/* A run beside the best point failed: its residuals are none. */
+static void forget_intervals(const fit *f, fit_uncertainty *u) {
+  fprintf(stderr,
+          "perilat: warning: %d run%s beside the best point gave no curve: the intervals of "
+          "the parameters are not known\n",
+          f->without, f->without == 1 ? "" : "s");
+  for (int p = 0; p < f->count; p++) {
+    u->error[p] = u->lower[p] = u->upper[p] = u->sensitivity[p] = NAN;
+    if (u->verdict[p] == FIT_TOLD) u->verdict[p] = FIT_UNTOLD;
+    for (int o = 0; o < f->count; o++)
+      u->correlation[p][o] = NAN;
+  }
+}
+
 static int search(fit *f, json *w) {
   long residuals;
   fit_found found = {.residuals = NULL};
@@ -378,7 +406,9 @@ static int search(fit *f, json *w) {
       .tolerance = accuracy,
       .most_runs = f->request->o.runs};
   fit_search(&q, &found);
+  f->without = 0;
   bool good = found.end != FIT_BROKEN && fit_uncertainty_find(&q, &found, &u);
+  if (good && f->without) forget_intervals(f, &u);
   good = good && publish(f, &found, w);
   if (good) tell(f, &q, &found, &u);
   if (good && w) put(f, &q, &found, &u, w);

@@ -47,8 +47,11 @@ static bool read_list(study_folder *f, arena *a, const char *path) {
   }
   for (const char *line = text, *end; (end = strchr(line, '\n')); line = end + 1)
     read_line(f, a, line, (size_t)(end - line));
+  const bool whole = length == 0 || text[length - 1] == '\n';
   free(text);
-  return true;
+  if (whole || write(f->list, "\n", 1) == 1) return true; /* of half a line */
+  say_error("cannot write into the folder `%s`: %s", f->path, strerror(errno));
+  return false;
 }
 
 /* Runs of a study that was killed write their checkpoints and end. */
@@ -65,13 +68,26 @@ static bool lock(const study_folder *f) {
   return false;
 }
 
+/* What stands there under a name that no study has used yet is somebody's. */
+static bool is_free(arena *a, const char *path, const char *list) {
+  static const char *const endings[] = {".csv", ".h5", ".png"};
+  if (access(list, F_OK) == 0) return true;
+  for (size_t k = 0; k < sizeof endings / sizeof *endings; k++)
+    if (access(arena_printf(a, "%s%s", path, endings[k]), F_OK) == 0) {
+      say_error("the study would overwrite `%s%s`; name it with -o", path, endings[k]);
+      return false;
+    }
+  return true;
+}
+
 bool study_folder_open(study_folder *f, arena *a, const char *path) {
   *f = (study_folder){.path = path, .list = -1};
+  const char *list = arena_printf(a, "%s/cases.txt", path);
+  if (!is_free(a, path, list)) return false;
   if (mkdir(path, 0777) != 0 && errno != EEXIST) {
     say_error("cannot make the folder `%s`: %s", path, strerror(errno));
     return false;
   }
-  const char *list = arena_printf(a, "%s/cases.txt", path);
   f->list = open(list, O_RDWR | O_CREAT | O_APPEND, 0666);
   if (f->list >= 0) return lock(f) && read_list(f, a, list);
   say_error("cannot write into the folder `%s`: %s", path, strerror(errno));
@@ -106,22 +122,21 @@ static const struct kept_case *find_kept(const study_folder *f, const char *name
   return NULL;
 }
 
-static bool clash(const study_folder *f, const study_case *c, const char *what) {
+static bool clash(const study_folder *f, const char *what) {
   say_error("`%s` holds %s of another deck, law or setting than this study's\n"
             "  name this one with -o, or move the folder away",
             f->path, what);
-  (void)c;
   return false;
 }
 
-/* One after the other, so that what could not be written is no half line of another's. */
 static bool keep(study_folder *f, arena *a, const study_case *c) {
   char line[1200];
+  const off_t before = lseek(f->list, 0, SEEK_END);
   const int length = snprintf(line, sizeof line, "%016" PRIx64 " %s\n", c->identity, c->name);
+  errno = 0;
   if (write(f->list, line, (size_t)length) != length) {
-    const int why = errno;
-    if (write(f->list, "\n", 1) != 1) errno = why;
-    say_error("cannot write into the folder `%s`: %s", f->path, strerror(why ? why : ENOSPC));
+    say_error("cannot write into the folder `%s`: %s", f->path, strerror(errno ? errno : ENOSPC));
+    if (before >= 0 && ftruncate(f->list, before) != 0) errno = 0; /* half a line is passed over */
     return false;
   }
   f->kept = arena_room(a, f->kept, f->kept_count, sizeof *f->kept);
@@ -133,11 +148,10 @@ bool study_folder_take(study_folder *f, arena *a, study_case *cases, int count) 
   for (int k = 0; k < count; k++) {
     const struct kept_case *kept = find_kept(f, cases[k].name);
     if (kept && kept->identity != cases[k].identity)
-      return clash(f, &cases[k], arena_printf(a, "a case `%s`", cases[k].name));
+      return clash(f, arena_printf(a, "a case `%s`", cases[k].name));
     if (!kept && access(cases[k].result, F_OK) == 0)
-      return clash(f, &cases[k], arena_printf(a, "a result `%s.h5`", cases[k].name));
+      return clash(f, arena_printf(a, "a result `%s.h5`", cases[k].name));
   }
-  errno = 0;
   for (int k = 0; k < count; k++) {
     if (find_kept(f, cases[k].name)) {
       study_folder_look(&cases[k], 0);

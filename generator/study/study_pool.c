@@ -29,6 +29,7 @@ enum { STOPPING_SIGNALS = sizeof stopping_signals / sizeof *stopping_signals };
 
 static void catch_signals(struct sigaction before[STOPPING_SIGNALS]) {
   stopped_by = 0;
+  signal(SIGCHLD, SIG_DFL); /* else nobody is told how runs end */
   for (int k = 0; k < STOPPING_SIGNALS; k++) {
     struct sigaction action = {.sa_handler = on_stop};
     sigaction(stopping_signals[k], NULL, &before[k]);
@@ -99,11 +100,19 @@ static void run_case(const work *w, const study_case *c, double *fraction) {
 
 static pid_t start(const work *w, int of, const struct sigaction before[STOPPING_SIGNALS]) {
   fflush(NULL);
+  sigset_t stopping, as_it_was; /* none comes before the run can take it */
+  sigemptyset(&stopping);
+  for (int k = 0; k < STOPPING_SIGNALS; k++)
+    sigaddset(&stopping, stopping_signals[k]);
+  sigprocmask(SIG_BLOCK, &stopping, &as_it_was);
   const pid_t parent = getpid(), child = fork();
+  if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    release_signals(before);
+  }
+  sigprocmask(SIG_SETMASK, &as_it_was, NULL);
   if (child != 0) return child;
-  prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(RUN_FAILED);
-  release_signals(before);
   run_case(w, &w->cases[of], &w->fractions[of]);
   return 0;
 }
@@ -132,10 +141,19 @@ static void start_some(work *w, int *next, const struct sigaction before[STOPPIN
   }
 }
 
+/* Somebody else has taken how they ended. */
+static void forget_all(work *w) {
+  for (int j = 0; j < w->jobs; j++) {
+    if (w->running[j].child) study_folder_look(&w->cases[w->running[j].of], RUN_FAILED);
+    w->running[j].child = 0;
+  }
+}
+
 /* One that has ended; false: none has. */
 static bool collect(work *w) {
   int status;
   const pid_t child = waitpid(-1, &status, WNOHANG);
+  if (child < 0 && errno == ECHILD) forget_all(w);
   if (child <= 0) return false;
   for (int j = 0; j < w->jobs; j++) {
     if (w->running[j].child != child) continue;

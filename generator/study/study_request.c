@@ -7,6 +7,7 @@
 #include "generator/kernel/model.h"
 #include "generator/run/run.h"
 #include "runtime/deck/deck_read.h"
+#include "runtime/deck/group_run.h"
 
 void study_request_begin(study_request *r) {
   *r = (study_request){.memory = arena_new()};
@@ -53,17 +54,30 @@ static study_text text_of(const deck_study *s, const char *key, const char *text
   return (study_text){text, text ? where : (span){0, 0, 0}};
 }
 
+/* The command's own come behind, where the last one counts. */
+static void take_settings(study_request *r, const deck_study *s) {
+  const study_list own = r->set;
+  r->set = (study_list){NULL, 0};
+  take_list(r, &r->set, &s->set);
+  for (int k = 0; k < own.count; k++)
+    study_list_add(r, &r->set, own.items[k]);
+}
+
+/* What the options ask for the group does not. */
+static void take_question(study_request *r, const deck_study *s) {
+  const bool scans = r->strength.text || r->fit.count, varies = r->vary.count > 0;
+  if (!varies && !scans) take_list(r, &r->vary, &s->vary);
+  if (varies || scans || r->converge.text) return;
+  r->converge = text_of(s, "converge", s->converge);
+  r->strength = text_of(s, "strength", s->strength);
+  take_list(r, &r->fit, &s->fit);
+}
+
 static void take_group(study_request *r, const deck_study *s) {
   deck_study *o = &r->o;
-  const bool asked = r->converge.text || r->strength.text || r->fit.count;
   if (!r->decks.count) take_files(r, &r->decks, &s->decks);
-  if (!r->vary.count) take_list(r, &r->vary, &s->vary);
-  take_list(r, &r->set, &s->set);
-  if (!asked) {
-    r->converge = text_of(s, "converge", s->converge);
-    r->strength = text_of(s, "strength", s->strength);
-    take_list(r, &r->fit, &s->fit);
-  }
+  take_question(r, s);
+  take_settings(r, s);
   if (!r->to.count) take_files(r, &r->to, &s->to);
   if (!o->x) o->x = s->x;
   if (!o->y) o->y = s->y;
@@ -108,15 +122,49 @@ static bool refuse(study_request *r, span where, const char *sentence, const cha
   return false;
 }
 
+/* One of the words that the group's table lists. */
+static bool is_choice(study_request *r, const char *key, const char *word) {
+  const int at = deck_key_find(&deck_group_study, key);
+  const char *words[16];
+  const int count = deck_choices(r->memory, deck_group_study.keys[at].choices, words, 16);
+  for (int k = 0; k < count; k++)
+    if (strcmp(words[k], word) == 0) return true;
+  const study_text given = study_option(r, arena_printf(r->memory, "--%s", key), word);
+  diag_report(&r->said, DIAG_BAD_VALUE, given.where, "--%s takes %s, not `%s`", key,
+              deck_group_study.keys[at].choices, word);
+  return false;
+}
+
+static const char *base_of(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash ? slash + 1 : path;
+}
+
+/* Cases are named after their decks. */
+static bool names_differ(study_request *r) {
+  for (int k = 0; k < r->decks.count; k++)
+    for (int other = 0; other < k; other++)
+      if (strcmp(base_of(r->decks.items[k].text), base_of(r->decks.items[other].text)) == 0)
+        return refuse(r, r->decks.items[k].where, "two of the decks have the same name",
+                      "give each file a name of its own");
+  return true;
+}
+
 static bool is_sensible(study_request *r) {
-  const bool fits = r->fit.count > 0;
+  const bool fits = r->fit.count > 0, scans = r->strength.text != NULL;
   const span whole = {0, 0, UINT16_MAX};
-  if (!r->vary.count && !r->strength.text && !fits)
+  if (fits + scans + (r->converge.text != NULL) > 1)
+    return refuse(r, whole, "--converge, --strength and --fit are three questions",
+                  "make a study of each");
+  if (!r->vary.count && !scans && !fits)
     return refuse(r, r->converge.text ? r->converge.where : whole, "nothing is varied",
                   "say what: --vary lattice.spacing=20,10,5 mm; or --strength, --fit");
-  if (r->vary.count && (fits || r->strength.text))
+  if (r->vary.count && (fits || scans))
     return refuse(r, r->vary.items[0].where, "--vary goes with --converge, or stands by itself",
                   "give it another value for all runs with --set");
+  if (!scans && r->o.twin) return refuse(r, whole, "a twin belongs to --strength", "leave it out");
+  if (!fits && (r->to.count || r->o.weight_count))
+    return refuse(r, whole, "measured curves and weights belong to --fit", "leave them out");
   if (!fits && (r->decks.count > 1))
     return refuse(r, r->decks.items[1].where, "only --fit takes several decks",
                   "make a study of each");
@@ -125,7 +173,7 @@ static bool is_sensible(study_request *r) {
                   "--fit needs one measured curve for each deck", "--to lab.csv, as many as decks");
   if (fits && r->o.weight_count && r->o.weight_count != r->decks.count)
     return refuse(r, whole, "as many weights as decks are needed", "--weight W, one for each --to");
-  return true;
+  return names_differ(r) && is_choice(r, "of", r->o.of) && is_choice(r, "search", r->o.search);
 }
 
 bool study_request_complete(study_request *r) {

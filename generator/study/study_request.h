@@ -24,7 +24,7 @@ typedef struct study_request {
   deck_study o;                  /* the rest; its lists are those above */
   bool json, no_physics;
   bool check_only; /* nothing is run */
-  int threads; /* of all runs together; 0: as many as there are processors */
+  int threads;     /* of all runs together; 0: as many as there are processors */
 } study_request;
 
 void study_request_begin(study_request *r);

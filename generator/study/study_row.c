@@ -9,18 +9,23 @@
 #include "runtime/result/result_find.h"
 #include "runtime/result/result_read.h"
 
-static const double *series_of(arena *a, result_file *f, const char *name, long *count,
-                               const char **unit_text) {
+/* malloc'ed; NULL after a message. */
+static double *read_series(arena *a, result_file *f, const char *name, long *count,
+                           const char **unit_text) {
   char error[2048], own_unit[64];
   double *read = result_read_series(f, name, count, own_unit, sizeof own_unit, error, sizeof error);
-  if (!read) {
-    say_error("%s", error);
-    return NULL;
-  }
+  if (!read) say_error("%s", error);
+  *unit_text = read ? arena_text(a, own_unit, strlen(own_unit)) : NULL;
+  return read;
+}
+
+static const double *series_of(arena *a, result_file *f, const char *name, long *count,
+                               const char **unit_text) {
+  double *read = read_series(a, f, name, count, unit_text);
+  if (!read) return NULL;
   double *kept = arena_alloc(a, ((size_t)*count + 1) * sizeof *kept);
   if (*count) memcpy(kept, read, (size_t)*count * sizeof *kept);
   free(read);
-  *unit_text = arena_text(a, own_unit, strlen(own_unit));
   return kept;
 }
 
@@ -35,7 +40,7 @@ static bool read_history(arena *a, result_file *f, const study_row *row, const c
                          study_history *h) {
   long count = 0;
   const char *unit_text;
-  const double *values = series_of(a, f, name, &count, &unit_text);
+  double *values = read_series(a, f, name, &count, &unit_text);
   if (!values) return false;
   const long most = peak_of(values, count);
   *h = (study_history){.name = arena_text(a, name, strlen(name)),
@@ -43,6 +48,7 @@ static bool read_history(arena *a, result_file *f, const study_row *row, const c
                        .peak = most < 0 ? NAN : values[most],
                        .peak_time = most < 0 || most >= row->count ? NAN : row->time[most],
                        .last = count ? values[count - 1] : NAN};
+  free(values);
   return true;
 }
 
@@ -134,20 +140,6 @@ bool study_row_read(arena *a, const study_case *c, const char *x, const char *y,
   const bool good = read_row(a, f, x, y, row);
   result_read_close(f);
   return good;
-}
-
-const double *study_row_series(arena *a, const study_case *c, const char *name,
-                               const char **unit_text) {
-  char error[2048];
-  long count;
-  result_file *f = result_read(c->result, error, sizeof error);
-  if (!f) {
-    say_error("%s", error);
-    return NULL;
-  }
-  const double *values = series_of(a, f, name, &count, unit_text);
-  result_read_close(f);
-  return values;
 }
 
 const study_history *study_row_history(const study_row *row, const char *name) {

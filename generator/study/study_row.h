@@ -28,9 +28,6 @@ typedef struct study_row {
 /* x NULL: time; y NULL: load, or else the first monitor. False after a message: the result is there,
    but has no such history. */
 bool study_row_read(arena *a, const study_case *c, const char *x, const char *y, study_row *row);
-/* Of one more history; NULL after a message. [row->count] */
-const double *study_row_series(arena *a, const study_case *c, const char *name,
-                               const char **unit_text);
 /* NULL: the row has none of that name. */
 const study_history *study_row_history(const study_row *row, const char *name);
 

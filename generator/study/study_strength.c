@@ -4,7 +4,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
+#include "dsl/base/elementary.h"
 #include "dsl/base/units.h"
 #include "generator/study/held_load.h"
 #include "generator/study/study_deck.h"
@@ -26,6 +28,7 @@ typedef struct scan {
   study_request *request;
   study_pool *pool;
   const char *key, *unit; /* "force.per_length", "kN/m" */
+  bool key_alone;         /* no loads were given */
   double held;            /* s: from then on the load is held, */
   double hold;            /* s: as long in the deck */
   load *loads;            /* ascending in size */
@@ -35,11 +38,16 @@ typedef struct scan {
 
 /* --- what the deck says ----------------------------------------------------------------------- */
 
-/* s; 0 where the deck gives none. */
-static double time_of(study_request *r, const study_deck *t, const char *name, bool *good) {
-  const char *text = study_deck_value(t, r, name, good);
-  double value = 0;
-  return text && quantity_read(text, strlen(text), "s", &value) ? value : 0;
+/* s; 0 where the deck gives none. False after a message. */
+static bool read_time(study_request *r, const study_deck *t, const char *name, double *value) {
+  bool good = true;
+  const char *text = study_deck_value(t, r, name, &good);
+  *value = 0;
+  if (!good || !text || quantity_read(text, strlen(text), "s", value)) return good;
+  diag_report(&r->said, DIAG_BAD_VALUE, r->strength.where,
+              "a scan of loads needs times in seconds: the deck gives `%s` = %s", name, text);
+  diag_hint(&r->said, "write how long it is, or --set %s=...", name);
+  return false;
 }
 
 /* "force[1].per_length" and "rise" are "force[1].rise". */
@@ -48,20 +56,28 @@ static const char *beside(study_request *r, const char *key, const char *other) 
   return arena_printf(r->memory, "%.*s.%s", (int)(dot - key), key, other);
 }
 
+static bool refuse_hold(study_request *r, const char *sentence, const char *key) {
+  diag_report(&r->said, DIAG_BAD_VALUE, r->strength.where, "%s `%s`", sentence, key);
+  diag_hint(&r->said, "a held load has history 'ramp and hold', a rise, and an end_time beyond it");
+  return false;
+}
+
 /* When the load has grown, and how long it is held. */
 static bool read_times(scan *s, const study_deck *t) {
   study_request *r = s->request;
   bool good = true;
-  const double end = time_of(r, t, "simulation.end_time", &good);
-  s->held = time_of(r, t, beside(r, s->key, "start"), &good) +
-            time_of(r, t, beside(r, s->key, "rise"), &good);
+  double end, start, rise;
+  const char *history = study_deck_value(t, r, beside(r, s->key, "history"), &good);
+  if (!good || !read_time(r, t, "simulation.end_time", &end) ||
+      !read_time(r, t, beside(r, s->key, "start"), &start) ||
+      !read_time(r, t, beside(r, s->key, "rise"), &rise))
+    return false;
+  if (strncasecmp(s->key, "drive", strlen("drive")) == 0 || !(rise > 0) ||
+      (history && strcmp(history, "ramp and hold") != 0))
+    return refuse_hold(r, "this is no load that grows and is held:", s->key);
+  s->held = start + rise;
   s->hold = end - s->held;
-  if (!good || s->hold > 0) return good;
-  diag_report(&r->said, DIAG_BAD_VALUE, r->strength.where,
-              "the deck ends before the load of `%s` has grown: there is no hold to look at",
-              s->key);
-  diag_hint(&r->said, "a held load has history 'ramp and hold', and an end_time beyond its rise");
-  return false;
+  return s->hold > 0 || refuse_hold(r, "the deck ends before this load has grown:", s->key);
 }
 
 /* --- the loads -------------------------------------------------------------------------------- */
@@ -111,7 +127,9 @@ static bool add_range(scan *s) {
     }
     add_load(s, value);
   }
-  return true;
+  if (s->loads[0].value * s->loads[s->count - 1].value >= 0 || s->count == 1) return true;
+  diag_report(&r->said, DIAG_BAD_VALUE, r->strength.where, "a scan of loads has one sign");
+  return false;
 }
 
 /* Of the key alone: tenths of the deck's value. */
@@ -149,10 +167,10 @@ static int next_loads(const scan *s, load **next, int most) {
   return count;
 }
 
-/* Twice as long, up to the longest; beyond, what grows on has collapsed. */
+/* Twice as long, up to the longest; what comes to rest even then is borne. */
 static void prolong(const scan *s, load *l) {
   if (2 * l->hold > s->request->o.longest * s->hold * (1 + 1e-9)) {
-    l->found.verdict = HELD_COLLAPSED;
+    l->found.verdict = HELD_BORNE;
     l->judged = true;
     return;
   }
@@ -164,12 +182,14 @@ static void prolong(const scan *s, load *l) {
 static bool judge(const scan *s, load *l) {
   study_request *r = s->request;
   study_row row;
-  if (l->run.state != STUDY_DONE || l->run.status != 0) {
+  if (l->run.state != STUDY_DONE) {
     l->judged = l->failed = true;
     return true;
   }
   if (!study_row_read(r->memory, &l->run, NULL, r->o.watch, &row)) return false;
-  l->found = held_load_judge(row.time, row.y, row.count, s->held, r->o.growth, r->o.limit);
+  l->found = held_load_judge(row.time, row.y, row.count, s->held, s->held + l->hold, r->o.growth,
+                             r->o.limit);
+  l->failed = l->found.verdict == HELD_CUT;
   l->judged = l->found.verdict != HELD_UNDECIDED;
   if (!l->judged) prolong(s, l);
   return true;
@@ -217,8 +237,7 @@ static int refine(scan *s) {
 /* --- what comes out --------------------------------------------------------------------------- */
 
 static const char *verdict_word(const load *l) {
-  if (!l->judged) return "not needed";
-  if (l->failed) return "no result";
+  if (l->failed) return l->run.state == STUDY_DONE ? "ended before the hold" : "no result";
   return l->found.verdict == HELD_BORNE ? "borne" : "collapsed";
 }
 
@@ -226,7 +245,9 @@ typedef struct strength {
   bool has_lower, has_upper;
   double lower, upper; /* sizes, SI */
   double peak;         /* of the twin, SI of the load; NaN without one */
+  const char *no_peak; /* why there is none, or NULL */
   const char *unit;    /* SI */
+  double factor;       /* of the key's unit */
 } strength;
 
 /* Of the key in SI. */
@@ -241,33 +262,45 @@ static double si_factor(const scan *s, const char **si_unit, arena *a) {
   return u.factor;
 }
 
-/* The twin's largest load, as a load of the key: by what a held load amounts to. False after a
-   message. */
-static bool find_peak(const scan *s, double factor, double *peak) {
+/* A load that is borne, and is one. */
+static const load *borne(const scan *s) {
+  for (int k = first_not_borne(s) - 1; k >= 0; k--)
+    if (s->loads[k].value != 0) return &s->loads[k];
+  return NULL;
+}
+
+/* The twin's largest load, as a load of the key: by what a load that is borne amounts to. False after
+   a message. */
+static bool find_peak(const scan *s, double factor, strength *f) {
   study_request *r = s->request;
+  const load *l = borne(s);
   study_row twin, held;
-  *peak = NAN;
-  if (!r->o.twin || s->twin.state != STUDY_DONE) return true;
-  if (!study_row_read(r->memory, &s->twin, NULL, r->o.y, &twin)) return false;
-  for (int k = 0; k < s->count; k++) {
-    const load *l = &s->loads[k];
-    if (!l->judged || l->failed) continue;
-    if (!study_row_read(r->memory, &l->run, NULL, r->o.y, &held)) return false;
-    const study_history *h = study_row_history(&held, held.y_name);
-    if (h && h->last != 0) *peak = fabs(twin.peak * l->value * factor / h->last);
+  f->peak = NAN;
+  if (!r->o.twin || !l) return true;
+  if (s->twin.state != STUDY_DONE || s->twin.status != 0) {
+    f->no_peak = "its twin has no result";
     return true;
   }
+  if (!study_row_read(r->memory, &s->twin, NULL, r->o.y, &twin) ||
+      !study_row_read(r->memory, &l->run, NULL, r->o.y, &held))
+    return false;
+  const study_history *h = study_row_history(&held, held.y_name);
+  if (!h || h->last == 0 || strcmp(twin.y_name, held.y_name) != 0 ||
+      strcmp(twin.y_unit, held.y_unit) != 0)
+    f->no_peak = "deck and twin have no history in common that says the load: name it with --y";
+  else
+    f->peak = fabs(twin.peak * l->value * factor / h->last);
   return true;
 }
 
 static bool conclude(const scan *s, strength *found) {
   const int first = first_not_borne(s);
-  const double factor = si_factor(s, &found->unit, s->request->memory);
+  const double factor = found->factor = si_factor(s, &found->unit, s->request->memory);
   found->has_lower = first > 0;
   found->has_upper = first < s->count && !s->loads[first].failed;
   if (found->has_lower) found->lower = fabs(s->loads[first - 1].value) * factor;
   if (found->has_upper) found->upper = fabs(s->loads[first].value) * factor;
-  return find_peak(s, factor, &found->peak);
+  return find_peak(s, factor, found);
 }
 
 static void put_end(json *w, const char *name, bool known, double value) {
@@ -278,20 +311,27 @@ static void put_end(json *w, const char *name, bool known, double value) {
     json_null(w);
 }
 
-static void tell(const scan *s, const strength *f, json *w) {
+/* "bears 42 kN/m, not 44 kN/m" */
+static void tell_ends(const scan *s, const strength *f) {
   const int first = first_not_borne(s);
-  const char *unit_text = s->unit;
-  const double factor = f->has_lower   ? f->lower / fabs(s->loads[first - 1].value)
-                        : f->has_upper ? f->upper / fabs(s->loads[first].value)
-                                       : 1;
-  if (f->has_lower) printf("  bears %.6g %s", f->lower / factor, unit_text);
+  const bool known = f->has_lower || f->has_upper;
+  fputs("  ", stdout);
+  if (f->has_lower) printf("bears %.6g %s", f->lower / f->factor, s->unit);
   if (f->has_upper)
-    printf("%s %.6g %s", f->has_lower ? ", not" : "  does not bear", f->upper / factor, unit_text);
-  if (!f->has_upper)
-    printf("%s", first < s->count ? "; the next run has no result" : "; no load made it collapse");
+    printf("%s %.6g %s", f->has_lower ? ", not" : "does not bear", f->upper / f->factor, s->unit);
+  else if (first == s->count)
+    printf("%sno load made it collapse", known ? "; " : "");
+  else
+    printf("%sthe run with %.6g %s says nothing: %s (%s)", known ? "; " : "",
+           fabs(s->loads[first].value), s->unit, verdict_word(&s->loads[first]),
+           s->loads[first].run.log);
+}
+
+static void tell(const scan *s, const strength *f, json *w) {
+  tell_ends(s, f);
   if (isfinite(f->peak))
-    printf("; moved, not loaded, its peak is %.6g %s", f->peak / factor, unit_text);
-  putchar('\n');
+    printf("; moved, not loaded, its peak is %.6g %s", f->peak / f->factor, s->unit);
+  printf("%s%s\n", f->no_peak ? "; " : "", f->no_peak ? f->no_peak : "");
   if (!w) return;
   json_put_text(w, "key", s->key);
   json_put_text(w, "unit", f->unit);
@@ -300,7 +340,7 @@ static void tell(const scan *s, const strength *f, json *w) {
   put_end(w, "peak", isfinite(f->peak), f->peak);
 }
 
-/* Loads that were run, as rows. */
+/* Loads up to the first that is not borne, as rows: what was run beyond hangs on the jobs. */
 static bool publish(const scan *s, json *w) {
   study_request *r = s->request;
   const char *const keys[] = {study_key_shown(&s->key, 1, 0), "end_time"};
@@ -313,14 +353,13 @@ static bool publish(const scan *s, json *w) {
   halves[0].values = arena_alloc(r->memory, rows * sizeof(double));
   halves[1].values = arena_alloc(r->memory, rows * sizeof(double));
   verdict.texts = arena_alloc(r->memory, rows * sizeof *verdict.texts);
-  for (int k = 0; k < s->count; k++) {
+  for (int k = 0; k < s->count && k <= first_not_borne(s); k++) {
     const load *l = &s->loads[k];
-    if (!l->judged) continue;
     halves[0].values[o.count] = l->failed ? NAN : l->found.first;
     halves[1].values[o.count] = l->failed ? NAN : l->found.second;
     verdict.texts[o.count] = verdict_word(l);
     if (!l->failed && l->found.verdict == HELD_BORNE)
-      o.y_most = fmax(o.y_most, 2 * fmax(l->found.first, l->found.second));
+      o.y_most = pl_fmax(o.y_most, 2 * pl_fmax(l->found.first, l->found.second));
     o.cases[o.count++] = l->run;
   }
   const study_column more[] = {halves[0], halves[1], verdict};
@@ -345,10 +384,11 @@ static bool prepare(scan *s) {
       !study_deck_open(&t, r, &r->decks.items[0]))
     return false;
   s->key = range.key.name;
+  s->key_alone = !range.low;
   s->unit = "";
   bool good = true;
   const char *given = study_deck_value(&t, r, s->key, &good);
-  good = good && read_times(s, &t) && (range.low ? add_range(s) : add_tenths(s, given));
+  good = good && read_times(s, &t) && (s->key_alone ? add_tenths(s, given) : add_range(s));
   study_deck_close(&t);
   if (!good || !r->o.twin) return good;
   s->twin = study_case_of(r, r->o.twin, NULL, NULL, 0);
@@ -359,15 +399,13 @@ static bool prepare(scan *s) {
 int study_strength(study_request *r, study_pool *pool, json *w) {
   scan s = {.request = r, .pool = pool};
   strength found = {.peak = NAN};
-  study_range range;
   if (!prepare(&s)) return 1;
   for (int k = 0; k < s.count; k++) /* before anything runs */
     if (!study_case_check(r, &s.loads[k].run)) return 1;
   if (r->check_only) return 0;
   if (!study_folder_open(pool->folder, r->memory, study_name(r))) return 2;
   int stopped = scan_loads(&s);
-  if (!stopped && study_range_read(r->memory, &r->strength, &range, &r->said) && !range.low)
-    stopped = refine(&s);
+  if (!stopped && s.key_alone) stopped = refine(&s);
   if (stopped > 0) return tell_stopped(&s, stopped);
   if (stopped < 0 || !publish(&s, w) || !conclude(&s, &found)) return 2;
   tell(&s, &found, w);

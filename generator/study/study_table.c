@@ -275,12 +275,21 @@ bool study_table_hdf5(const study_table *t, const study_row *rows, const char *p
   errno = 0;
   if (!whole_file_begin(&file, path)) return cannot_write(path);
   const bool good = write_file(file.working, t, rows);
+  errno = 0; /* the library's own */
   return whole_file_end(&file, good) && good ? true : cannot_write(path);
 }
 
 /* --- JSON ------------------------------------------------------------------------------------- */
 
 void study_table_json(const study_table *t, const char *list, json *w) {
+  json_put_array(w, "columns");
+  for (int k = 0; k < t->column_count; k++) {
+    json_object(w);
+    json_put_text(w, "name", t->columns[k].name);
+    json_put_text(w, "unit", t->columns[k].unit);
+    json_object_end(w);
+  }
+  json_array_end(w);
   json_put_array(w, list);
   for (int row = 0; row < t->rows; row++) {
     json_object(w);

@@ -27,7 +27,7 @@ void study_table_print(const study_table *t, const bool *wanted, FILE *out);
 bool study_table_csv(const study_table *t, const char *path);
 /* The same as /table/NAME, with the curves as /cases/NAME/{x, y, time}. */
 bool study_table_hdf5(const study_table *t, const study_row *rows, const char *path);
-/* A list of objects, one a row. */
+/* The columns with their units, and a list of objects, one a row. */
 void study_table_json(const study_table *t, const char *list, json *w);
 
 #endif

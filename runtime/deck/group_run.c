@@ -238,8 +238,8 @@ static const deck_key_info study_keys[] = {
      .type = DECK_NAME,
      DECK_AT(study, strength),
      .doc = "a load that is held: which values are borne? `'force.per_length = -40..-50:2 kN/m'`; "
-            "the key alone: tenths of the deck's value, then fiftieths between what is borne and "
-            "what is not"},
+            "the key alone: tenths of the deck's value up to twice it, then fifths of the step "
+            "between what is borne and what is not"},
     {.name = "watch",
      .type = DECK_NAME,
      .fallback = "'deflection'",
@@ -265,7 +265,9 @@ static const deck_key_info study_keys[] = {
      .fallback = "4",
      .most = 1000,
      DECK_AT(study, longest),
-     .doc = "a hold whose halves do not agree is doubled, up to so many times that of the deck"},
+     .doc = "while the second half of the hold is smaller by more than that, the body still comes "
+            "to rest: "
+            "the hold is doubled, up to so many times that of the deck"},
     {.name = "twin",
      .type = DECK_NAME,
      DECK_AT(study, twin),

@@ -68,6 +68,18 @@ static void one_end_alone(void **state) {
   is_near(number("upper"), 60e3, 1e-6);
 }
 
+/* Without loads it looks for them: 42 is borne, 43 not. */
+static void strength_of_the_key_alone(void **state) {
+  workplace *w = *state;
+  study(w, 0,
+        EXAMPLES "reinforced_concrete/plain_beam.nml --strength force.per_length --set "
+                 "force.per_length='-60 kN/m'");
+  const double lower = number("lower"), upper = number("upper");
+  assert_true(lower >= 41.5e3 && lower <= 43e3);
+  assert_true(upper > lower && upper < 45e3);
+  assert_true(upper - lower < 1.3e3);
+}
+
 /* Its parameters belong to a spacing: another spacing is another material. */
 static void d3_does_not_converge(void **state) {
   workplace *w = *state;
@@ -118,8 +130,9 @@ static void parameter_back_from_its_curve(void **state) {
 
 int main(void) {
 #define WITH(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
-  const struct CMUnitTest tests[] = {WITH(strength_of_the_plain_beam), WITH(one_end_alone),
-                                     WITH(d3_does_not_converge), WITH(the_step_converges),
-                                     WITH(parameter_back_from_its_curve)};
+  const struct CMUnitTest tests[] = {
+      WITH(strength_of_the_plain_beam), WITH(one_end_alone),
+      WITH(strength_of_the_key_alone),  WITH(d3_does_not_converge),
+      WITH(the_step_converges),         WITH(parameter_back_from_its_curve)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -253,6 +253,104 @@ static void in_the_deck(void **state) {
   expect(w, "check beam.nml --set study.jobs=x", 1, "jobs");
 }
 
+/* What the command sets counts, not what the group does; another question drops what is varied. */
+static void the_command_counts(void **state) {
+  workplace *w = *state;
+  expect(w, "study two_study.nml", 0, "wrote");
+  write_text(w, "set.nml",
+             "&study  deck = 'beam.nml'  vary = 'drive.velocity = -20 mm/s'  set = "
+             "'material.beta = 0.2'  /\n");
+  expect(w, "study set.nml --set material.beta=0 -o of_command", 0, "wrote");
+  expect_same_results(w, "of_command/velocity=-20mm_s.h5", "two_study/velocity=-20mm_s,beta=0.h5");
+  expect(w, "study set.nml -o of_group", 0, "wrote");
+  expect_same_results(w, "of_group/velocity=-20mm_s.h5", "two_study/velocity=-20mm_s,beta=0.2.h5");
+}
+
+static void half_a_line_in_the_list(void **state) {
+  workplace *w = *state;
+  static const char widened[] =
+      "study beam.nml --vary 'drive.velocity=-20,-40,-80 mm/s' --vary material.beta=0,0.2 -o "
+      "two_study";
+  expect(w, "study two_study.nml", 0, "wrote");
+  assert_int_equal(shell(w, "printf 'half a li' >> two_study/cases.txt"), 0);
+  expect(w, widened, 0, "wrote");
+  expect(w, widened, 0, "wrote");
+}
+
+/* Results and tables of others stay. */
+static void overwrites_nothing(void **state) {
+  workplace *w = *state;
+  expect(w, "run beam.nml", 0, "beam.h5");
+  expect(w, "study two_study.nml -o beam", 2, "would overwrite `beam.h5`");
+  assert_int_equal(shell(w, "echo 'cmod, load' > lab.csv; $P study two_study.nml -o lab"), 2);
+  assert_non_null(strstr(w->said, "would overwrite `lab.csv`"));
+  assert_false(exists(w, "lab"));
+}
+
+/* As some launchers start programs. */
+static void with_children_ignored(void **state) {
+  workplace *w = *state;
+  assert_int_equal(shell(w, "trap '' CHLD; exec timeout 100 $P study two_study.nml"), 0);
+  assert_non_null(strstr(w->said, "wrote"));
+}
+
+static void slips(void **state) {
+  workplace *w = *state;
+  expect(w, "study beam.nml --vary material.beta=0,1 --vary Material[1].beta=2", 1, "varied twice");
+  expect(w, "study beam.nml --vary material.beta=0,1 --y nix", 1, "has no monitor `nix`");
+  expect(w, "study beam.nml --vary material.beta=0,1 --y kinetic --set output.energy=.false.", 1,
+         "has no monitor `kinetic`");
+  expect(w, "study beam.nml --vary material.beta=1,2,3 --converge beta --of Last", 1,
+         "--of takes peak|last");
+  expect(w, "study beam.nml --vary material.beta=1,2 --converge nu", 1, "is not varied");
+  expect(w, "study beam.nml --vary material.beta=0,1 --converge beta", 1, "is no size");
+  expect(w, "study beam.nml --strength force.total=1..2:1 --fit material.E=1..2", 1,
+         "three questions");
+  expect(w, "study beam.nml --strength drive.velocity=1..2:1", 1, "no load that grows and is held");
+  expect(w, "study beam.nml --set material.E=30GPa --fit material.E=40..50GPa --to beam.nml", 1,
+         "leave out the deck's own");
+  expect(w, "study beam.nml --set material.E=30GPa --fit material.E=50..40GPa --to beam.nml", 1,
+         "not below");
+  expect(w, "study beam.nml --set material.E=30GPa --fit material.E=20..40GPa", 1,
+         "one measured curve for each deck");
+  expect(w, "study beam.nml --set material.E=30GPa --fit material.E=20..40GPa --to nowhere.csv", 1,
+         "nowhere.csv");
+  expect(w, "study beam.nml --vary material.beta=0,1 --twin beam.nml", 1, "belongs to --strength");
+  expect(w, "study beam.nml two/beam.nml --fit material.E=20..40GPa --to a.csv --to b.csv", 1,
+         "the same name");
+  assert_int_equal(shell(w, "ls -d *_study 2>/dev/null | grep -c . "), 1); /* nothing was begun */
+}
+
+static double fitted(workplace *w, const char *weights, const char *name) {
+  assert_int_equal(
+      shell(
+          w,
+          "$P study beam.nml b.nml --fit 'material.E=25..40 GPa' --to a.csv --to b.csv --x time %s "
+          "-o %s --json 2>/dev/null | sed -n '/\"parameters\"/,$p'",
+          weights, name),
+      0);
+  const char *value = strstr(w->said, "\"value\": ");
+  assert_non_null(value);
+  return strtod(value + strlen("\"value\": "), NULL);
+}
+
+/* Two decks whose curves want different parameters: the heavier one gets its own. */
+static void weights_of_curves(void **state) {
+  workplace *w = *state;
+  assert_int_equal(
+      shell(w, "sed -i 's/mplm_bilinear/elastic_micropolar/; s/model = /E = \"30 GPa\" model = /' "
+               "beam.nml; "
+               "sed 's/-20/-30/' beam.nml > b.nml; "
+               "$P run beam.nml --set output.result=a.h5 && $P run b.nml --set 'material.E=33 GPa' "
+               "--set output.result=b.h5 && "
+               "for f in a b; do $P export $f.h5 --history load -o $f.csv || exit 9; done"),
+      0);
+  const double first = fitted(w, "--weight 1 --weight 1e-6", "first"),
+               second = fitted(w, "--weight 1e-6 --weight 1", "second");
+  assert_true(fabs(first - 30) < 0.05);
+  assert_true(fabs(second - 33) < 0.05);
+}
+
 /* The same values with one process and two. */
 static void jobs(void **state) {
   workplace *w = *state;
@@ -278,6 +376,12 @@ int main(void) {
                                      WITH(documents),
                                      WITH(jobs),
                                      WITH(a_file_of_its_own),
-                                     WITH(in_the_deck)};
+                                     WITH(in_the_deck),
+                                     WITH(the_command_counts),
+                                     WITH(half_a_line_in_the_list),
+                                     WITH(overwrites_nothing),
+                                     WITH(with_children_ignored),
+                                     WITH(slips),
+                                     WITH(weights_of_curves)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -67,6 +67,7 @@ static void lists(void **state) {
   reads("body.shape=disc,rectangle", "body.shape", "disc|rectangle");
   reads("region[loading plate].at=1", "region[loading plate].at", "1");
   reads("region[a.b].at=1", "region[a.b].at", "1");
+  reads("material.model=../a.plm, ../b.plm", "material.model", "../a.plm|../b.plm");
 }
 
 /* A unit at the end is that of the plain numbers before it, which would be in SI. */

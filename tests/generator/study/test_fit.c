@@ -33,13 +33,13 @@ static void first_time_counts_and_ends_stand(void **unused) {
   assert_true(fit_curve_begin(&c, &measured, 2));
   assert_int_equal(c.count, 5);
   fit_curve_residuals(&c, x, y, 4, r);
-  const double factor = 2 / (8 * sqrt(5)), exact[] = {8, 0.25, 1, 4, 5.5};
+  const double factor = sqrt(2) / (8 * sqrt(5)), exact[] = {8, 0.25, 1, 4, 5.5};
   for (int k = 0; k < 5; k++)
     assert_near(r[k], factor * exact[k], 1e-15);
   fit_curve_residuals(&c, &nan, y, 1, r);
-  assert_near(r[4], 20 / sqrt(5), 1e-14); /* no number at all: as a run that failed */
+  assert_near(r[4], 10 * sqrt(2) / sqrt(5), 1e-14); /* no number at all: as a run that failed */
   fit_curve_failed(&c, r);
-  assert_near(r[0], 20 / sqrt(5), 1e-14);
+  assert_near(r[0], 10 * sqrt(2) / sqrt(5), 1e-14);
   fit_curve_free(&c);
 }
 
