@@ -7,6 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include <math.h>
+
 #include <cmocka.h>
 
 #include "tests/generator/command_tools.h"
@@ -81,9 +83,94 @@ static void solvers_find_them_too(void **state) {
   expect(w, "compare swing.h5 solver.h5", 0, "");
 }
 
+/* A bar of that many springs between equal masses, the first held, across nothing resists. */
+enum { SPRINGS = 40, MODES = 3 };
+static const char bar_deck[] =
+    "&simulation  end_time = '1 ms'  /\n"
+    "&lattice     name = 'c'  kind = 'hexagonal'  spacing = '10 mm'  thickness = '0.1 m'  /\n"
+    "&material    lattice = 'c'  model = 'elastic_central'  E = '30 GPa'  /\n"
+    "&body        lattice = 'c'  shape = 'rectangle'  corner = 0, -0.001  size = 0.4, 0.002  /\n"
+    "&region      name = 'left'  shape = 'point'  at = 0, 0  /\n"
+    "&support     region = 'left'  fix = 'x'  /\n"
+    "&output      result = 'bar.h5'  /\n";
+
+/* sin((k - 1/2) pi i / (n + 1/2)) at particle i, but for the sign; the largest 1 % of 0.4 m. */
+static double exact(int number, long i) {
+  double most = 0;
+  for (int n = 0; n <= SPRINGS; n++)
+    most = fmax(most, fabs(sin((number - 0.5) * M_PI * n / (SPRINGS + 0.5))));
+  return 0.004 * sin((number - 0.5) * M_PI * (double)i / (SPRINGS + 0.5)) / most;
+}
+
+static void shapes_are_frames_of_a_result(void **state) {
+  workplace *w = *state;
+  write_text(w, "bar.nml", bar_deck);
+  expect(w, "info bar.nml --modes 3 -o shapes.h5", 0, "  written    shapes.h5 (3 frames)");
+  result_file *f = open_result_of(w, "shapes.h5");
+  double *u[MODES];
+  long count, frames;
+  int components, dimensions;
+  char unit_text[64], error[1000];
+  double *places = result_read_reference(f, &count, &dimensions),
+         *numbers = result_read_frame_times(f, &frames);
+  assert_int_equal(count, SPRINGS + 1);
+  assert_int_equal(frames, MODES);
+  for (int k = 0; k < MODES; k++) {
+    assert_true(numbers[k] == k + 1);
+    u[k] = result_read_frame(f, "displacement", k, &count, &components, unit_text, sizeof unit_text,
+                             error, sizeof error);
+    assert_non_null(u[k]);
+    assert_int_equal(components, 2);
+    const double sign = u[k][2] < 0 ? -1 : 1; /* all begin upwards */
+    for (long p = 0; p < count; p++) {
+      const double wanted = exact(k + 1, lround(places[2 * p] / 0.01));
+      if (!(fabs(sign * u[k][2 * p] - wanted) < 1e-7))
+        fail_msg("mode %d, particle %ld: %g, not %g", k + 1, p, u[k][2 * p], wanted);
+    }
+  }
+  /* All masses are alike. */
+  for (int k = 1; k < MODES; k++) {
+    double product = 0;
+    for (long p = 0; p < 2 * count; p++)
+      product += u[0][p] * u[k][p];
+    assert_true(fabs(product) < 1e-6 * 0.004 * 0.004 * SPRINGS);
+  }
+  double *frequency =
+      result_read_series(f, "frequency", &frames, unit_text, sizeof unit_text, error, sizeof error);
+  assert_non_null(frequency);
+  assert_int_equal(frames, MODES);
+  assert_string_equal(unit_text, "Hz");
+  /* Of n springs: in the ratio of the sines. */
+  assert_true(fabs(frequency[1] / frequency[0] * sin(0.25 * M_PI / (SPRINGS + 0.5)) /
+                       sin(0.75 * M_PI / (SPRINGS + 0.5)) -
+                   1) < 2e-5);
+  for (int k = 0; k < MODES; k++)
+    free(u[k]);
+  free(places);
+  free(numbers);
+  free(frequency);
+  result_read_close(f);
+}
+
+static void shapes_are_drawn_and_spare_inputs(void **state) {
+  workplace *w = *state;
+  write_text(w, "bar.nml", bar_deck);
+  expect(w, "info bar.nml --modes 2 --json -o shapes.h5", 0, "\"result\": \"shapes.h5\"");
+  expect(w, "info shapes.h5", 0, "time                       1      from 1 to 2, last 2");
+  expect(w, "plot shapes.h5 --map displacement --frame 0 -o map.svg", 0, "written map.svg");
+  assert_true(exists(w, "shapes.xdmf"));
+  expect(w, "info bar.nml --modes 2 -o bar.nml", 1, "the result would overwrite `bar.nml`");
+  expect(w, "info bar.nml --modes 2 -o none/shapes.h5", 1, "cannot write the result");
+  expect(w, "info bar.nml -o shapes.h5", 1, "add --modes N");
+  expect(w, "info shapes.h5 -o other.h5", 1, "-o is for the shapes of a deck's modes");
+  expect(w, "info beam.nml --modes 1", 0, "mode  frequency/Hz");
+  if (exists(w, "beam.h5") || exists(w, "other.h5")) fail_msg("a result nobody has asked for");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {ONE(the_pages_have_the_modes_of_the_examples),
                                      ONE(a_run_takes_its_end_and_damping_from_them),
-                                     ONE(solvers_find_them_too)};
+                                     ONE(solvers_find_them_too), ONE(shapes_are_frames_of_a_result),
+                                     ONE(shapes_are_drawn_and_spare_inputs)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -131,6 +131,20 @@ static void close_dense(dense *m) {
   free(m->values);
 }
 
+/* Shapes are at right angles by the masses, each of 1 kg. */
+static void are_normal(const dense *all, const mode *modes, int count) {
+  for (int k = 0; k < count; k++)
+    for (int l = 0; l <= k; l++) {
+      double sum = 0;
+      for (int i = 0; i < all->order; i++) {
+        const int b = all->body[i];
+        const long at = all->component[i] * all->s->bodies[b].lattice_rows->size + all->site[i];
+        sum += mass_of(all, i) * modes[k].shape[b][at] * modes[l].shape[b][at];
+      }
+      if (!(fabs(sum - (k == l)) < 1e-9)) fail_msg("modes %d and %d: %g", k + 1, l + 1, sum);
+    }
+}
+
 /* The lowest `most` of the run against the dense matrix, of which `rigid` are 0. */
 static void agree(many_run *r, int most, int rigid) {
   mode modes[MODES_MOST];
@@ -151,6 +165,7 @@ static void agree(many_run *r, int most, int rigid) {
       fail_msg("mode %d: %.9g, %.9g by the dense matrix", k + 1, modes[k].omega, omega);
     assert_true(modes[k].residual < 1e-6);
   }
+  are_normal(&all, modes, most);
   modes_free(modes, most, simulation_bodies(r->run.simulation));
   close_dense(&all);
 }
