@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/base/elementary.h"
 #include "dsl/base/units.h"
 #include "generator/kernel/document.h"
 #include "generator/results/measured.h"
@@ -285,16 +286,44 @@ static void tell(const fit *f, const fit_problem *q, const fit_found *found,
     if (isfinite(u->error[p])) printf(", 95 %% from %.6g to %.6g", u->lower[p], u->upper[p]);
     printf("%s%s\n", *words ? ": " : "", words);
   }
+  puts(
+      "  (intervals take the distances as independent of each other; of smooth curves they are too "
+      "narrow)");
   for (int p = 0; p < f->count; p++)
     for (int q2 = 0; q2 < p; q2++)
       if (fabs(u->correlation[p][q2]) > 0.5)
         printf("  correlation of %s and %s: %.3f\n", f->keys[q2], f->keys[p],
                u->correlation[p][q2]);
-  printf("  root of the mean square, as weighted: %.3g %% of the largest measured value; %d points "
-         "tried, %d more "
+  printf("  misfit %.3g %% of the largest measured value (root of the weighted mean square; of a "
+         "band its "
+         "middle counts, the more the narrower it is); %d points tried, %d more "
          "for the intervals%s\n",
          100 * root_mean_square(f, found), found->runs, u->runs,
          found->end == FIT_LIMIT ? "; the search was cut short: more with --runs" : "");
+}
+
+/* Beyond the end of a computed curve its last value stands. */
+static void warn_of_ends(const fit *f, const fit_found *found) {
+  for (int k = 0; k < f->decks; k++) {
+    const fit_curve *c = &f->targets[k].curve;
+    const int at = find_case(f, case_of(f, k, found->best).name);
+    study_row row;
+    double reached = -INFINITY;
+    if (at < 0 || f->cases[at].state != STUDY_DONE ||
+        !study_row_read(f->request->memory, &f->cases[at], f->request->o.x, f->request->o.y, &row))
+      continue;
+    for (long n = 0; n < row.count; n++)
+      reached = pl_fmax(reached, c->along * row.x[n]);
+    long beyond = 0;
+    for (long n = 0; n < c->count; n++)
+      beyond += c->along * c->x[n] > reached;
+    if (beyond * 20 > c->count)
+      fprintf(stderr,
+              "perilat: warning: %ld of %ld measured points of `%s` lie beyond the end of the run, "
+              "%s = %.4g %s; its last value stands for them: run on, or cut the table\n",
+              beyond, c->count, f->targets[k].table.text, row.x_name, c->along * reached,
+              unit_shown(row.x_unit));
+  }
 }
 
 static void put(const fit *f, const fit_problem *q, const fit_found *found,
@@ -411,6 +440,7 @@ static int search(fit *f, json *w) {
   if (good && f->without) forget_intervals(f, &u);
   good = good && publish(f, &found, w);
   if (good) tell(f, &q, &found, &u);
+  if (good) warn_of_ends(f, &found);
   if (good && w) put(f, &q, &found, &u, w);
   const bool answered = good && found.end == FIT_FOUND && all_told(f, &u);
   fit_found_free(&found);
