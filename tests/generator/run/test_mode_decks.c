@@ -58,7 +58,6 @@ static void a_run_takes_its_end_and_damping_from_them(void **state) {
 #define PRISM                                                                                      \
   EXAMPLES "tension/rot0.nml --set damping.rate= --set damping.ratio=0.2 --set "                   \
            "output.result=a.h5 "
-  expect(w, "check " PRISM "--set 'simulation.end_time=100 periods'", 0, "no errors");
   expect(w, "info " PRISM "--set 'simulation.end_time=100 periods'", 0, said);
   expect(w, "run " PRISM "--set 'simulation.end_time=1 period' --set output.sample=", 0,
          "0.517173 ms in 1128 steps");
