@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
-#include "dsl/base/elementary.h"
+#include "runtime/base/random_number.h"
 
 #include <cholmod.h>
 
@@ -110,13 +110,9 @@ static double normalise(long n, double *x) {
 }
 
 /* Nothing that a mode could be at right angles to. */
-static void take_any(long n, uint64_t *bits, double *x) {
-  for (long k = 0; k < n; k++) {
-    *bits ^= *bits << 13;
-    *bits ^= *bits >> 7;
-    *bits ^= *bits << 17;
-    x[k] = (double)(*bits >> 11) * 0x1p-52 - 1;
-  }
+static void take_any(long n, uint64_t *asked, double *x) {
+  for (long k = 0; k < n; k++)
+    x[k] = random_unit(random_mix((*asked)++)) - 0.5;
 }
 
 /* --- a pass ----------------------------------------------------------------------------------- */
@@ -324,12 +320,12 @@ static void take(const lanczos *l, const sparse_matrix *a, const unsigned char *
 }
 
 /* Returns how many modes a pass has found, or -1. */
-static int pass(inverse *v, const sparse_matrix *a, uint64_t *bits, known_modes *known) {
+static int pass(inverse *v, const sparse_matrix *a, uint64_t *asked, known_modes *known) {
   lanczos l = {.of = v, .order = a->order, .known = known};
   unsigned char *kept = must_calloc(4 * (size_t)known->others.most + SPARE_VECTORS, 1);
   make_room(&l);
   l.vector[0] = vector_of(l.order);
-  take_any(l.order, bits, l.vector[0]);
+  take_any(l.order, asked, l.vector[0]);
   reorthogonalise(&l, l.vector[0]);
   normalise(l.order, l.vector[0]);
   const int many = run_pass(&l, kept);
@@ -346,11 +342,11 @@ static void clear(mode_list *list) {
 }
 
 static const char *find(inverse *v, const sparse_matrix *a, known_modes *known) {
-  uint64_t bits = UINT64_C(0x9e3779b97f4a7c15);
+  uint64_t asked = 0;
   const char *why = factorise(v, a);
   int found = 1;
   while (!why && found > 0 && known->zeros.count + known->others.count < a->order)
-    found = pass(v, a, &bits, known);
+    found = pass(v, a, &asked, known);
   if (found < 0) why = no_convergence;
   if (!why) return NULL;
   clear(&known->zeros);

@@ -246,6 +246,15 @@ sparse_matrix sparse_probe(const sparse_graph *g, const long *first, sparse_prod
   return m;
 }
 
+void sparse_multiply(const sparse_matrix *m, const double *x, double *product) {
+  memset(product, 0, (size_t)m->order * sizeof *product);
+  for (long c = 0; c < m->order; c++)
+    for (int64_t k = m->begin[c]; k < m->begin[c + 1]; k++) {
+      product[m->row[k]] += m->value[k] * x[c];
+      if (m->row[k] != c) product[c] += m->value[k] * x[m->row[k]];
+    }
+}
+
 void sparse_matrix_free(sparse_matrix *m) {
   free(m->begin);
   free(m->row);

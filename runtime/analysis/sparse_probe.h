@@ -39,6 +39,7 @@ typedef void sparse_product(void *of, const double *x, double *product);
 /* Node n has the rows first[n] .. first[n + 1] - 1. What the two halves say is averaged. */
 sparse_matrix sparse_probe(const sparse_graph *g, const long *first, sparse_product *product,
                            void *of);
+void sparse_multiply(const sparse_matrix *m, const double *x, double *product);
 void sparse_matrix_free(sparse_matrix *m);
 
 #endif

@@ -8,6 +8,7 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "runtime/analysis/lowest_modes.h"
+#include "runtime/base/random_number.h"
 #include "runtime/simulation/simulation_state.h"
 
 /* Small against any strain that a law makes a difference at. */
@@ -96,25 +97,26 @@ static void add_pair(pair_list *l, long a, long b) {
   l->pairs[l->count++][1] = (int32_t)b;
 }
 
-/* Bonds that the forces of a law reach over. */
-static int reach_of(const run_body *b) {
+/* Over so many bonds the forces of the laws reach at most. */
+static int longest_reach(const whole *w) {
   int most = 1;
-  for (int n = 0; n < b->law_count; n++) {
-    const pl_law *law = b->laws[n].law;
-    if (law->kind == PL_STATE && !law->pairwise && law->step.pass_count > most)
-      most = law->step.pass_count;
-  }
+  for (int b = 0; b < w->body_count; b++)
+    for (int n = 0; n < w->bodies[b].law_count; n++) {
+      const pl_law *law = w->bodies[b].laws[n].law;
+      if (law->kind == PL_STATE && !law->pairwise && law->step.pass_count > most)
+        most = law->step.pass_count;
+    }
   return most;
 }
 
 /* Among a body's own particles. */
-static sparse_graph graph_of(const run_body *b) {
+static sparse_graph graph_of(const run_body *b, int steps) {
   rows_bond *bonds = rows_bonds(b->lattice_rows);
   pair_list l = {.count = 0};
   for (long m = 0; m < b->lattice_rows->bond_count; m++)
     add_pair(&l, bonds[m].i, bonds[m].j);
   sparse_graph one = sparse_graph_new(b->lattice_rows->particle_count, l.pairs, l.count);
-  sparse_graph reach = sparse_graph_reach(&one, reach_of(b));
+  sparse_graph reach = sparse_graph_reach(&one, steps);
   sparse_graph_free(&one);
   free(l.pairs);
   free(bonds);
@@ -150,10 +152,10 @@ static void add_pairs(const whole *w, int b, long p, long q, pair_list *l) {
       if (near[i] != far[k]) add_pair(l, near[i], far[k]);
 }
 
-static sparse_graph graph_of_all(const whole *w) {
+static sparse_graph graph_of_all(const whole *w, int steps) {
   pair_list l = {.count = 0};
   for (int b = 0; b < w->body_count; b++) {
-    sparse_graph own = graph_of(&w->bodies[b]);
+    sparse_graph own = graph_of(&w->bodies[b], steps);
     for (long p = 0; p < own.count; p++)
       for (long k = own.begin[p]; k < own.begin[p + 1]; k++)
         if (own.near[k] >= p) add_pairs(w, b, p, own.near[k], &l);
@@ -258,12 +260,39 @@ static void multiply(void *of, const double *x, double *y) {
   move(w, x, 0);
 }
 
+/* The matrix makes of a motion of all particles what the laws make of it. */
+static bool is_whole(whole *w, const sparse_matrix *m) {
+  static const double same = 1e-8;
+  const size_t count = (size_t)m->order;
+  double *x = must_alloc(count * sizeof *x), *y = must_alloc(count * sizeof *y),
+         *z = must_alloc(count * sizeof *z), gap = 0, size = 0;
+  for (size_t k = 0; k < count; k++)
+    x[k] = random_unit(random_mix((uint64_t)k)) - 0.5;
+  multiply(w, x, y);
+  sparse_multiply(m, x, z);
+  for (size_t k = 0; k < count; k++) {
+    gap += (y[k] - z[k]) * (y[k] - z[k]);
+    size += y[k] * y[k];
+  }
+  free(x);
+  free(y);
+  free(z);
+  return gap <= same * same * size;
+}
+
+/* Few passes of a law reach over a further bond: longer reaches are tried as they are needed. */
 static sparse_matrix stiffness_of(whole *w) {
-  sparse_graph graph = graph_of_all(w);
+  const int most = longest_reach(w);
+  sparse_matrix m;
   keep_state(w);
-  const sparse_matrix m = sparse_probe(&graph, w->first, multiply, w);
+  for (int steps = 1;; steps++) {
+    sparse_graph graph = graph_of_all(w, steps);
+    m = sparse_probe(&graph, w->first, multiply, w);
+    sparse_graph_free(&graph);
+    if (steps == most || is_whole(w, &m)) break;
+    sparse_matrix_free(&m);
+  }
   put_back(w);
-  sparse_graph_free(&graph);
   return m;
 }
 

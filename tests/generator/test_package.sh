@@ -23,6 +23,7 @@ cd "$work"
 package=$(find . -maxdepth 1 -name 'perilat_*.deb')
 dpkg-deb -f "$package" >control
 grep -q '^Depends: .*libhdf5.*liblapack3' control || fail "$(cat control)"
+grep -q '^Depends: .*libcholmod' control || fail "$(cat control)"
 grep -q '^Recommends: gcc | c-compiler' control || fail "gcc is not recommended"
 grep -q '^Section: science' control
 

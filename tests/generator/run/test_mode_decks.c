@@ -60,7 +60,6 @@ static void a_run_takes_its_end_and_damping_from_them(void **state) {
 #define PRISM                                                                                      \
   EXAMPLES "tension/rot0.nml --set damping.rate= --set damping.ratio=0.2 --set "                   \
            "output.result=a.h5 "
-  expect(w, "check " PRISM "--set 'simulation.end_time=100 periods'", 0, "no errors");
   expect(w, "info " PRISM "--set 'simulation.end_time=100 periods'", 0, said);
   expect(w, "run " PRISM "--set 'simulation.end_time=1 period' --set output.sample=", 0,
          "0.517173 ms in 1128 steps");
@@ -78,6 +77,9 @@ static void solvers_find_them_too(void **state) {
                    0);
   expect(w, "run swing.nml --set output.result=swing.h5", 0,
          "  damping    0.1 of the critical one");
+#if defined(__SANITIZE_ADDRESS__)
+  skip(); /* the solver's compiler does not know the sanitizers that the libraries were made with */
+#endif
   expect(w, "build swing.nml -o swing", 0, "written swing");
   assert_int_equal(shell(w, "./swing --set output.result=solver.h5 > said"), 0);
   expect(w, "compare swing.h5 solver.h5", 0, "");
