@@ -20,7 +20,7 @@
 
 #define ERROR_LENGTH 8192
 
-enum { INPUT_WRONG = 1, BUILD_FAILED = 2 };
+enum { BUILD_FAILED = 2 };
 
 static bool spares_input(const char *output, const char *input) {
   if (!same_file(output, input)) return true;

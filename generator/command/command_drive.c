@@ -26,7 +26,7 @@
 #include "runtime/analysis/material.h"
 
 #define PATH_LIMIT_BYTES ((size_t)16 << 20)
-enum { INPUT_WRONG = 1, DRIVE_FAILED = 2, ERROR_LENGTH = 4096 };
+enum { DRIVE_FAILED = 2, ERROR_LENGTH = 4096 };
 
 typedef struct drive_options {
   const char *law, *path;

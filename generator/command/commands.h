@@ -13,8 +13,8 @@
   COMMAND_STATUS ", 130 stopped by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP: with the result so far " \
                  "and a checkpoint"
 #define STUDY_STATUS                                                                               \
-  "0 done, 1 the input is wrong, 2 a run failed or there is no answer, 130 stopped by Ctrl-C, 143 " \
-  "by SIGTERM, 129 by SIGHUP: the same command goes on"
+  "0 done, 1 the input is wrong, 2 a run failed or there is no answer, 130 stopped by Ctrl-C, "    \
+  "143 by SIGTERM, 129 by SIGHUP: the same command goes on"
 #define DRIVE_STATUS                                                                               \
   "0 all expectations hold, 1 the input is wrong, 2 an expectation fails or the law gives no "     \
   "number"
@@ -99,7 +99,8 @@
   X(study, "--of", "peak|last", "the answer of --converge: the peak of --y, or its last value")    \
   X(study, "--strength", "group.key=from..to:step",                                                \
     "which values of a load that is held are borne; the key alone: around the deck's value")       \
-  X(study, "--watch", "NAME", "the monitor that must not grow while the load is held (deflection)") \
+  X(study, "--watch", "NAME",                                                                      \
+    "the monitor that must not grow while the load is held (deflection)")                          \
   X(study, "--twin", "FILE",                                                                       \
     "of --strength: a deck of the same body that is moved; its peak is told beside")               \
   X(study, "--fit", "group.key=low..high", "a parameter that is sought between bounds")            \

@@ -6,13 +6,13 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "dsl/base/arena.h"
 #include "generator/interpreter/interpreted_family.h"
 #include "generator/interpreter/interpreted_strip.h"
 #include "generator/lower/law_inputs.h"
 #include "generator/plan/program_facts.h"
+#include "runtime/base/processors.h"
 
 enum { MOST_WORKERS = 64 };
 
@@ -271,8 +271,8 @@ static ir_node *make_inputs(const interpreted *p) {
 
 /* One for each processor: more callers than that would only wait for processors. */
 static int count_workers(void) {
-  long processors = sysconf(_SC_NPROCESSORS_ONLN);
-  return processors < 1 ? 1 : processors > MOST_WORKERS ? MOST_WORKERS : (int)processors;
+  const int processors = usable_processors();
+  return processors < MOST_WORKERS ? processors : MOST_WORKERS;
 }
 
 pl_law *plan_interpreted(const kernel_plan *plan) {

@@ -19,37 +19,12 @@
 #include "generator/run/run_report.h"
 #include "generator/run/run_result.h"
 #include "generator/run/run_state.h"
+#include "generator/run/stopping.h"
 #include "runtime/base/clock.h"
 #include "runtime/deck/deck_read.h"
 #include "runtime/lattice/lattice.h"
 
 enum { EARLY_CHECKPOINT = 30 }; /* s: the first one, so that a long run is never lost whole */
-
-/* --- signals ---------------------------------------------------------------------------------- */
-
-static volatile sig_atomic_t interrupted; /* the first signal that asked for it */
-static void on_interrupt(int signal_number) {
-  if (!interrupted) interrupted = signal_number;
-}
-
-/* Ctrl-C, the end of a batch job, a closed terminal: all stop at a step and write what there is. */
-static const int stopping_signals[] = {SIGINT, SIGTERM, SIGHUP};
-enum { STOPPING_SIGNALS = sizeof stopping_signals / sizeof *stopping_signals };
-
-static void catch_signals(struct sigaction before[STOPPING_SIGNALS]) {
-  interrupted = 0;
-  for (int k = 0; k < STOPPING_SIGNALS; k++) {
-    struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = SA_RESTART};
-    sigaction(stopping_signals[k], NULL, &before[k]);
-    if (before[k].sa_handler != SIG_IGN) /* as nohup wants it */
-      sigaction(stopping_signals[k], &action, NULL);
-  }
-}
-
-static void release_signals(const struct sigaction before[STOPPING_SIGNALS]) {
-  for (int k = 0; k < STOPPING_SIGNALS; k++)
-    sigaction(stopping_signals[k], &before[k], NULL);
-}
 
 /* --- diagnostics ------------------------------------------------------------------------------ */
 
@@ -215,10 +190,10 @@ static step_status march(run *r, bool *written) {
   long stride = 16;
   step_status status = STEP_OK;
   *written = true;
-  while (status == STEP_OK && !interrupted) {
+  while (status == STEP_OK && !stopping_signal) {
     if (simulation_frame_due(r->simulation) && !(*written = write_timed(r, write_frame))) break;
     double entered = monotonic_seconds();
-    status = simulation_advance(r->simulation, stride, &interrupted);
+    status = simulation_advance(r->simulation, stride, &stopping_signal);
     stride = next_stride(stride, monotonic_seconds() - entered);
     char detail[256];
     describe_monitors(r, detail, sizeof detail);
@@ -235,7 +210,7 @@ static step_status march(run *r, bool *written) {
   if (*written && status != STEP_BAD && simulation_frame_due(r->simulation))
     *written = write_timed(r, write_frame);
   progress_end(&bar);
-  if (interrupted && status == STEP_OK)
+  if (stopping_signal && status == STEP_OK)
     fputs("stopping: the result so far and a checkpoint are being written\n", stderr);
   return status;
 }
@@ -259,7 +234,7 @@ static void give_up_writing(run *r, step_status status) {
 
 /* A run that was asked to stop. Without its last checkpoint it has not stopped as it should. */
 static int exit_status(step_status status, bool saved) {
-  if (status == STEP_OK) return saved ? 128 + interrupted : RUN_FAILED;
+  if (status == STEP_OK) return saved ? 128 + stopping_signal : RUN_FAILED;
   return status == STEP_BAD ? RUN_FAILED : 0;
 }
 
@@ -283,29 +258,29 @@ static const char *name_of_ending(int status, step_status last, bool interrupted
 }
 
 static int execute(run *r) {
-  struct sigaction before[STOPPING_SIGNALS];
-  catch_signals(before);
+  stopping signals;
+  stopping_catch(&signals);
   long first = simulation_step_done(r->simulation);
   double begun = monotonic_seconds();
   bool written;
   if (r->options->profile) simulation_measure(r->simulation, &r->profile);
   step_status status = march(r, &written);
   const double seconds = r->wall = monotonic_seconds() - begun;
-  const bool stopped_by_user = interrupted && status == STEP_OK;
+  const bool stopped_by_user = stopping_signal && status == STEP_OK;
   const bool saved = stopped_by_user && written && write_checkpoint(r);
   if (status == STEP_BAD) report_bad(r);
   const run_end end = {status, exit_status(status, saved), seconds};
   written = written && finish_result(r, &end);
   if (!written) give_up_writing(r, status);
   if (written && !(stopped_by_user && r->is_kept)) remove_remains(r);
-  release_signals(before);
+  stopping_release(&signals);
   r->is_written = written;
   if (!written) return RUN_FAILED;
   conclude(r, seconds, simulation_step_done(r->simulation) - first);
   if (status == STEP_STOPPED) print_stop(r);
   if (r->options->profile) print_profile(r, seconds, simulation_step_done(r->simulation) - first);
   if (stopped_by_user) print_stopped(r, saved);
-  r->signal = stopped_by_user ? interrupted : 0;
+  r->signal = stopped_by_user ? stopping_signal : 0;
   r->ending = name_of_ending(end.exit_status, status, stopped_by_user);
   return end.exit_status;
 }

@@ -57,6 +57,7 @@ typedef struct run_options {
 
 /* Exit status: 0 done, 1 the input is wrong, 2 the run failed, 128 + signal (130 by Ctrl-C) when
    it was stopped: what there is has been written then, whole. */
+enum { INPUT_WRONG = 1, RUN_FAILED = 2 };
 int run_deck(const run_options *o);
 
 C_LINKAGE_END

@@ -7,7 +7,7 @@
 #include "runtime/simulation/profile.h"
 #include "runtime/simulation/simulation.h"
 
-enum { INPUT_WRONG = 1, RUN_FAILED = 2, ERROR_LENGTH = 1024 };
+enum { ERROR_LENGTH = 1024 };
 
 /* Everything a run holds, so that one function can let go of it. */
 typedef struct run {

@@ -87,10 +87,11 @@ static int run_crossed(study_request *r, study_pool *pool, json *w) {
   o.keys = column_names(r, axes, r->vary.count, &o.key_count);
   if (!check_cases(r, o.cases, o.count)) return 1;
   if (r->check_only) return 0;
-  if (!study_folder_open(pool->folder, r->memory, study_name(r))) return 2;
+  if (!study_folder_open(pool->folder, r->memory, study_name(r))) return 1;
   const int stopped = study_pool_run(pool, o.cases, o.count);
   if (stopped > 0) return tell_stopped(o.cases, o.count, stopped);
-  if (stopped < 0 || !study_read_rows(&o) || !study_publish(&o, w)) return 2;
+  if (stopped < 0) return -stopped;
+  if (!study_read_rows(&o) || !study_publish(&o, w)) return 2;
   if (r->converge.text) return study_converge(&o, sizes, w);
   return study_rows_good(&o) == o.count ? 0 : 2;
 }
@@ -99,7 +100,7 @@ static int run_crossed(study_request *r, study_pool *pool, json *w) {
 
 static int run_any(study_request *r, json *w) {
   study_folder folder = {.list = -1};
-  study_pool pool = {r, &folder, 0};
+  study_pool pool = {r, &folder};
   const int status = r->strength.text ? study_strength(r, &pool, w)
                      : r->fit.count   ? study_fit(r, &pool, w)
                                       : run_crossed(r, &pool, w);

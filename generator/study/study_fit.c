@@ -9,6 +9,7 @@
 #include "dsl/base/units.h"
 #include "generator/kernel/document.h"
 #include "generator/results/measured.h"
+#include "generator/run/run.h"
 #include "generator/study/fit_curve.h"
 #include "generator/study/fit_uncertainty.h"
 #include "generator/study/study_deck.h"
@@ -36,7 +37,7 @@ typedef struct fit {
   double *squares;   /* [case_count] of its curve */
   int case_count;
   int without; /* runs that gave no curve, since it was set to 0 */
-  int stopped; /* a signal, or -1 */
+  int stopped; /* as study_pool_run says */
 } fit;
 
 /* --- parameters ------------------------------------------------------------------------------- */
@@ -218,7 +219,7 @@ static bool run_points(fit *f, const double *points, int count, int *at) {
   const int before = f->case_count;
   for (int k = 0; k < count * f->decks; k++)
     if ((at[k] = take_case(f, k % f->decks, points + (size_t)(k / f->decks * f->count))) < 0) {
-      f->stopped = -1;
+      f->stopped = -INPUT_WRONG;
       return false;
     }
   const int new = f->case_count - before;
@@ -232,7 +233,7 @@ static bool evaluate(void *context, const double *points, int count, double *res
   if (!run_points(f, points, count, at)) return false;
   for (int k = 0; k < count * f->decks; k++) {
     if (!residuals_of(f, k % f->decks, at[k], residuals)) {
-      f->stopped = -1;
+      f->stopped = -RUN_FAILED;
       return false;
     }
     residuals += f->targets[k % f->decks].curve.count;
@@ -286,18 +287,16 @@ static void tell(const fit *f, const fit_problem *q, const fit_found *found,
     if (isfinite(u->error[p])) printf(", 95 %% from %.6g to %.6g", u->lower[p], u->upper[p]);
     printf("%s%s\n", *words ? ": " : "", words);
   }
-  puts(
-      "  (intervals take the distances as independent of each other; of smooth curves they are too "
-      "narrow)");
+  puts("  (intervals take the distances as independent of each other; of smooth curves they are "
+       "too narrow)");
   for (int p = 0; p < f->count; p++)
     for (int q2 = 0; q2 < p; q2++)
       if (fabs(u->correlation[p][q2]) > 0.5)
         printf("  correlation of %s and %s: %.3f\n", f->keys[q2], f->keys[p],
                u->correlation[p][q2]);
   printf("  misfit %.3g %% of the largest measured value (root of the weighted mean square; of a "
-         "band its "
-         "middle counts, the more the narrower it is); %d points tried, %d more "
-         "for the intervals%s\n",
+         "band its middle counts, the more the narrower it is); %d points tried, %d more for the "
+         "intervals%s\n",
          100 * root_mean_square(f, found), found->runs, u->runs,
          found->end == FIT_LIMIT ? "; the search was cut short: more with --runs" : "");
 }
@@ -395,6 +394,7 @@ static bool publish(fit *f, const fit_found *found, json *w) {
 }
 
 static int tell_stopped(const fit *f) {
+  if (f->stopped <= 0) return f->stopped ? -f->stopped : RUN_FAILED;
   printf("stopped as asked after %d runs; the same command goes on from here\n", f->case_count);
   return 128 + f->stopped;
 }
@@ -424,7 +424,7 @@ static int search(fit *f, json *w) {
   long residuals;
   fit_found found = {.residuals = NULL};
   fit_uncertainty u;
-  if (!begin(f, &residuals)) return f->stopped > 0 ? tell_stopped(f) : 2;
+  if (!begin(f, &residuals)) return tell_stopped(f);
   const fit_problem q = {
       .parameter = f->parameters,
       .parameters = f->count,
@@ -444,7 +444,7 @@ static int search(fit *f, json *w) {
   if (good && w) put(f, &q, &found, &u, w);
   const bool answered = good && found.end == FIT_FOUND && all_told(f, &u);
   fit_found_free(&found);
-  if (f->stopped > 0) return tell_stopped(f);
+  if (f->stopped) return tell_stopped(f);
   return answered ? 0 : 2;
 }
 
@@ -483,8 +483,9 @@ int study_fit(study_request *r, study_pool *pool, json *w) {
   fit f = {.request = r, .pool = pool};
   int status = 1;
   if (prepare(&f)) {
-    status = r->check_only ? 0 : 2;
-    if (!r->check_only && study_folder_open(pool->folder, r->memory, study_name(r)))
+    if (r->check_only)
+      status = 0;
+    else if (study_folder_open(pool->folder, r->memory, study_name(r)))
       status = search(&f, w);
   }
   let_go(&f);

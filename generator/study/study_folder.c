@@ -13,7 +13,7 @@
 
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
-#include "generator/run/run_state.h"
+#include "generator/run/run.h"
 #include "runtime/result/result_read.h"
 
 struct kept_case {
@@ -122,11 +122,11 @@ static const struct kept_case *find_kept(const study_folder *f, const char *name
   return NULL;
 }
 
-static bool clash(const study_folder *f, const char *what) {
+static int clash(const study_folder *f, const char *what) {
   say_error("`%s` holds %s of another deck, law or setting than this study's\n"
             "  name this one with -o, or move the folder away",
             f->path, what);
-  return false;
+  return INPUT_WRONG;
 }
 
 static bool keep(study_folder *f, arena *a, const study_case *c) {
@@ -144,7 +144,7 @@ static bool keep(study_folder *f, arena *a, const study_case *c) {
   return true;
 }
 
-bool study_folder_take(study_folder *f, arena *a, study_case *cases, int count) {
+int study_folder_take(study_folder *f, arena *a, study_case *cases, int count) {
   for (int k = 0; k < count; k++) {
     const struct kept_case *kept = find_kept(f, cases[k].name);
     if (kept && kept->identity != cases[k].identity)
@@ -157,8 +157,8 @@ bool study_folder_take(study_folder *f, arena *a, study_case *cases, int count) 
       study_folder_look(&cases[k], 0);
       if (cases[k].state == STUDY_FAILED) cases[k].state = STUDY_WAITING;
     } else if (!keep(f, a, &cases[k]))
-      return false;
+      return RUN_FAILED;
   }
   fsync(f->list);
-  return true;
+  return 0;
 }

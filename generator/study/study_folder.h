@@ -14,12 +14,12 @@ typedef struct study_folder {
 } study_folder;
 
 /* Makes the folder where it is not there, and waits for runs that a killed study has left. False
-   after a message. */
+   after a message: the name is taken, or cannot be written, or a study is at work there. */
 bool study_folder_open(study_folder *f, arena *a, const char *path);
 void study_folder_close(study_folder *f);
-/* Takes up those cases that are not in the list, and finds out which are done. False after a
-   message: a name is that of another case, or the list cannot be written. */
-bool study_folder_take(study_folder *f, arena *a, study_case *cases, int count);
+/* Takes up those cases that are not in the list, and finds out which are done. 0, or an exit status
+   after a message: 1 when a name is that of another case, 2 when the list cannot be written. */
+int study_folder_take(study_folder *f, arena *a, study_case *cases, int count);
 /* What has become of a case whose run ended with `status`, or which is found. */
 void study_folder_look(study_case *c, int status);
 

@@ -15,32 +15,8 @@
 #include "generator/kernel/document.h"
 #include "generator/run/progress.h"
 #include "generator/run/run.h"
-#include "generator/run/run_state.h"
-
-/* --- signals ---------------------------------------------------------------------------------- */
-
-static volatile sig_atomic_t stopped_by;
-static void on_stop(int signal_number) {
-  if (!stopped_by) stopped_by = signal_number;
-}
-
-static const int stopping_signals[] = {SIGINT, SIGTERM, SIGHUP};
-enum { STOPPING_SIGNALS = sizeof stopping_signals / sizeof *stopping_signals };
-
-static void catch_signals(struct sigaction before[STOPPING_SIGNALS]) {
-  stopped_by = 0;
-  signal(SIGCHLD, SIG_DFL); /* else nobody is told how runs end */
-  for (int k = 0; k < STOPPING_SIGNALS; k++) {
-    struct sigaction action = {.sa_handler = on_stop};
-    sigaction(stopping_signals[k], NULL, &before[k]);
-    if (before[k].sa_handler != SIG_IGN) sigaction(stopping_signals[k], &action, NULL);
-  }
-}
-
-static void release_signals(const struct sigaction before[STOPPING_SIGNALS]) {
-  for (int k = 0; k < STOPPING_SIGNALS; k++)
-    sigaction(stopping_signals[k], &before[k], NULL);
-}
+#include "generator/run/stopping.h"
+#include "runtime/base/processors.h"
 
 /* --- one run ---------------------------------------------------------------------------------- */
 
@@ -98,17 +74,14 @@ static void run_case(const work *w, const study_case *c, double *fraction) {
   _exit(status);
 }
 
-static pid_t start(const work *w, int of, const struct sigaction before[STOPPING_SIGNALS]) {
+static pid_t start(const work *w, int of, const stopping *signals) {
   fflush(NULL);
-  sigset_t stopping, as_it_was; /* none comes before the run can take it */
-  sigemptyset(&stopping);
-  for (int k = 0; k < STOPPING_SIGNALS; k++)
-    sigaddset(&stopping, stopping_signals[k]);
-  sigprocmask(SIG_BLOCK, &stopping, &as_it_was);
+  sigset_t as_it_was;
+  stopping_hold(&as_it_was); /* none comes before the run can take it */
   const pid_t parent = getpid(), child = fork();
   if (child == 0) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
-    release_signals(before);
+    stopping_release(signals);
   }
   sigprocmask(SIG_SETMASK, &as_it_was, NULL);
   if (child != 0) return child;
@@ -126,18 +99,17 @@ static int next_waiting(const work *w, int from) {
 }
 
 /* The next ones, where there is room. */
-static void start_some(work *w, int *next, const struct sigaction before[STOPPING_SIGNALS]) {
-  for (int j = 0; j < w->jobs && !stopped_by && !w->cannot_start; j++) {
+static void start_some(work *w, int *next, const stopping *signals) {
+  for (int j = 0; j < w->jobs && !stopping_signal && !w->cannot_start; j++) {
     *next = next_waiting(w, *next);
     if (w->running[j].child || *next == w->count) continue;
-    const pid_t child = start(w, *next, before);
+    const pid_t child = start(w, *next, signals);
     if (child < 0) {
       say_error("cannot start a run: %s", strerror(errno));
       w->cannot_start = true;
       return;
     }
     w->running[j] = (job){child, (*next)++};
-    w->pool->started++;
   }
 }
 
@@ -162,7 +134,7 @@ static bool collect(work *w) {
     w->running[j].child = 0;
     w->fractions[of] = 1;
     study_folder_look(&w->cases[of], code);
-    if (stopped_by && w->cases[of].state == STUDY_FAILED) w->cases[of].state = STUDY_WAITING;
+    if (stopping_signal && w->cases[of].state == STUDY_FAILED) w->cases[of].state = STUDY_WAITING;
   }
   return true;
 }
@@ -202,56 +174,54 @@ static double fraction_done(const work *w) {
   return (double)done / w->count;
 }
 
-static void go(work *w, const struct sigaction before[STOPPING_SIGNALS]) {
+static void go(work *w, const stopping *signals) {
   progress bar;
   int next = 0;
   bool told = false;
   progress_begin(&bar, fraction_done(w));
   do {
-    start_some(w, &next, before);
-    if (stopped_by && !told) pass_on(w, stopped_by);
-    told = told || stopped_by;
+    start_some(w, &next, signals);
+    if (stopping_signal && !told) pass_on(w, stopping_signal);
+    told = told || stopping_signal;
     while (collect(w))
       ;
     show(w, &bar);
     if (running(w)) nanosleep(&(struct timespec){0, 5000000}, NULL);
-  } while (running(w) || (!stopped_by && !w->cannot_start && next_waiting(w, next) < w->count));
+  } while (running(w) ||
+           (!stopping_signal && !w->cannot_start && next_waiting(w, next) < w->count));
   progress_end(&bar);
 }
 
-static int processors(void) {
-  const long online = sysconf(_SC_NPROCESSORS_ONLN);
-  return online > 0 ? (int)online : 1;
-}
-
 int study_pool_jobs(const study_request *r, int count) {
-  const int wanted = r->o.jobs ? r->o.jobs : processors();
+  const int wanted = r->o.jobs ? r->o.jobs : usable_processors();
   return wanted < count ? wanted : count > 0 ? count : 1;
 }
 
 int study_pool_run(study_pool *p, study_case *cases, int count) {
-  if (!study_folder_take(p->folder, p->request->memory, cases, count)) return -1;
+  const int refused = study_folder_take(p->folder, p->request->memory, cases, count);
+  if (refused) return -refused;
   work w = {.pool = p, .cases = cases, .count = count};
   int waiting = 0;
   for (int k = 0; k < count; k++)
     waiting += cases[k].state == STUDY_WAITING;
   if (waiting == 0) return 0;
   w.jobs = study_pool_jobs(p->request, waiting);
-  const int threads = p->request->threads ? p->request->threads : processors();
+  const int threads = p->request->threads ? p->request->threads : usable_processors();
   w.threads = threads > w.jobs ? threads / w.jobs : 1;
   w.running = must_calloc((size_t)w.jobs, sizeof *w.running);
   const size_t bytes = (size_t)count * sizeof *w.fractions;
   w.fractions = mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  int status = -1;
+  int status = -RUN_FAILED;
   if (w.fractions == MAP_FAILED) {
     say_error("cannot start a run: %s", strerror(errno));
   } else {
-    struct sigaction before[STOPPING_SIGNALS];
-    catch_signals(before);
-    go(&w, before);
-    release_signals(before);
+    stopping signals;
+    signal(SIGCHLD, SIG_DFL); /* else nobody is told how runs end */
+    stopping_catch(&signals);
+    go(&w, &signals);
+    stopping_release(&signals);
     munmap(w.fractions, bytes);
-    status = stopped_by ? stopped_by : w.cannot_start ? -1 : 0;
+    status = stopping_signal ? stopping_signal : w.cannot_start ? -RUN_FAILED : 0;
   }
   free(w.running);
   return status;

@@ -8,11 +8,10 @@
 typedef struct study_pool {
   const study_request *request;
   study_folder *folder;
-  int started; /* runs, by this command */
 } study_pool;
 
-/* Runs the cases that are not done. 0; a signal's number when one stopped it; -1 after a message.
-   */
+/* Runs the cases that are not done. 0; a signal's number when one stopped it; after a message the
+   exit status, negative. */
 int study_pool_run(study_pool *p, study_case *cases, int count);
 /* How many at the same time, of that many. */
 int study_pool_jobs(const study_request *r, int count);

@@ -8,6 +8,7 @@
 
 #include "dsl/base/elementary.h"
 #include "dsl/base/units.h"
+#include "generator/run/run.h"
 #include "generator/study/held_load.h"
 #include "generator/study/study_deck.h"
 #include "generator/study/study_publish.h"
@@ -195,14 +196,14 @@ static bool judge(const scan *s, load *l) {
   return true;
 }
 
-/* Runs what is asked for together, and the twin with the first of them. 0, a signal, or -1. */
+/* Runs what is asked for together, and the twin with the first of them. As study_pool_run. */
 static int run_batch(scan *s, load **next, int count) {
   const int extra = s->request->o.twin && s->twin.state == STUDY_WAITING;
   study_case *cases =
       arena_alloc(s->request->memory, ((size_t)(count + extra) + 1) * sizeof *cases);
   for (int k = 0; k < count; k++) {
     cases[k] = next[k]->run;
-    if (!study_case_check(s->request, &cases[k])) return -1;
+    if (!study_case_check(s->request, &cases[k])) return -INPUT_WRONG;
   }
   if (extra) cases[count] = s->twin;
   const int stopped = study_pool_run(s->pool, cases, count + extra);
@@ -219,7 +220,7 @@ static int scan_loads(scan *s) {
     const int stopped = run_batch(s, next, count);
     if (stopped) return stopped;
     for (int k = 0; k < count; k++)
-      if (!judge(s, next[k])) return -1;
+      if (!judge(s, next[k])) return -RUN_FAILED;
   }
   return 0;
 }
@@ -340,6 +341,13 @@ static void tell(const scan *s, const strength *f, json *w) {
   put_end(w, "peak", isfinite(f->peak), f->peak);
 }
 
+/* Of a study without any result it does not matter. */
+static const char *unit_of_watched(const study_outcome *o) {
+  for (int k = 0; k < o->count; k++)
+    if (o->rows[k].there) return o->rows[k].y_unit;
+  return "1";
+}
+
 /* Loads up to the first that is not borne, as rows: what was run beyond hangs on the jobs. */
 static bool publish(const scan *s, json *w) {
   study_request *r = s->request;
@@ -347,8 +355,8 @@ static bool publish(const scan *s, json *w) {
   study_outcome o = {.request = r, .keys = keys, .key_count = 2, .y = r->o.watch};
   o.cases = arena_alloc(r->memory, ((size_t)s->count + 1) * sizeof *o.cases);
   const size_t rows = (size_t)s->count + 1;
-  study_column halves[] = {{.name = "first half", .unit = "m"},
-                           {.name = "second half", .unit = "m"}},
+  study_column halves[] = {{.name = "first half", .shown = true},
+                           {.name = "second half", .shown = true}},
                verdict = {.name = "verdict", .shown = true};
   halves[0].values = arena_alloc(r->memory, rows * sizeof(double));
   halves[1].values = arena_alloc(r->memory, rows * sizeof(double));
@@ -362,10 +370,12 @@ static bool publish(const scan *s, json *w) {
       o.y_most = pl_fmax(o.y_most, 2 * pl_fmax(l->found.first, l->found.second));
     o.cases[o.count++] = l->run;
   }
+  if (!study_read_rows(&o)) return false;
+  halves[0].unit = halves[1].unit = unit_of_watched(&o);
   const study_column more[] = {halves[0], halves[1], verdict};
   o.more = more;
   o.more_count = 3;
-  return study_read_rows(&o) && study_publish(&o, w);
+  return study_publish(&o, w);
 }
 
 static int tell_stopped(const scan *s, int signal_number) {
@@ -403,11 +413,12 @@ int study_strength(study_request *r, study_pool *pool, json *w) {
   for (int k = 0; k < s.count; k++) /* before anything runs */
     if (!study_case_check(r, &s.loads[k].run)) return 1;
   if (r->check_only) return 0;
-  if (!study_folder_open(pool->folder, r->memory, study_name(r))) return 2;
+  if (!study_folder_open(pool->folder, r->memory, study_name(r))) return 1;
   int stopped = scan_loads(&s);
   if (!stopped && s.key_alone) stopped = refine(&s);
   if (stopped > 0) return tell_stopped(&s, stopped);
-  if (stopped < 0 || !publish(&s, w) || !conclude(&s, &found)) return 2;
+  if (stopped < 0) return -stopped;
+  if (!publish(&s, w) || !conclude(&s, &found)) return 2;
   tell(&s, &found, w);
   return found.has_lower && found.has_upper ? 0 : 2;
 }

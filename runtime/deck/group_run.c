@@ -332,4 +332,5 @@ static void check_study(deck_reader *r, const namelist_group *from, void *into) 
 
 DECK_ONE(study, .check = check_study,
          .doc = "Many runs of a deck, which `perilat study` does. It may stand in the deck, or by "
-                "itself in a file that names the deck; a run takes no notice of it.");
+                "itself in a file that names the deck; a run takes no notice of it. What is asked, "
+                "and what comes out: [many runs](../generator/README.md#many-runs).");
