@@ -13,6 +13,7 @@
 #include "generator/kernel/version.h"
 #include "generator/plan/plan.h"
 #include "generator/run/run.h"
+#include "generator/study/study_cost.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/material.h"
 #include "runtime/deck/deck_read.h"
@@ -249,6 +250,7 @@ static bool identify(const study_request *r, arena *memory, study_case *c, sourc
   for (int n = 0; n < k->interaction_count && good; n++)
     good = take_law(k, n, c, &hash, said);
   c->identity = hash;
+  c->cost = study_cost(k);
   return good;
 }
 

@@ -26,6 +26,7 @@ typedef struct study_case {
   double
       crack_energy; /* N/m: what a crack along the rows takes by the law of the first lattice; NaN:
                           it says nothing of it */
+  double cost;      /* of its run, compared with other cases */
   const char *result, *log; /* paths */
   study_state state;
   int status; /* exit status of its run */
@@ -39,7 +40,8 @@ study_case study_case_of(study_request *r, const char *path, const char *const *
                          const char *const *values, int count);
 /* "spacing" of "lattice.spacing", or the whole where another of the keys has the same last part. */
 const char *study_key_shown(const char *const *keys, int count, int k);
-/* The deck and its laws are read as a run reads them: false after messages. Fills `identity`. */
+/* The deck and its laws are read as a run reads them: false after messages. Fills `identity`,
+   `crack_energy` and `cost`. */
 bool study_case_check(study_request *r, study_case *c);
 
 #endif

@@ -29,6 +29,8 @@ typedef struct work {
   study_pool *pool;
   study_case *cases;
   int count, jobs, threads;
+  study_case **order; /* [waiting] those that were not done, as they begin */
+  int waiting;
   job *running;      /* [jobs] */
   double *fractions; /* [count] of the time of each run, which its process writes */
   bool cannot_start;
@@ -92,24 +94,32 @@ static pid_t start(const work *w, int of, const stopping *signals) {
 
 /* --- all of them ------------------------------------------------------------------------------ */
 
-static int next_waiting(const work *w, int from) {
-  while (from < w->count && w->cases[from].state != STUDY_WAITING)
-    from++;
-  return from;
+static int longest_first(const void *a, const void *b) {
+  const study_case *const *x = a, *const *y = b;
+  if ((*x)->cost != (*y)->cost) return (*x)->cost < (*y)->cost ? 1 : -1;
+  return *x < *y ? -1 : *x > *y; /* as they stand in the table */
+}
+
+/* Else the longest, begun last, keeps one processor at work and the others waiting. */
+static void put_in_order(work *w) {
+  for (int k = 0; k < w->count; k++)
+    if (w->cases[k].state == STUDY_WAITING) w->order[w->waiting++] = &w->cases[k];
+  qsort(w->order, (size_t)w->waiting, sizeof *w->order, longest_first);
 }
 
 /* The next ones, where there is room. */
 static void start_some(work *w, int *next, const stopping *signals) {
-  for (int j = 0; j < w->jobs && !stopping_signal && !w->cannot_start; j++) {
-    *next = next_waiting(w, *next);
-    if (w->running[j].child || *next == w->count) continue;
-    const pid_t child = start(w, *next, signals);
+  for (int j = 0; j < w->jobs && *next < w->waiting && !stopping_signal; j++) {
+    if (w->running[j].child) continue;
+    const int of = (int)(w->order[*next] - w->cases);
+    const pid_t child = start(w, of, signals);
     if (child < 0) {
       say_error("cannot start a run: %s", strerror(errno));
       w->cannot_start = true;
       return;
     }
-    w->running[j] = (job){child, (*next)++};
+    w->running[j] = (job){child, of};
+    ++*next;
   }
 }
 
@@ -180,15 +190,14 @@ static void go(work *w, const stopping *signals) {
   bool told = false;
   progress_begin(&bar, fraction_done(w));
   do {
-    start_some(w, &next, signals);
+    if (!w->cannot_start) start_some(w, &next, signals);
     if (stopping_signal && !told) pass_on(w, stopping_signal);
     told = told || stopping_signal;
     while (collect(w))
       ;
     show(w, &bar);
     if (running(w)) nanosleep(&(struct timespec){0, 5000000}, NULL);
-  } while (running(w) ||
-           (!stopping_signal && !w->cannot_start && next_waiting(w, next) < w->count));
+  } while (running(w) || (!stopping_signal && !w->cannot_start && next < w->waiting));
   progress_end(&bar);
 }
 
@@ -201,11 +210,10 @@ int study_pool_run(study_pool *p, study_case *cases, int count) {
   const int refused = study_folder_take(p->folder, p->request->memory, cases, count);
   if (refused) return -refused;
   work w = {.pool = p, .cases = cases, .count = count};
-  int waiting = 0;
-  for (int k = 0; k < count; k++)
-    waiting += cases[k].state == STUDY_WAITING;
-  if (waiting == 0) return 0;
-  w.jobs = study_pool_jobs(p->request, waiting);
+  w.order = arena_alloc(p->request->memory, ((size_t)count + 1) * sizeof *w.order);
+  put_in_order(&w);
+  if (w.waiting == 0) return 0;
+  w.jobs = study_pool_jobs(p->request, w.waiting);
   const int threads = p->request->threads ? p->request->threads : usable_processors();
   w.threads = threads > w.jobs ? threads / w.jobs : 1;
   w.running = must_calloc((size_t)w.jobs, sizeof *w.running);

@@ -361,6 +361,21 @@ static void jobs(void **state) {
                    0);
 }
 
+/* The longest run begins first, so that none is left to run by itself at the end; rows stay as asked. */
+static void longest_first(void **state) {
+  workplace *w = *state;
+  expect(w,
+         "study beam.nml --vary 'simulation.end_time=0.1,0.3 ms' --vary "
+         "'lattice.spacing=6.35,3.175 mm' --jobs 1 -o order",
+         0, "wrote");
+  assert_int_equal(shell(w, "ls -1tr --time-style=full-iso order/*.h5 | tr '\\n' ' '"), 0);
+  assert_string_equal(w->said, "order/end_time=0.3ms,spacing=3.175mm.h5 "
+                               "order/end_time=0.1ms,spacing=3.175mm.h5 "
+                               "order/end_time=0.3ms,spacing=6.35mm.h5 "
+                               "order/end_time=0.1ms,spacing=6.35mm.h5 ");
+  expect_cell(w, "order.csv", 1, "case", "end_time=0.1ms,spacing=6.35mm");
+}
+
 int main(void) {
 #define WITH(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down_workplace)
   const struct CMUnitTest tests[] = {WITH(a_row_is_a_run),
@@ -376,6 +391,7 @@ int main(void) {
                                      WITH(two_at_once),
                                      WITH(documents),
                                      WITH(jobs),
+                                     WITH(longest_first),
                                      WITH(a_file_of_its_own),
                                      WITH(in_the_deck),
                                      WITH(the_command_counts),
