@@ -17,10 +17,11 @@ enum { STEPS = 320, UNKNOWNS = 3 };
 /* Sizes from the coarsest to the finest. */
 typedef struct sequence {
   const convergence_level **level;
-  double *h, *mean;   /* h over the finest */
-  double *fit_weight; /* sum: count */
-  int count, runs;    /* sizes, values at each */
-  double range;       /* of the means */
+  double *h, *mean;               /* h over the finest */
+  double *fit_weight;             /* sum: count */
+  int count, runs;                /* sizes, values at each */
+  const convergence_level *first; /* as given: knows what its runs share */
+  double range;                   /* of the means */
 } sequence;
 
 static int coarser(const void *a, const void *b) {
@@ -45,7 +46,7 @@ static double mean_of(const double *values, int count) {
 }
 
 static sequence sequence_new(const convergence_level *levels, int count) {
-  sequence s = {.count = count, .runs = levels[0].count};
+  sequence s = {.count = count, .runs = levels[0].count, .first = levels};
   s.level = must_alloc((size_t)count * sizeof *s.level);
   double **columns[] = {&s.h, &s.mean, &s.fit_weight};
   for (int c = 0; c < 3; c++)
@@ -209,21 +210,47 @@ static double standard_error(const double *values, int count) {
   return count > 1 ? sqrt(sum / (count - 1) / count) : 0;
 }
 
-/* Of what is a sum of the values at all sizes, with a factor each. */
-static double error_of_sum(const sequence *s, const double *factor) {
-  double *sums = must_alloc((size_t)s->runs * sizeof(double));
-  for (int i = 0; i < s->runs; i++) {
-    sums[i] = 0;
-    for (int k = 0; k < s->count; k++)
-      sums[i] += factor[k] * s->level[k]->values[i];
-  }
-  const double error = standard_error(sums, s->runs);
-  free(sums);
-  return error;
+/* Of a mean of independent draws: its standard error, and half of its 95 % interval. */
+typedef struct spread {
+  double error, interval;
+} spread;
+
+static spread spread_of(const double *draws, int count) {
+  const double error = standard_error(draws, count);
+  return (spread){error, count > 1 ? special_student_quantile(0.95, count - 1) * error : 0};
 }
 
-static double interval_of(double error, int runs) {
-  return runs > 1 ? special_student_quantile(0.95, runs - 1) * error : 0;
+static void widen(spread *s, spread other) {
+  s->error = pl_fmax(s->error, other.error);
+  s->interval = pl_fmax(s->interval, other.interval);
+}
+
+/* Means over the runs that share a value of a key; returns how many there are. */
+static int means_of_shared(const double *sums, const int *shared, int runs, double *means) {
+  int count = 0;
+  for (int value = 0, among = 1; among > 0; value++) {
+    double sum = 0;
+    among = 0;
+    for (int i = 0; i < runs; i++)
+      if (shared[i] == value) sum += sums[i], among++;
+    if (among > 0) means[count++] = sum / among;
+  }
+  return count;
+}
+
+/* Of what is a sum of the values at all sizes, with a factor each. */
+static spread spread_of_sum(const sequence *s, const double *factor) {
+  double *sums = must_calloc((size_t)s->runs, sizeof(double)),
+         *means = must_alloc((size_t)s->runs * sizeof(double));
+  for (int i = 0; i < s->runs; i++)
+    for (int k = 0; k < s->count; k++)
+      sums[i] += factor[k] * s->level[k]->values[i];
+  spread widest = spread_of(sums, s->runs);
+  for (int k = 0; k < s->first->shared_count; k++)
+    widen(&widest, spread_of(means, means_of_shared(sums, s->first->shared[k], s->runs, means)));
+  free(means);
+  free(sums);
+  return widest;
 }
 
 static bool scatter_hides_change(const sequence *s, convergence *c) {
@@ -231,7 +258,8 @@ static bool scatter_hides_change(const sequence *s, convergence *c) {
   double *factor = must_calloc((size_t)n, sizeof(double));
   factor[n - 2] = -1;
   factor[n - 1] = 1;
-  const double change = fabs(s->mean[n - 1] - s->mean[n - 2]), error = error_of_sum(s, factor);
+  const double change = fabs(s->mean[n - 1] - s->mean[n - 2]),
+               error = spread_of_sum(s, factor).error;
   free(factor);
   if (s->runs < 2 || change > error) return false;
   say(c,
@@ -329,7 +357,7 @@ static void give(convergence *c, double value, double discretisation, double sca
 static void same_at_all(const sequence *s, convergence *c) {
   double *factor = must_calloc((size_t)s->count, sizeof(double));
   factor[s->count - 1] = 1;
-  give(c, s->mean[s->count - 1], 3 * s->range, interval_of(error_of_sum(s, factor), s->runs));
+  give(c, s->mean[s->count - 1], 3 * s->range, spread_of_sum(s, factor).interval);
   say(c, "the same at all sizes: its order is unknown");
   free(factor);
 }
@@ -343,7 +371,7 @@ static void bar_of(sequence *s, fit f, convergence *c) {
   }
   double *factor = must_alloc((size_t)s->count * sizeof(double));
   limit_factors(s, &f, proper, factor);
-  const double limit = limit_of(&f), scatter = interval_of(error_of_sum(s, factor), s->runs);
+  const double limit = limit_of(&f), scatter = spread_of_sum(s, factor).interval;
   const double rest = fabs(s->mean[last] - f.finest);
   give(c, limit, (proper ? 1.25 : 3) * fabs(s->mean[last] - limit) + f.sigma + rest, scatter);
   free(factor);

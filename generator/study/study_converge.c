@@ -75,6 +75,29 @@ static int levels_of(const study_outcome *o, int key, convergence_level *levels)
   return count;
 }
 
+/* Which runs of a level share a value of another key, by numbers from 0. */
+static const int *shared_of(const study_outcome *o, int key, int other, const char *name,
+                            int runs) {
+  int *shared = arena_alloc(o->request->memory, (size_t)runs * sizeof *shared), values = 0;
+  const char **value = arena_alloc(o->request->memory, (size_t)runs * sizeof *value);
+  for (int r = 0, i = 0; r < o->count && i < runs; r++) {
+    if (strcmp(o->cases[r].values[key], name) != 0) continue;
+    int v = 0;
+    while (v < values && strcmp(value[v], o->cases[r].values[other]) != 0)
+      v++;
+    if (v == values) value[values++] = o->cases[r].values[other];
+    shared[i++] = v;
+  }
+  return shared;
+}
+
+static void note_shared(const study_outcome *o, int key, convergence_level *first) {
+  const int **shared = arena_alloc(o->request->memory, (size_t)o->key_count * sizeof *shared);
+  first->shared = shared;
+  for (int k = 0; k < o->key_count; k++)
+    if (k != key) shared[first->shared_count++] = shared_of(o, key, k, first->name, first->count);
+}
+
 /* --- one material? ---------------------------------------------------------------------------- */
 
 /* Some bonds have lost what counts. */
@@ -147,7 +170,9 @@ int study_converge(const study_outcome *o, int key, json *w) {
       arena_alloc(o->request->memory, ((size_t)o->count + 1) * sizeof *levels);
   convergence found;
   const study_row *row = any_row(o);
-  convergence_find(levels, levels_of(o, key, levels), &found);
+  const int count = levels_of(o, key, levels);
+  if (count > 0) note_shared(o, key, levels);
+  convergence_find(levels, count, &found);
   refuse_moving(o, &found);
   if (row) tell(o, &found, row);
   if (w) {

@@ -25,7 +25,8 @@ static convergence found(int count, const double *sizes, const double *values) {
   convergence c;
   for (int k = 0; k < count; k++) {
     snprintf(names[k], sizeof names[k], "%g mm", sizes[k]);
-    levels[k] = (convergence_level){sizes[k], names[k], &values[k], 1};
+    levels[k] =
+        (convergence_level){.size = sizes[k], .name = names[k], .values = &values[k], .count = 1};
   }
   convergence_find(levels, count, &c);
   return c;
@@ -138,7 +139,8 @@ static convergence found_in(const random_case *r) {
   convergence_level levels[MOST];
   convergence c;
   for (int k = 0; k < r->count; k++)
-    levels[k] = (convergence_level){r->sizes[k], "h", r->values[k], r->runs};
+    levels[k] = (convergence_level){
+        .size = r->sizes[k], .name = "h", .values = r->values[k], .count = r->runs};
   convergence_find(levels, r->count, &c);
   return c;
 }
@@ -211,11 +213,38 @@ static void orientations_widen_the_bar(void **unused) {
   assert_near(c.error, hypot(c.scatter, c.discretisation), 1e-12);
 }
 
+/* Three orientations with limits of their own, each with four seeds that differ little: the twelve
+   runs are no twelve draws of orientations, however many seeds there are. */
+static void runs_that_share_an_orientation(void **unused) {
+  (void)unused;
+  static const int orientation[] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2},
+                   seed[] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+  const int *const shared[] = {orientation, seed};
+  const double sizes[] = {20, 10, 5}, seeds[] = {-1e-3, 2e-3, 1e-3, -2e-3};
+  double values[3][12];
+  convergence_level levels[3];
+  for (int k = 0; k < 3; k++) {
+    for (int i = 0; i < 12; i++)
+      values[k][i] = 57 + 0.01 * sizes[k] * sizes[k] + orientation[i] - 1 + seeds[seed[i]];
+    levels[k] = (convergence_level){.size = sizes[k], .values = values[k], .count = 12};
+  }
+  convergence alone, crossed;
+  convergence_find(levels, 3, &alone);
+  levels[0].shared = shared;
+  levels[0].shared_count = 2;
+  convergence_find(levels, 3, &crossed);
+  assert_true(alone.converged && crossed.converged);
+  assert_near(crossed.value, 57, 1e-9);
+  assert_near(crossed.scatter, 4.302652729911275 / sqrt(3), 1e-9);
+  assert_true(alone.scatter < 0.3 * crossed.scatter);
+}
+
 static void scatter_as_large_as_the_changes(void **unused) {
   (void)unused;
-  const convergence_level levels[] = {{5, "5 mm", (const double[]){57.2, 56.1, 57.9}, 3},
-                                      {20, "20 mm", (const double[]){60, 60.1, 59.8}, 3},
-                                      {10, "10 mm", (const double[]){56.5, 58.2, 57.0}, 3}};
+  const convergence_level levels[] = {
+      {.size = 5, .name = "5 mm", .values = (const double[]){57.2, 56.1, 57.9}, .count = 3},
+      {.size = 20, .name = "20 mm", .values = (const double[]){60, 60.1, 59.8}, .count = 3},
+      {.size = 10, .name = "10 mm", .values = (const double[]){56.5, 58.2, 57.0}, .count = 3}};
   convergence c;
   convergence_find(levels, 3, &c);
   assert_false(c.converged);
@@ -250,6 +279,7 @@ int main(void) {
       cmocka_unit_test(sizes_may_be_extreme),
       cmocka_unit_test(the_bar_holds_the_truth),
       cmocka_unit_test(orientations_widen_the_bar),
+      cmocka_unit_test(runs_that_share_an_orientation),
       cmocka_unit_test(scatter_as_large_as_the_changes),
       cmocka_unit_test(noise_of_many_sizes_is_fitted),
   };
