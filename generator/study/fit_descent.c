@@ -10,6 +10,8 @@
 
 static const double dampings[] = {0, 0.03, 0.1, 0.3}; /* over the largest singular value */
 enum { TRIED = sizeof dampings / sizeof *dampings };
+/* Of the differences, over the widths: the slope of a rough floor shows in the wide ones alone. */
+static const double differences[] = {0.01, 0.05};
 static const double least_gain = 0.01; /* of the sum of squares, to go on */
 
 /* J'r, half the slope of the sum of squares. */
@@ -89,10 +91,11 @@ static bool try_steps(const fit_problem *p, fit_found *f, const double *j, doubl
   return false;
 }
 
-static bool gains(const fit_problem *p, fit_found *f, double *points, double *residuals) {
+static bool gains(const fit_problem *p, fit_found *f, double difference, double *points,
+                  double *residuals) {
   const int wanted = 2 * p->parameters + TRIED;
   if (f->end != FIT_FOUND || f->squares == 0 || f->runs + wanted > p->most_runs) return false;
-  double *j = fit_jacobian(p, f->best, f->residuals);
+  double *j = fit_jacobian(p, f->best, f->residuals, difference);
   f->runs += 2 * p->parameters;
   if (!j) f->end = FIT_BROKEN;
   const bool gained = j && try_steps(p, f, j, points, residuals);
@@ -103,7 +106,8 @@ static bool gains(const fit_problem *p, fit_found *f, double *points, double *re
 void fit_descend(const fit_problem *p, fit_found *f) {
   double *points = must_alloc(TRIED * (size_t)p->parameters * sizeof(double));
   double *residuals = must_alloc(TRIED * (size_t)p->residuals * sizeof(double));
-  while (gains(p, f, points, residuals))
+  while (gains(p, f, differences[0], points, residuals) ||
+         gains(p, f, differences[1], points, residuals))
     ;
   free(points);
   free(residuals);

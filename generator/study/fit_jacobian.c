@@ -12,8 +12,6 @@ void dgesvd_(const char *left, const char *right, const int *rows, const int *co
              double *work, const int *work_size, int *info, size_t left_length,
              size_t right_length);
 
-static const double step = 0.01; /* of the width of the bounds */
-
 fit_set fit_set_all(const fit_problem *p) {
   fit_set s = {.count = p->parameters};
   for (int i = 0; i < p->parameters; i++)
@@ -26,7 +24,7 @@ double fit_width(const fit_parameter *p) {
 }
 
 /* Steps of the two points beside: one to each side, or both away from a bound. */
-static void steps_of(const fit_parameter *q, double value, double by[2]) {
+static void steps_of(const fit_parameter *q, double value, double step, double by[2]) {
   const double h = step * fit_width(q);
   by[0] = -h;
   by[1] = h;
@@ -35,10 +33,10 @@ static void steps_of(const fit_parameter *q, double value, double by[2]) {
 }
 
 /* The derivative at the point of the parabola through it and both others, times the width. */
-static void differentiate(const fit_parameter *q, double value, const double *at, const double *r,
-                          int m, double *column) {
+static void differentiate(const fit_parameter *q, double value, double step, const double *at,
+                          const double *r, int m, double *column) {
   double by[2];
-  steps_of(q, value, by);
+  steps_of(q, value, step, by);
   const double a = by[0] / fit_width(q), b = by[1] / fit_width(q);
   for (int k = 0; k < m; k++) {
     const double to_a = (r[k] - at[k]) / a, to_b = (r[m + k] - at[k]) / b;
@@ -46,20 +44,22 @@ static void differentiate(const fit_parameter *q, double value, const double *at
   }
 }
 
-double *fit_jacobian(const fit_problem *p, const double *point, const double *residuals) {
+double *fit_jacobian(const fit_problem *p, const double *point, const double *residuals,
+                     double step) {
   const size_t n = (size_t)p->parameters, m = (size_t)p->residuals;
   double *place = must_alloc(2 * n * n * sizeof(double));
   double *r = must_alloc(2 * n * m * sizeof(double)), *j = must_alloc(n * m * sizeof(double));
   for (size_t k = 0; k < 2 * n; k++) {
     const size_t i = k / 2;
     double by[2];
-    steps_of(&p->parameter[i], point[i], by);
+    steps_of(&p->parameter[i], point[i], step, by);
     memcpy(&place[k * n], point, n * sizeof(double));
     place[k * n + i] += by[k % 2];
   }
   const bool good = p->evaluate(p->context, place, (int)(2 * n), r);
   for (size_t i = 0; i < n && good; i++)
-    differentiate(&p->parameter[i], point[i], residuals, &r[2 * i * m], p->residuals, &j[i * m]);
+    differentiate(&p->parameter[i], point[i], step, residuals, &r[2 * i * m], p->residuals,
+                  &j[i * m]);
   free(place);
   free(r);
   if (good) return j;

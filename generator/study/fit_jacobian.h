@@ -14,9 +14,10 @@ fit_set fit_set_all(const fit_problem *p);
 double fit_width(const fit_parameter *p);
 
 /* J by columns, [parameters*residuals], at a point with its residuals: the slope of the parabola
-   through it and two points a hundredth of the width beside it (both on one side, near a bound). In one batch of
-   2*parameters points. The caller frees it; NULL where the batch fails. */
-double *fit_jacobian(const fit_problem *p, const double *point, const double *residuals);
+   through it and two points a step beside it, over the width (both on one side, near a bound). In
+   one batch of 2*parameters points. The caller frees it; NULL where the batch fails. */
+double *fit_jacobian(const fit_problem *p, const double *point, const double *residuals,
+                     double step);
 
 typedef struct fit_singular {
   double value[FIT_MOST];            /* descending; 0 where there are fewer residuals */

@@ -8,6 +8,7 @@
 #include "generator/study/fit_jacobian.h"
 #include "runtime/base/special_functions.h"
 
+static const double step = 0.01;          /* of the width of the bounds */
 static const double most_condition = 1e4; /* what differences of this step can show */
 static const double least_part = 0.1;     /* of a combination, to be named */
 static const double confidence = 0.95;
@@ -96,7 +97,7 @@ bool fit_uncertainty_find(const fit_problem *problem, const fit_found *found, fi
       u->correlation[i][k] = NAN;
   }
   const fit_set inner = judge_bounds(problem, found, u);
-  double *j = fit_jacobian(problem, found->best, found->residuals);
+  double *j = fit_jacobian(problem, found->best, found->residuals, step);
   u->runs = 2 * problem->parameters;
   const bool good = j && judge(problem, found, &inner, j, u);
   free(j);
