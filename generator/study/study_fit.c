@@ -11,6 +11,7 @@
 #include "generator/results/measured.h"
 #include "generator/run/run.h"
 #include "generator/study/fit_curve.h"
+#include "generator/study/fit_descent.h"
 #include "generator/study/fit_uncertainty.h"
 #include "generator/study/study_deck.h"
 #include "generator/study/study_publish.h"
@@ -435,6 +436,7 @@ static int search(fit *f, json *w) {
       .tolerance = accuracy,
       .most_runs = f->request->o.runs};
   fit_search(&q, &found);
+  fit_descend(&q, &found);
   f->without = 0;
   bool good = found.end != FIT_BROKEN && fit_uncertainty_find(&q, &found, &u);
   if (good && f->without) forget_intervals(f, &u);

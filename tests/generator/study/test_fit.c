@@ -11,7 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/base/elementary.h"
 #include "generator/study/fit_curve.h"
+#include "generator/study/fit_descent.h"
 #include "generator/study/fit_search.h"
 #include "generator/study/fit_uncertainty.h"
 #include "runtime/base/random_number.h"
@@ -298,6 +300,87 @@ static void the_search_is_the_same_each_time(void **unused) {
     fit_found_free(&f[k]);
 }
 
+/* --- the descent ------------------------------------------------------------------------------ */
+
+static fit_found found_at(const fit_problem *p, double a, double b) {
+  fit_found f = {.end = FIT_FOUND, .best = {a, b}, .residuals = malloc(POINTS * sizeof(double))};
+  assert_true(p->evaluate(p->context, f.best, 1, f.residuals));
+  for (int k = 0; k < POINTS; k++)
+    f.squares += f.residuals[k] * f.residuals[k];
+  return f;
+}
+
+/* A linear problem takes one step. Where the line is cut off by a bound, the other parameter is
+   the closed form's with the first one held there. */
+static void a_line_takes_one_step(void **unused) {
+  (void)unused;
+  const double truth[] = {1, 2};
+  double mean = 0;
+  for (int held = 0; held < 2; held++) {
+    const fit_parameter box[] = {{"a", -10, 10, 4}, {"b", -3, held ? 1.5 : 7, 0}};
+    model m = model_of(line, box, 2, truth);
+    const fit_problem p = problem_of(&m, FIT_BOBYQA, 1e-4);
+    fit_found f = found_at(&p, 4, 0);
+    fit_descend(&p, &f);
+    assert_true(f.end == FIT_FOUND && f.runs == m.computed - 1);
+    for (int k = 0; k < POINTS && held; k++)
+      mean += place_of(k) / POINTS;
+    assert_near(f.best[1], held ? 1.5 : 2, 1e-12);
+    assert_near(f.best[0], 1 + 0.5 * mean, 1e-12);
+    if (!held) assert_true(f.squares < 1e-24);
+    fit_found_free(&f);
+  }
+}
+
+static double rough(const double *p, double x) {
+  return softening(p, x) + 0.03 * sin(40 * (p[0] + p[1]) + 9 * x);
+}
+
+/* Peak and place make up for each other along a valley, and swings make its floor rough: the search
+   stops on the way. */
+static void rough_valleys_are_left(void **unused) {
+  (void)unused;
+  const double truth[] = {3.1, 1.13};
+  double searched = 0, descended = 0;
+  for (int start = 0; start < 9; start++) {
+    const fit_parameter box[] = {{"f_t", 1, 5, 1.2 + 0.4 * start},
+                                 {"w", 0.4, 3, 2.9 - 0.2 * start}};
+    model m = model_of(rough, box, 2, truth);
+    const fit_problem p = problem_of(&m, FIT_BOBYQA, 1e-3);
+    fit_found f;
+    fit_search(&p, &f);
+    searched = pl_fmax(searched, f.squares);
+    const double before = f.squares;
+    fit_descend(&p, &f);
+    assert_true(f.end == FIT_FOUND && f.runs == m.computed && f.squares <= before);
+    descended = pl_fmax(descended, f.squares);
+    fit_found_free(&f);
+  }
+  printf("  worst of nine starts: sum of squares %.3g searched, %.3g descended\n", searched,
+         descended);
+  assert_true(descended < 0.1 * searched);
+}
+
+static void a_descent_keeps_to_its_runs(void **unused) {
+  (void)unused;
+  const double truth[] = {3.1, 1.13};
+  model m = model_of(softening, peak_and_place, 2, truth);
+  fit_problem p = problem_of(&m, FIT_BOBYQA, 1e-4);
+  p.most_runs = 17;
+  fit_found f = found_at(&p, 2.5, 1.5);
+  fit_descend(&p, &f);
+  assert_true(f.runs == 16 && m.computed == 17 && f.squares > 0);
+  fit_found_free(&f);
+  for (int call = 2; call <= 4; call++) {
+    m = model_of(softening, peak_and_place, 2, truth);
+    m.fail_at = call;
+    f = found_at(&p, 2.5, 1.5);
+    fit_descend(&p, &f);
+    assert_true(f.end == FIT_BROKEN && m.calls == call);
+    fit_found_free(&f);
+  }
+}
+
 /* --- uncertainty ------------------------------------------------------------------------------ */
 
 /* A straight line: the textbook's formulas. */
@@ -421,6 +504,9 @@ int main(void) {
       cmocka_unit_test(a_start_that_fits_stays),
       cmocka_unit_test(what_fails_ends_the_search),
       cmocka_unit_test(the_search_is_the_same_each_time),
+      cmocka_unit_test(a_line_takes_one_step),
+      cmocka_unit_test(rough_valleys_are_left),
+      cmocka_unit_test(a_descent_keeps_to_its_runs),
       cmocka_unit_test(a_line_has_its_closed_form),
       cmocka_unit_test(intervals_hold_the_truth),
       cmocka_unit_test(what_the_data_do_not_tell_is_said),
