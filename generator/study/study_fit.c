@@ -7,12 +7,12 @@
 
 #include "dsl/base/elementary.h"
 #include "dsl/base/units.h"
+#include "generator/fit/fit_curve.h"
+#include "generator/fit/fit_descent.h"
+#include "generator/fit/fit_uncertainty.h"
 #include "generator/kernel/document.h"
 #include "generator/results/measured.h"
 #include "generator/run/run.h"
-#include "generator/study/fit_curve.h"
-#include "generator/study/fit_descent.h"
-#include "generator/study/fit_uncertainty.h"
 #include "generator/study/study_deck.h"
 #include "generator/study/study_publish.h"
 

@@ -3,7 +3,7 @@
 #ifndef PERILAT_GENERATOR_FIT_JACOBIAN_H
 #define PERILAT_GENERATOR_FIT_JACOBIAN_H
 
-#include "generator/study/fit_search.h"
+#include "generator/fit/fit_search.h"
 
 /* All parameters, or some. */
 typedef struct fit_set {

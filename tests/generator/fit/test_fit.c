@@ -12,10 +12,10 @@
 #include <string.h>
 
 #include "dsl/base/elementary.h"
-#include "generator/study/fit_curve.h"
-#include "generator/study/fit_descent.h"
-#include "generator/study/fit_search.h"
-#include "generator/study/fit_uncertainty.h"
+#include "generator/fit/fit_curve.h"
+#include "generator/fit/fit_descent.h"
+#include "generator/fit/fit_search.h"
+#include "generator/fit/fit_uncertainty.h"
 #include "runtime/base/random_number.h"
 
 static void assert_near(double got, double exact, double tolerance) {

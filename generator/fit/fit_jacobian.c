@@ -1,4 +1,4 @@
-#include "generator/study/fit_jacobian.h"
+#include "generator/fit/fit_jacobian.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "generator/study/fit_curve.h"
+#include "generator/fit/fit_curve.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "generator/study/fit_descent.h"
+#include "generator/fit/fit_descent.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -6,7 +6,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "generator/study/fit_jacobian.h"
+#include "generator/fit/fit_jacobian.h"
 
 static const double dampings[] = {0, 0.03, 0.1, 0.3}; /* over the largest singular value */
 enum { TRIED = sizeof dampings / sizeof *dampings };

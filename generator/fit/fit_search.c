@@ -1,4 +1,4 @@
-#include "generator/study/fit_search.h"
+#include "generator/fit/fit_search.h"
 
 #include <math.h>
 #include <nlopt.h>

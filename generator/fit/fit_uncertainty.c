@@ -1,11 +1,11 @@
-#include "generator/study/fit_uncertainty.h"
+#include "generator/fit/fit_uncertainty.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "dsl/base/elementary.h"
-#include "generator/study/fit_jacobian.h"
+#include "generator/fit/fit_jacobian.h"
 #include "runtime/base/special_functions.h"
 
 static const double step = 0.01;          /* of the width of the bounds */

@@ -9,7 +9,7 @@
 
 #include <stddef.h>
 
-#include "generator/study/fit_search.h"
+#include "generator/fit/fit_search.h"
 
 typedef enum fit_verdict {
   FIT_TOLD,

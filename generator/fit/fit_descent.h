@@ -5,7 +5,7 @@
 #ifndef PERILAT_GENERATOR_FIT_DESCENT_H
 #define PERILAT_GENERATOR_FIT_DESCENT_H
 
-#include "generator/study/fit_search.h"
+#include "generator/fit/fit_search.h"
 
 /* Goes on from what is found, with the runs that are left of the problem's. */
 void fit_descend(const fit_problem *problem, fit_found *found);
