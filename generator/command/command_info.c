@@ -15,6 +15,7 @@
 #include "generator/kernel/standard_input.h"
 #include "generator/results/result_table.h"
 #include "generator/run/run.h"
+#include "generator/study/study_info.h"
 #include "generator/study/study_request.h"
 #include "runtime/result/result_fields.h"
 #include "runtime/result/result_find.h"
@@ -257,6 +258,7 @@ static bool put_result(result_file *f, const char *path, json *w) {
 
 /* As text, or into the document. */
 static int info_result(const char *path, json *w) {
+  if (study_is_table(path)) return study_info(path, w) ? 0 : 1;
   result_file *f = table_open("perilat info", path);
   if (!f) return 1;
   const bool good = w ? put_result(f, path, w) : print_result(f, path);

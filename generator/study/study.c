@@ -102,7 +102,7 @@ static int run_crossed(study_request *r, study_pool *pool, json *w) {
 
 static int run_any(study_request *r, json *w) {
   study_folder folder = {.list = -1};
-  study_pool pool = {r, &folder};
+  study_pool pool = {.request = r, .folder = &folder};
   const int status = r->strength.text ? study_strength(r, &pool, w)
                      : r->fit.count   ? study_fit(r, &pool, w)
                                       : run_crossed(r, &pool, w);

@@ -501,8 +501,10 @@ int study_fit(study_request *r, study_pool *pool, json *w) {
   if (prepare(&f)) {
     if (r->check_only)
       status = 0;
-    else if (study_folder_open(pool->folder, r))
+    else if (study_folder_open(f.pool->folder, r)) {
+      f.pool->expected = (r->o.runs + 2 * f.count) * f.decks;
       status = search(&f, w);
+    }
   }
   let_go(&f);
   return status;

@@ -156,32 +156,40 @@ static int running(const work *w) {
   return count;
 }
 
-static void show(const work *w, progress *bar) {
-  double sum = 0;
-  int done = 0, failed = 0;
+/* Of all batches, as far as is known; a long run counts more than a short one. */
+static int runs_of_all(const work *w) {
+  const int least = w->pool->before + w->count;
+  return w->pool->expected > least ? w->pool->expected : least;
+}
+
+static double fraction_done(work *w) {
+  double sum = 0, total = 0;
   for (int k = 0; k < w->count; k++) {
-    const study_state state = w->cases[k].state;
-    sum += state == STUDY_WAITING ? w->fractions[k] : 1;
-    done += state == STUDY_DONE;
-    failed += state == STUDY_FAILED;
+    const double cost = w->cases[k].cost > 0 ? w->cases[k].cost : 1;
+    sum += cost * (w->cases[k].state == STUDY_WAITING ? w->fractions[k] : 1);
+    total += cost;
+  }
+  const double now = (w->pool->before + w->count * sum / total) / runs_of_all(w);
+  if (now > w->pool->shown) w->pool->shown = now;
+  return w->pool->shown;
+}
+
+static void show(work *w, progress *bar) {
+  int done = w->pool->before, failed = 0;
+  for (int k = 0; k < w->count; k++) {
+    done += w->cases[k].state == STUDY_DONE;
+    failed += w->cases[k].state == STUDY_FAILED;
   }
   char detail[200], without[40] = "";
   if (failed) snprintf(without, sizeof without, ", %d without a result", failed);
-  snprintf(detail, sizeof detail, "%d of %d runs done%s, %d at work", done, w->count, without,
-           running(w));
-  progress_show(bar, sum / w->count, detail);
+  snprintf(detail, sizeof detail, "%d of %s%d runs done%s, %d at work", done,
+           w->pool->expected ? "at most " : "", runs_of_all(w), without, running(w));
+  progress_show(bar, fraction_done(w), detail);
 }
 
 static void pass_on(const work *w, int signal_number) {
   for (int j = 0; j < w->jobs; j++)
     if (w->running[j].child) kill(w->running[j].child, signal_number);
-}
-
-static double fraction_done(const work *w) {
-  int done = 0;
-  for (int k = 0; k < w->count; k++)
-    done += w->cases[k].state != STUDY_WAITING;
-  return (double)done / w->count;
 }
 
 static void go(work *w, const stopping *signals) {
@@ -212,7 +220,10 @@ int study_pool_run(study_pool *p, study_case *cases, int count) {
   work w = {.pool = p, .cases = cases, .count = count};
   w.order = arena_alloc(p->request->memory, ((size_t)count + 1) * sizeof *w.order);
   put_in_order(&w);
-  if (w.waiting == 0) return 0;
+  if (w.waiting == 0) {
+    p->before += count;
+    return 0;
+  }
   w.jobs = study_pool_jobs(p->request, w.waiting);
   const int threads = p->request->threads ? p->request->threads : usable_processors();
   w.threads = threads > w.jobs ? threads / w.jobs : 1;
@@ -232,5 +243,6 @@ int study_pool_run(study_pool *p, study_case *cases, int count) {
     status = stopping_signal ? stopping_signal : w.cannot_start ? -RUN_FAILED : 0;
   }
   free(w.running);
+  p->before += count;
   return status;
 }

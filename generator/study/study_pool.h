@@ -8,6 +8,9 @@
 typedef struct study_pool {
   const study_request *request;
   study_folder *folder;
+  int expected; /* runs of all batches, at most; 0: there is one batch */
+  int before;   /* runs of the batches that are behind */
+  double shown; /* of the bar, which never goes back */
 } study_pool;
 
 /* Runs the cases that are not done. 0; a signal's number when one stopped it; after a message the

@@ -450,6 +450,7 @@ int study_strength(study_request *r, study_pool *pool, json *w) {
   study_warn_of_units(r, &s.loads[s.count - 1].run, 1);
   if (r->check_only) return 0;
   if (!study_folder_open(pool->folder, r)) return 1;
+  pool->expected = s.count + (r->o.twin != NULL) + (s.key_alone ? PARTS - 1 : 0);
   int stopped = scan_loads(&s);
   if (!stopped && s.key_alone) stopped = refine(&s);
   if (stopped > 0) return tell_stopped(&s, stopped);

@@ -239,7 +239,17 @@ static void a_file_of_its_own(void **state) {
   expect(w, "info two_study.nml", 1, "perilat study two_study.nml");
   expect(w, "build two_study.nml", 1, "perilat study two_study.nml");
   expect(w, "study two_study.nml", 0, "wrote");
-  expect(w, "info two_study.h5", 1, "is the table of a study");
+  expect(w, "plot two_study.h5", 1, "is the table of a study");
+  expect(w, "info two_study.h5", 0,
+         "The table of a study: 4 cases, whose results are in two_study/");
+  assert_non_null(strstr(w->said, "  velocity: -40 to -20 mm/s\n"));
+  assert_non_null(strstr(w->said, "  velocity=-40mm_s,beta=0.2: end of the run\n"));
+  assert_int_equal(
+      shell(w, "$P info two_study.h5 --json > a; $P study two_study.nml --json 2>/dev/null > b; "
+               "python3 -c \"import json; a, b = (json.load(open(f)) for f in 'ab'); "
+               "print(a['cases'] == b['cases'])\""),
+      0);
+  assert_string_equal(w->said, "True\n");
 }
 
 /* In the deck it changes nothing of a run. */

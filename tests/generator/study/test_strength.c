@@ -72,6 +72,19 @@ static void the_verdict_is_explained(void **state) {
       strstr(w->said, "--strength:1:1: warning: these loads act against the deck's own"));
 }
 
+/* However many batches of runs there are, the bar never goes back. */
+static void progress_of_batches(void **state) {
+  workplace *w = *state;
+  write_text(w, "held.nml", held_deck);
+  assert_int_equal(
+      shell(
+          w,
+          "$P study held.nml --strength 'force.total=-100..-500:100 N' --jobs 2 -o many 2>&1 "
+          "| sed -n 's/ *\\([0-9]*\\) %%.*runs.*/\\1/p' > shown; sort -nc shown && wc -l < shown"),
+      0);
+  assert_true(atoi(w->said) > 4);
+}
+
 /* What comes after the first hold is seen in the second: here another force. */
 static void a_longer_hold_tells(void **state) {
   workplace *w = *state;
@@ -87,6 +100,6 @@ static void a_longer_hold_tells(void **state) {
 int main(void) {
 #define WITH(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
   const struct CMUnitTest tests[] = {WITH(holds_are_lengthened), WITH(a_longer_hold_tells),
-                                     WITH(the_verdict_is_explained)};
+                                     WITH(the_verdict_is_explained), WITH(progress_of_batches)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
