@@ -77,13 +77,19 @@ static void share_unit(arena *a, const char **values, int count) {
       values[k] = arena_printf(a, "%s %s", values[k], last);
 }
 
+static void take_value(arena *a, study_key *key, int *count, const char *value, span where) {
+  key->values = arena_room(a, key->values, *count, sizeof *key->values);
+  key->places = arena_room(a, key->places, *count, sizeof *key->places);
+  key->values[*count] = value;
+  key->places[(*count)++] = where;
+}
+
 static bool add_value(arena *a, study_key *key, int *count, piece value, diagnostics *d) {
   if (!*value.text) {
     diag_report(d, DIAG_BAD_VALUE, value.where, "there is a value missing here");
     return false;
   }
-  key->values = arena_room(a, key->values, *count, sizeof *key->values);
-  key->values[(*count)++] = value.text;
+  take_value(a, key, count, value.text, value.where);
   return true;
 }
 
@@ -163,10 +169,8 @@ static bool count_up(arena *a, const study_range *r, span where, study_key *key,
                 steps >= 0 ? "too many" : "no");
     return false;
   }
-  for (int k = 0; k <= (int)(steps + 1e-9); k++) {
-    key->values = arena_room(a, key->values, *count, sizeof *key->values);
-    key->values[(*count)++] = study_value_text(a, n[0] + k * step, unit_text);
-  }
+  for (int k = 0; k <= (int)(steps + 1e-9); k++)
+    take_value(a, key, count, study_value_text(a, n[0] + k * step, unit_text), where);
   return true;
 }
 

@@ -23,6 +23,7 @@ typedef struct study_key {
   const char *name;    /* as --set takes it: "material[concrete].E" */
   const char *shown;   /* the key alone: "E" */
   const char **values; /* [count of the axis] as --set takes them: "10 mm" */
+  span *places;        /* [count] where each stands; of a range its text */
   span where;          /* of the name */
 } study_key;
 

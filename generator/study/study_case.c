@@ -62,36 +62,40 @@ static void append_base(char *name, size_t size, const char *path) {
 }
 
 /* A long name is cut, and what is cut told by its hash. */
-static const char *case_name(study_request *r, const char *path, const char *const *keys,
-                             const char *const *values, int count) {
+static const char *case_name(study_request *r, const char *path, const study_setting *varied,
+                             int count) {
   char name[1000] = "";
+  const char **keys = arena_alloc(r->memory, ((size_t)count + 1) * sizeof *keys);
+  for (int k = 0; k < count; k++)
+    keys[k] = varied[k].key;
   if (r->decks.count > 1 || count == 0) append_base(name, sizeof name, path);
   for (int k = 0; k < count; k++) {
     if (*name) append(name, sizeof name, ",");
     append(name, sizeof name, study_key_shown(keys, count, k));
     append(name, sizeof name, "=");
-    append(name, sizeof name, values[k]);
+    append(name, sizeof name, varied[k].value);
   }
   if (strlen(name) <= LONGEST_NAME) return arena_text(r->memory, name, strlen(name));
   const uint64_t rest = hash_more(HASH_START, name, strlen(name));
   return arena_printf(r->memory, "%.*s-%08" PRIx32, LONGEST_NAME, name, (uint32_t)rest);
 }
 
-study_case study_case_of(study_request *r, const char *path, const char *const *keys,
-                         const char *const *values, int count) {
-  const char *name = case_name(r, path, keys, values, count), *folder = study_name(r);
+study_case study_case_of(study_request *r, const char *path, const study_setting *varied,
+                         int count) {
+  const char *name = case_name(r, path, varied, count), *folder = study_name(r);
   study_case c = {.name = name,
                   .deck = path,
                   .value_count = count,
+                  .setting_count = r->set.count + count,
                   .result = arena_printf(r->memory, "%s/%s.h5", folder, name),
                   .log = arena_printf(r->memory, "%s/%s.log", folder, name)};
   c.values = arena_alloc(r->memory, ((size_t)count + 1) * sizeof *c.values);
-  c.settings = arena_alloc(r->memory, ((size_t)(count + r->set.count) + 1) * sizeof *c.settings);
+  c.settings = arena_alloc(r->memory, ((size_t)c.setting_count + 1) * sizeof *c.settings);
   for (int k = 0; k < r->set.count; k++)
-    c.settings[c.setting_count++] = r->set.items[k].text;
+    c.settings[k] = study_set_text(r->memory, &r->set.items[k]);
   for (int k = 0; k < count; k++) {
-    c.values[k] = values[k];
-    c.settings[c.setting_count++] = arena_printf(r->memory, "%s=%s", keys[k], values[k]);
+    c.values[k] = varied[k].value;
+    c.settings[r->set.count + k] = varied[k];
   }
   return c;
 }
@@ -114,19 +118,18 @@ static study_case case_at(study_request *r, const study_axis *axes, int axis_cou
   int total = 0, at = 0;
   for (int a = 0; a < axis_count; a++)
     total += axes[a].key_count;
-  const char **keys = arena_alloc(r->memory, ((size_t)total + 1) * sizeof *keys),
-             **values = arena_alloc(r->memory, ((size_t)total + 1) * sizeof *values);
+  study_setting *varied = arena_alloc(r->memory, ((size_t)total + 1) * sizeof *varied);
   at = total;
   for (int a = axis_count - 1; a >= 0; a--) {
     const int p = point % axes[a].count;
     point /= axes[a].count;
     at -= axes[a].key_count;
     for (int k = 0; k < axes[a].key_count; k++) {
-      keys[at + k] = axes[a].keys[k].name;
-      values[at + k] = axes[a].keys[k].values[p];
+      const study_key *key = &axes[a].keys[k];
+      varied[at + k] = study_set(r->memory, key->name, key->values[p], key->where, key->places[p]);
     }
   }
-  return study_case_of(r, r->decks.items[0].text, keys, values, total);
+  return study_case_of(r, r->decks.items[0].text, varied, total);
 }
 
 static int by_name(const void *a, const void *b) {
@@ -234,11 +237,9 @@ static bool has_curves(const study_request *r, const study_case *c, const deck *
 /* Of a deck in hand, as it is without the place of its result. */
 static bool identify(const study_request *r, arena *memory, study_case *c, source_set *sources,
                      int file, diagnostics *said) {
-  deck_override *overrides =
-      arena_alloc(memory, ((size_t)c->setting_count + 1) * sizeof *overrides);
-  for (int k = 0; k < c->setting_count; k++)
-    overrides[k].text = c->settings[k];
-  const deck *k = deck_read(memory, sources, file, overrides, c->setting_count, said);
+  const deck *k =
+      deck_read(memory, sources, file, study_overrides(memory, c->settings, c->setting_count),
+                c->setting_count, said);
   if (!k) return false;
   uint64_t hash = hash_more(HASH_START, k->identity, strlen(k->identity));
   hash = hash_more(hash, perilat_version, strlen(perilat_version));
@@ -268,6 +269,7 @@ bool study_case_check(study_request *r, study_case *c) {
   diag_begin(&said, &sources);
   const bool good =
       identify(r, memory, c, &sources, source_add(&sources, c->deck, text, length), &said);
+  study_place(&r->sources, c->settings, &said);
   if (!good) diag_print(&said, stderr);
   diag_clear(&said);
   source_clear(&sources);

@@ -7,6 +7,7 @@
 
 #include "generator/study/study_axis.h"
 #include "generator/study/study_request.h"
+#include "generator/study/study_setting.h"
 
 typedef enum study_state {
   STUDY_WAITING,
@@ -20,7 +21,7 @@ typedef struct study_case {
   bool twin; /* of another motion of the body: it need not have the monitor that is watched */
   const char **values; /* [value_count] what is varied, as the table shows it */
   int value_count;
-  const char **settings; /* [setting_count] all that is set */
+  study_setting *settings; /* [setting_count] all that is set */
   int setting_count;
   uint64_t identity;
   double
@@ -35,9 +36,9 @@ typedef struct study_case {
 /* The points of all axes crossed, the first one changing most slowly. NULL after messages: there
    are too many, or two are the same. */
 study_case *study_cross(study_request *r, const study_axis *axes, int axis_count, int *count);
-/* A case of a deck, with `count` keys set to the values; `folder` is that of the study. */
-study_case study_case_of(study_request *r, const char *path, const char *const *keys,
-                         const char *const *values, int count);
+/* A case of a deck in which so much is varied. */
+study_case study_case_of(study_request *r, const char *path, const study_setting *varied,
+                         int count);
 /* "spacing" of "lattice.spacing", or the whole where another of the keys has the same last part. */
 const char *study_key_shown(const char *const *keys, int count, int k);
 /* The deck and its laws are read as a run reads them: false after messages. Fills `identity`,

@@ -4,12 +4,13 @@
 #define PERILAT_GENERATOR_STUDY_DECK_H
 
 #include "generator/study/study_request.h"
+#include "generator/study/study_setting.h"
 
 typedef struct study_deck {
   source_set sources;
   int file;
-  deck_override *overrides;
-  int override_count;
+  study_setting *settings; /* [setting_count] */
+  int setting_count;
 } study_deck;
 
 /* False after a message. To be closed in either case. */

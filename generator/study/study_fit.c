@@ -175,10 +175,14 @@ static int find_case(const fit *f, const char *name) {
 }
 
 static study_case case_of(const fit *f, int of, const double *point) {
-  const char *values[FIT_MOST];
-  for (int p = 0; p < f->count; p++)
-    values[p] = study_value_text(f->request->memory, point[p], f->units[p]);
-  return study_case_of(f->request, f->targets[of].deck, f->keys, values, f->count);
+  study_request *r = f->request;
+  study_setting varied[FIT_MOST];
+  for (int p = 0; p < f->count; p++) {
+    const char *value = study_value_text(r->memory, point[p], f->units[p]);
+    varied[p] =
+        study_set(r->memory, f->keys[p], value, r->fit.items[p].where, r->fit.items[p].where);
+  }
+  return study_case_of(r, f->targets[of].deck, varied, f->count);
 }
 
 /* Its number; new ones are taken up. Negative after a message. */

@@ -57,7 +57,7 @@ static void write_to_log(const study_case *c) {
 static void run_case(const work *w, const study_case *c, double *fraction) {
   deck_override *overrides = must_calloc((size_t)c->setting_count + 1, sizeof *overrides);
   for (int k = 0; k < c->setting_count; k++)
-    overrides[k].text = c->settings[k];
+    overrides[k].text = c->settings[k].text;
   char target[4200];
   snprintf(target, sizeof target, "output.result=%s", c->result);
   overrides[c->setting_count].text = target;

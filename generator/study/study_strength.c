@@ -29,10 +29,11 @@ typedef struct scan {
   study_request *request;
   study_pool *pool;
   const char *key, *unit; /* "force.per_length", "kN/m" */
-  bool key_alone;         /* no loads were given */
-  double held;            /* s: from then on the load is held, */
-  double hold;            /* s: as long in the deck */
-  load *loads;            /* ascending in size */
+  span key_where;
+  bool key_alone; /* no loads were given */
+  double held;    /* s: from then on the load is held, */
+  double hold;    /* s: as long in the deck */
+  load *loads;    /* ascending in size */
   int count;
   study_case twin; /* where there is one */
 } scan;
@@ -90,10 +91,13 @@ static int by_size(const void *a, const void *b) {
 
 static study_case case_of(const scan *s, double value, double hold) {
   study_request *r = s->request;
-  const char *keys[] = {s->key, "simulation.end_time"};
-  const char *values[] = {study_value_text(r->memory, value, s->unit),
-                          study_value_text(r->memory, 1e3 * (s->held + hold), "ms")};
-  return study_case_of(r, r->decks.items[0].text, keys, values, 2);
+  const span where = r->strength.where;
+  const study_setting varied[] = {
+      study_set(r->memory, s->key, study_value_text(r->memory, value, s->unit), s->key_where,
+                where),
+      study_set(r->memory, "simulation.end_time",
+                study_value_text(r->memory, 1e3 * (s->held + hold), "ms"), where, where)};
+  return study_case_of(r, r->decks.items[0].text, varied, 2);
 }
 
 static bool is_scanned(const scan *s, double value) {
@@ -394,6 +398,7 @@ static bool prepare(scan *s) {
       !study_deck_open(&t, r, &r->decks.items[0]))
     return false;
   s->key = range.key.name;
+  s->key_where = range.key.where;
   s->key_alone = !range.low;
   s->unit = "";
   bool good = true;
@@ -401,7 +406,7 @@ static bool prepare(scan *s) {
   good = good && read_times(s, &t) && (s->key_alone ? add_tenths(s, given) : add_range(s));
   study_deck_close(&t);
   if (!good || !r->o.twin) return good;
-  s->twin = study_case_of(r, r->o.twin, NULL, NULL, 0);
+  s->twin = study_case_of(r, r->o.twin, NULL, 0);
   s->twin.twin = true;
   return study_case_check(r, &s->twin);
 }

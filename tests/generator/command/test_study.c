@@ -322,6 +322,26 @@ static void slips(void **state) {
   assert_int_equal(shell(w, "ls -d *_study 2>/dev/null | grep -c . "), 1); /* nothing was begun */
 }
 
+/* What the deck reader says of a value stands where the value does. */
+static void slips_in_values(void **state) {
+  workplace *w = *state;
+  expect(w, "study beam.nml --vary lattice.spacing=6.35,6.2mmm,5", 1, "--vary:1:25: error");
+  expect(w, "study beam.nml --vary lattice.spacin=6.35,6.2", 1, "--vary:1:9: error");
+  expect(w, "study beam.nml --vary material.beta=0,0.2 --with material.nu=0.1,7", 1,
+         "--vary:1:42: error");
+  expect(w, "study beam.nml --vary material.beta=0,0.2 --set lattice.thickness=3m/s", 1,
+         "--set:1:19: error");
+  expect(w, "study beam.nml --vary lattice.spacing=6..5:0.5mmm", 1, "--vary:1:17: error");
+  write_text(w, "bad_study.nml",
+             "! two\n&study  deck = 'beam.nml'\n"
+             "  vary = 'lattice.spacing = 6 mmm, 5 mm'\n  set = 'material.nu = 7'  /\n");
+  expect(w, "study bad_study.nml", 1, "bad_study.nml:3:31: error: there is no unit `mmm`");
+  assert_non_null(strstr(w->said, "  3 |   vary = 'lattice.spacing = 6 mmm, 5 mm'"));
+  write_text(w, "bad_study.nml",
+             "&study deck = 'beam.nml' vary = 'material.beta = 0, 1' set = 'material.nu = 7' /\n");
+  expect(w, "study bad_study.nml", 1, "bad_study.nml:1:76: error: `nu` = 7");
+}
+
 static double fitted(workplace *w, const char *weights, const char *name) {
   assert_int_equal(
       shell(
@@ -399,6 +419,7 @@ int main(void) {
                                      WITH(overwrites_nothing),
                                      WITH(with_children_ignored),
                                      WITH(slips),
+                                     WITH(slips_in_values),
                                      WITH(weights_of_curves)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
