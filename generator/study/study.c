@@ -6,6 +6,7 @@
 
 #include "generator/kernel/document.h"
 #include "generator/study/study_converge.h"
+#include "generator/study/study_deck.h"
 #include "generator/study/study_fit.h"
 #include "generator/study/study_publish.h"
 #include "generator/study/study_strength.h"
@@ -86,8 +87,9 @@ static int run_crossed(study_request *r, study_pool *pool, json *w) {
   if (sizes < 0) return 1;
   o.keys = column_names(r, axes, r->vary.count, &o.key_count);
   if (!check_cases(r, o.cases, o.count)) return 1;
+  study_warn_of_units(r, o.cases, o.count);
   if (r->check_only) return 0;
-  if (!study_folder_open(pool->folder, r->memory, study_name(r))) return 1;
+  if (!study_folder_open(pool->folder, r)) return 1;
   const int stopped = study_pool_run(pool, o.cases, o.count);
   if (stopped > 0) return tell_stopped(o.cases, o.count, stopped);
   if (stopped < 0) return -stopped;

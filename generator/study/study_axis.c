@@ -77,6 +77,41 @@ static void share_unit(arena *a, const char **values, int count) {
       values[k] = arena_printf(a, "%s %s", values[k], last);
 }
 
+/* Two or three numbers between colons, as other languages write ranges; the rest is a unit. */
+static int colon_numbers(const char *text, double number[3], const char **rest) {
+  int count = 0;
+  while (count < 3) {
+    const size_t used = namelist_number(text, strlen(text), &number[count]);
+    if (used == 0) return 0;
+    count++;
+    text += used;
+    if (*text != ':') break;
+    text++;
+  }
+  while (isspace((unsigned char)*text))
+    text++;
+  *rest = text;
+  return count;
+}
+
+static bool is_range_without_dots(const char *text) {
+  double number[3];
+  const char *rest = "";
+  return colon_numbers(text, number, &rest) > 1 && !strchr(rest, ':');
+}
+
+/* "from:step:to", or "from:to:step" where no such step leads there. */
+static const char *range_meant(arena *a, const char *text) {
+  double n[3];
+  const char *rest = "";
+  const int count = colon_numbers(text, n, &rest);
+  const char *space = *rest ? " " : "";
+  if (count < 3) return arena_printf(a, "%.12g..%.12g:STEP%s%s", n[0], n[1], space, rest);
+  const bool step_last = fabs(n[1]) > fabs(n[2] - n[0]);
+  return arena_printf(a, "%.12g..%.12g:%.12g%s%s", n[0], n[step_last ? 1 : 2], n[step_last ? 2 : 1],
+                      space, rest);
+}
+
 static void take_value(arena *a, study_key *key, int *count, const char *value, span where) {
   key->values = arena_room(a, key->values, *count, sizeof *key->values);
   key->places = arena_room(a, key->places, *count, sizeof *key->places);
@@ -87,6 +122,11 @@ static void take_value(arena *a, study_key *key, int *count, const char *value, 
 static bool add_value(arena *a, study_key *key, int *count, piece value, diagnostics *d) {
   if (!*value.text) {
     diag_report(d, DIAG_BAD_VALUE, value.where, "there is a value missing here");
+    return false;
+  }
+  if (is_range_without_dots(value.text)) {
+    diag_report(d, DIAG_BAD_VALUE, value.where, "`%s` is no number", value.text);
+    diag_hint(d, "a range is from..to:step: `%s`", range_meant(a, value.text));
     return false;
   }
   take_value(a, key, count, value.text, value.where);

@@ -23,7 +23,8 @@ static double size_of(const char *text) {
 
 static int refuse(study_request *r, span where, const char *sentence) {
   diag_report(&r->said, DIAG_BAD_VALUE, where, "`%s` %s", r->converge.text, sentence);
-  diag_hint(&r->said, "--converge names one of the keys of --vary, whose values could go to 0");
+  diag_hint(&r->said, "%s names one of the keys of %s, whose values could go to 0",
+            study_word(r, "converge"), study_word(r, "vary"));
   return -1;
 }
 
@@ -32,6 +33,22 @@ static bool has_sizes(const study_axis *axis, const study_key *key) {
   for (int k = 0; k < axis->count; k++)
     sizes = sizes && fabs(size_of(key->values[k])) > 0;
   return sizes;
+}
+
+/* Order and limit come from three. */
+static bool has_three(study_request *r, const study_axis *axis, const study_key *key) {
+  int sizes = 0;
+  for (int k = 0; k < axis->count; k++) {
+    bool new = true;
+    for (int before = 0; before < k; before++)
+      new = new &&fabs(size_of(key->values[before])) != fabs(size_of(key->values[k]));
+    sizes += new;
+  }
+  if (sizes >= 3) return true;
+  diag_report(&r->said, DIAG_BAD_VALUE, key->where,
+              "order and limit need three sizes or more; `%s` has %d", key->name, sizes);
+  diag_hint(&r->said, "say more, best in one ratio, such as half the smallest");
+  return false;
 }
 
 int study_converge_key(study_request *r, const study_axis *axes, int axis_count) {
@@ -43,6 +60,7 @@ int study_converge_key(study_request *r, const study_axis *axes, int axis_count)
       if (found >= 0)
         return refuse(r, r->converge.where, "may be two of the keys; name it in full");
       if (!has_sizes(&axes[a], key)) return refuse(r, key->where, "has a value that is no size");
+      if (!has_three(r, &axes[a], key)) return -1;
       found = at;
     }
   return found < 0 ? refuse(r, r->converge.where, "is not varied") : found;
@@ -140,6 +158,10 @@ static void refuse_moving(const study_outcome *o, convergence *found) {
   snprintf(found->reason, sizeof found->reason,
            "the cases are different materials: the law's work of fracture is from %.4g to %.4g N/m",
            least, largest);
+  printf("  the work of fracture must not move with the spacing: take a law whose softening ends "
+         "by a fracture energy (`cohesive`: G_f; `mplm_concrete`: tension = 'energy', G_F), or let "
+         "its softening change together with the spacing (%s)\n",
+         o->request->grouped ? "`vary = '... with ...'`" : "--with");
 }
 
 /* --- the answer ------------------------------------------------------------------------------- */

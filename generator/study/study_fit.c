@@ -58,7 +58,8 @@ static bool convert(const char *text, const char *wanted, double *value) {
 
 static bool refuse_bounds(study_request *r, const study_text *given, const char *sentence) {
   diag_report(&r->said, DIAG_BAD_VALUE, given->where, "%s", sentence);
-  diag_hint(&r->said, "bounds stand in one unit, e.g. --fit material.E=20..40 GPa");
+  diag_hint(&r->said, "bounds stand in one unit, e.g. %s",
+            study_written(r, "fit", "material.E=20..40 GPa"));
   return false;
 }
 
@@ -82,6 +83,14 @@ static bool read_bounds(fit *f, const study_text *given, const study_range *rang
   return true;
 }
 
+/* How the middle of its bounds is set. */
+static const char *middle_set(const fit *f) {
+  study_request *r = f->request;
+  const fit_parameter *p = &f->parameters[f->count];
+  const char *middle = study_value_text(r->memory, (p->lower + p->upper) / 2, f->units[f->count]);
+  return study_written(r, "set", arena_printf(r->memory, "%s=%s", f->keys[f->count], middle));
+}
+
 /* The search begins at what the first deck has. */
 static bool read_start(fit *f, const study_text *given, const study_deck *deck_text) {
   study_request *r = f->request;
@@ -92,15 +101,13 @@ static bool read_start(fit *f, const study_text *given, const study_deck *deck_t
   if (!text || !convert(text, f->units[f->count], &p->start)) {
     diag_report(&r->said, DIAG_BAD_VALUE, given->where, "the deck gives no number for `%s`%s", key,
                 text ? " in the unit of its bounds" : "");
-    diag_hint(&r->said, "the search begins there: --set %s=%s", key,
-              study_value_text(r->memory, (p->lower + p->upper) / 2, f->units[f->count]));
+    diag_hint(&r->said, "the search begins there: %s", middle_set(f));
     return false;
   }
   if (p->start >= p->lower && p->start <= p->upper) return true;
   diag_report(&r->said, DIAG_OUT_OF_BOUNDS, given->where,
               "the bounds leave out the deck's own `%s` = %s, where the search begins", key, text);
-  diag_hint(&r->said, "widen them, or begin elsewhere: --set %s=%s", key,
-            study_value_text(r->memory, (p->lower + p->upper) / 2, f->units[f->count]));
+  diag_hint(&r->said, "widen them, or begin elsewhere: %s", middle_set(f));
   return false;
 }
 
@@ -144,7 +151,8 @@ static bool read_target(fit *f, int k, const study_row *row) {
                               .x_unit = row->x_unit,
                               .y_unit = row->y_unit};
   t->read = true;
-  if (!measured_read(&t->lab, "--to", given, band, &axes, &r->said)) return false;
+  if (!measured_read(&t->lab, r->grouped ? "to" : "--to", given, band, &axes, &r->said))
+    return false;
   const curve_points points = {.x = t->lab.x,
                                .low = band ? t->lab.low : t->lab.y,
                                .high = band ? t->lab.high : t->lab.y,
@@ -301,9 +309,10 @@ static void tell(const fit *f, const fit_problem *q, const fit_found *found,
                u->correlation[p][q2]);
   printf("  misfit %.3g %% of the largest measured value (root of the weighted mean square; of a "
          "band its middle counts, the more the narrower it is); %d points tried, %d more for the "
-         "intervals%s\n",
+         "intervals%s%s\n",
          100 * root_mean_square(f, found), found->runs, u->runs,
-         found->end == FIT_LIMIT ? "; the search was cut short: more with --runs" : "");
+         found->end == FIT_LIMIT ? "; the search was cut short: more with " : "",
+         found->end == FIT_LIMIT ? study_word(f->request, "runs") : "");
 }
 
 /* Beyond the end of a computed curve its last value stands. */
@@ -469,6 +478,7 @@ static bool prepare(fit *f) {
   for (int k = 0; k < f->decks; k++) {
     study_case c = case_of(f, k, start);
     if (!study_case_check(r, &c)) return false;
+    if (k == 0) study_warn_of_units(r, &c, 1);
   }
   if (r->o.runs >= 2 * f->count + 2) return true;
   diag_report(&r->said, DIAG_BAD_VALUE, r->fit.items[0].where,
@@ -491,7 +501,7 @@ int study_fit(study_request *r, study_pool *pool, json *w) {
   if (prepare(&f)) {
     if (r->check_only)
       status = 0;
-    else if (study_folder_open(pool->folder, r->memory, study_name(r)))
+    else if (study_folder_open(pool->folder, r))
       status = search(&f, w);
   }
   let_go(&f);

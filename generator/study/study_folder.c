@@ -63,27 +63,29 @@ static bool lock(const study_folder *f) {
       fprintf(stderr, "waiting for another study, or runs of it, to end in `%s`\n", f->path);
     nanosleep(&(struct timespec){0, 50000000}, NULL);
   }
-  say_error("another study is at work in the folder `%s`; let it end, or name this one with -o",
-            f->path);
+  say_error("another study is at work in the folder `%s`; let it end, or name this one with %s",
+            f->path, f->namer);
   return false;
 }
 
 /* What stands there under a name that no study has used yet is somebody's. */
-static bool is_free(arena *a, const char *path, const char *list) {
+static bool is_free(const study_folder *f, arena *a, const char *list) {
   static const char *const endings[] = {".csv", ".h5", ".png"};
   if (access(list, F_OK) == 0) return true;
   for (size_t k = 0; k < sizeof endings / sizeof *endings; k++)
-    if (access(arena_printf(a, "%s%s", path, endings[k]), F_OK) == 0) {
-      say_error("the study would overwrite `%s%s`; name it with -o", path, endings[k]);
+    if (access(arena_printf(a, "%s%s", f->path, endings[k]), F_OK) == 0) {
+      say_error("the study would overwrite `%s%s`; name it with %s", f->path, endings[k], f->namer);
       return false;
     }
   return true;
 }
 
-bool study_folder_open(study_folder *f, arena *a, const char *path) {
-  *f = (study_folder){.path = path, .list = -1};
+bool study_folder_open(study_folder *f, study_request *r) {
+  arena *a = r->memory;
+  const char *path = study_name(r);
+  *f = (study_folder){.path = path, .namer = r->grouped ? "`result`" : "-o", .list = -1};
   const char *list = arena_printf(a, "%s/cases.txt", path);
-  if (!is_free(a, path, list)) return false;
+  if (!is_free(f, a, list)) return false;
   if (mkdir(path, 0777) != 0 && errno != EEXIST) {
     say_error("cannot make the folder `%s`: %s", path, strerror(errno));
     return false;
@@ -124,8 +126,8 @@ static const struct kept_case *find_kept(const study_folder *f, const char *name
 
 static int clash(const study_folder *f, const char *what) {
   say_error("`%s` holds %s of another deck, law or setting than this study's\n"
-            "  name this one with -o, or move the folder away",
-            f->path, what);
+            "  name this one with %s, or move the folder away",
+            f->path, what, f->namer);
   return INPUT_WRONG;
 }
 

@@ -7,7 +7,7 @@
 #include "generator/study/study_case.h"
 
 typedef struct study_folder {
-  const char *path;
+  const char *path, *namer; /* `namer`: what names it, -o or `result` */
   int list; /* open, and locked for this study and the runs that it has started; -1: not */
   struct kept_case *kept;
   int kept_count;
@@ -15,7 +15,7 @@ typedef struct study_folder {
 
 /* Makes the folder where it is not there, and waits for runs that a killed study has left. False
    after a message: the name is taken, or cannot be written, or a study is at work there. */
-bool study_folder_open(study_folder *f, arena *a, const char *path);
+bool study_folder_open(study_folder *f, study_request *r);
 void study_folder_close(study_folder *f);
 /* Takes up those cases that are not in the list, and finds out which are done. 0, or an exit status
    after a message: 1 when a name is that of another case, 2 when the list cannot be written. */

@@ -25,6 +25,20 @@ study_text study_option(study_request *r, const char *option, const char *text) 
   return (study_text){text, source_whole(&r->sources, file)};
 }
 
+const char *study_word(const study_request *r, const char *name) {
+  return r->grouped ? arena_printf(r->memory, "`%s`", name)
+                    : arena_printf(r->memory, "%s%s", name[1] ? "--" : "-", name);
+}
+
+const char *study_written(const study_request *r, const char *name, const char *value) {
+  const char *quote = r->grouped || strchr(value, ' ') ? r->grouped ? "'" : "\"" : "";
+  return arena_printf(r->memory, "%s%s%s%s%s%s",
+                      r->grouped ? ""
+                      : name[1]  ? "--"
+                                 : "-",
+                      name, r->grouped ? " = " : " ", quote, value, quote);
+}
+
 void study_list_add(study_request *r, study_list *list, study_text text) {
   list->items = arena_room(r->memory, list->items, list->count, sizeof *list->items);
   list->items[list->count++] = text;
@@ -122,6 +136,12 @@ static bool refuse(study_request *r, span where, const char *sentence, const cha
   return false;
 }
 
+static bool refuse_of(study_request *r, span where, const char *before, const char *name,
+                      const char *behind, const char *hint) {
+  return refuse(r, where, arena_printf(r->memory, "%s%s%s", before, study_word(r, name), behind),
+                hint);
+}
+
 /* One of the words that the group's table lists. */
 static bool is_choice(study_request *r, const char *key, const char *word) {
   const int at = deck_key_find(&deck_group_study, key);
@@ -150,30 +170,52 @@ static bool names_differ(study_request *r) {
   return true;
 }
 
+/* Measured curves and what goes with them. */
+static bool curves_fit(study_request *r) {
+  const bool fits = r->fit.count > 0;
+  const span whole = r->group;
+  if (!fits && (r->to.count || r->o.weight_count))
+    return refuse_of(r, r->to.count ? r->to.items[0].where : whole,
+                     "measured curves and weights belong to ", "fit", "", "leave them out");
+  if (!fits && r->decks.count > 1)
+    return refuse_of(r, r->decks.items[1].where, "only ", "fit", " takes several decks",
+                     "make a study of each");
+  if (fits && r->to.count != r->decks.count)
+    return refuse_of(
+        r, r->to.count ? r->to.items[0].where : r->fit.items[0].where, "", "fit",
+        " needs one measured curve for each deck",
+        arena_printf(r->memory, "%s, as many as decks", study_written(r, "to", "lab.csv")));
+  if (fits && r->o.weight_count && r->o.weight_count != r->decks.count)
+    return refuse_of(r, whole, "as many weights as decks are needed: one for each ", "to", "",
+                     r->grouped ? "weight = 1, 0.5" : "--weight 1 --weight 0.5");
+  return true;
+}
+
+/* One question, with what belongs to it. */
 static bool is_sensible(study_request *r) {
   const bool fits = r->fit.count > 0, scans = r->strength.text != NULL;
-  const span whole = {0, 0, UINT16_MAX};
+  const span whole = r->group;
   if (fits + scans + (r->converge.text != NULL) > 1)
-    return refuse(r, whole, "--converge, --strength and --fit are three questions",
+    return refuse(r, whole,
+                  arena_printf(r->memory, "%s, %s and %s are three questions",
+                               study_word(r, "converge"), study_word(r, "strength"),
+                               study_word(r, "fit")),
                   "make a study of each");
   if (!r->vary.count && !scans && !fits)
     return refuse(r, r->converge.text ? r->converge.where : whole, "nothing is varied",
-                  "say what: --vary lattice.spacing=20,10,5 mm; or --strength, --fit");
+                  arena_printf(r->memory, "say what: %s; or %s, %s",
+                               study_written(r, "vary", "lattice.spacing=20,10,5 mm"),
+                               study_word(r, "strength"), study_word(r, "fit")));
   if (r->vary.count && (fits || scans))
-    return refuse(r, r->vary.items[0].where, "--vary goes with --converge, or stands by itself",
-                  "give it another value for all runs with --set");
-  if (!scans && r->o.twin) return refuse(r, whole, "a twin belongs to --strength", "leave it out");
-  if (!fits && (r->to.count || r->o.weight_count))
-    return refuse(r, whole, "measured curves and weights belong to --fit", "leave them out");
-  if (!fits && (r->decks.count > 1))
-    return refuse(r, r->decks.items[1].where, "only --fit takes several decks",
-                  "make a study of each");
-  if (fits && r->to.count != r->decks.count)
-    return refuse(r, r->to.count ? r->to.items[0].where : r->fit.items[0].where,
-                  "--fit needs one measured curve for each deck", "--to lab.csv, as many as decks");
-  if (fits && r->o.weight_count && r->o.weight_count != r->decks.count)
-    return refuse(r, whole, "as many weights as decks are needed", "--weight W, one for each --to");
-  return names_differ(r) && is_choice(r, "of", r->o.of) && is_choice(r, "search", r->o.search);
+    return refuse(r, r->vary.items[0].where,
+                  arena_printf(r->memory, "%s goes with %s, or stands by itself",
+                               study_word(r, "vary"), study_word(r, "converge")),
+                  arena_printf(r->memory, "give it another value for all runs with %s",
+                               study_word(r, "set")));
+  if (!scans && r->o.twin)
+    return refuse_of(r, whole, "a twin belongs to ", "strength", "", "leave it out");
+  return curves_fit(r) && names_differ(r) && is_choice(r, "of", r->o.of) &&
+         is_choice(r, "search", r->o.search);
 }
 
 bool study_request_complete(study_request *r) {
@@ -183,11 +225,20 @@ bool study_request_complete(study_request *r) {
   const bool names_decks = r->file_count == 1 && s->decks.count > 0;
   for (int k = 0; k < r->file_count && !names_decks; k++)
     study_list_add(r, &r->decks, study_option(r, "perilat study", r->files[k]));
+  r->grouped = s->item.key_count > 0 &&
+               !(r->vary.count || r->fit.count || r->strength.text || r->converge.text);
+  r->group = r->grouped ? s->item.where : (span){0, 0, UINT16_MAX};
   take_group(r, s);
   if (!whole && s->decks.count == 0)
     return refuse(r, s->item.where, "this file holds no deck, and names none",
                   "&study deck = 'beam.nml' ... /");
   return is_sensible(r);
+}
+
+void study_warn(study_request *r) {
+  diag_print(&r->said, stderr);
+  diag_clear(&r->said);
+  diag_begin(&r->said, &r->sources);
 }
 
 bool study_is_alone(const char *path) {

@@ -48,7 +48,8 @@ static bool read_time(study_request *r, const study_deck *t, const char *name, d
   if (!good || !text || quantity_read(text, strlen(text), "s", value)) return good;
   diag_report(&r->said, DIAG_BAD_VALUE, r->strength.where,
               "a scan of loads needs times in seconds: the deck gives `%s` = %s", name, text);
-  diag_hint(&r->said, "write how long it is, or --set %s=...", name);
+  diag_hint(&r->said, "write how long it is, or %s",
+            study_written(r, "set", arena_printf(r->memory, "%s=...", name)));
   return false;
 }
 
@@ -144,7 +145,8 @@ static bool add_tenths(scan *s, const char *given) {
   if (!given || !study_split_number(given, &value, &s->unit) || value == 0) {
     diag_report(&r->said, DIAG_BAD_VALUE, r->strength.where,
                 "the deck gives no value for `%s` to scan around", s->key);
-    diag_hint(&r->said, "say which loads: --strength \"%s=10..20:1 kN\"", s->key);
+    diag_hint(&r->said, "say which loads: %s",
+              study_written(r, "strength", arena_printf(r->memory, "%s=10..20:1 kN", s->key)));
     return false;
   }
   for (int k = 1; k <= TENTHS; k++)
@@ -292,7 +294,9 @@ static bool find_peak(const scan *s, double factor, strength *f) {
   const study_history *h = study_row_history(&held, held.y_name);
   if (!h || h->last == 0 || strcmp(twin.y_name, held.y_name) != 0 ||
       strcmp(twin.y_unit, held.y_unit) != 0)
-    f->no_peak = "deck and twin have no history in common that says the load: name it with --y";
+    f->no_peak = arena_printf(
+        r->memory, "deck and twin have no history in common that says the load: name it with %s",
+        study_word(r, "y"));
   else
     f->peak = fabs(twin.peak * l->value * factor / h->last);
   return true;
@@ -332,11 +336,23 @@ static void tell_ends(const scan *s, const strength *f) {
            s->loads[first].run.log);
 }
 
+/* By what a load is borne, and where the twin is. */
+static void tell_rule(const scan *s) {
+  const study_request *r = s->request;
+  printf("  borne: `%s` is the same in both halves of the hold, within %g %%, and below %g m; "
+         "collapsed: it is larger in the second; where it is smaller, the hold is doubled\n",
+         r->o.watch, 100 * r->o.growth, r->o.limit);
+  if (r->o.twin)
+    printf("  twin: `%s`, %s\n", r->o.twin,
+           s->twin.state == STUDY_DONE ? s->twin.result : s->twin.log);
+}
+
 static void tell(const scan *s, const strength *f, json *w) {
   tell_ends(s, f);
   if (isfinite(f->peak))
     printf("; moved, not loaded, its peak is %.6g %s", f->peak / f->factor, s->unit);
   printf("%s%s\n", f->no_peak ? "; " : "", f->no_peak ? f->no_peak : "");
+  tell_rule(s);
   if (!w) return;
   json_put_text(w, "key", s->key);
   json_put_text(w, "unit", f->unit);
@@ -390,6 +406,19 @@ static int tell_stopped(const scan *s, int signal_number) {
   return 128 + signal_number;
 }
 
+/* The deck's own load tells which way it acts. */
+static void warn_of_sign(const scan *s, const char *given) {
+  study_request *r = s->request;
+  double own;
+  const char *unit_text;
+  if (!given || !study_split_number(given, &own, &unit_text) ||
+      own * s->loads[s->count - 1].value >= 0)
+    return;
+  diag_report(&r->said, DIAG_DECK_WARNING, r->strength.where,
+              "these loads act against the deck's own: `%s` is %s there", s->key, given);
+  diag_hint(&r->said, "give them its sign");
+}
+
 static bool prepare(scan *s) {
   study_request *r = s->request;
   study_deck t;
@@ -405,6 +434,7 @@ static bool prepare(scan *s) {
   const char *given = study_deck_value(&t, r, s->key, &good);
   good = good && read_times(s, &t) && (s->key_alone ? add_tenths(s, given) : add_range(s));
   study_deck_close(&t);
+  if (good) warn_of_sign(s, given);
   if (!good || !r->o.twin) return good;
   s->twin = study_case_of(r, r->o.twin, NULL, 0);
   s->twin.twin = true;
@@ -417,8 +447,9 @@ int study_strength(study_request *r, study_pool *pool, json *w) {
   if (!prepare(&s)) return 1;
   for (int k = 0; k < s.count; k++) /* before anything runs */
     if (!study_case_check(r, &s.loads[k].run)) return 1;
+  study_warn_of_units(r, &s.loads[s.count - 1].run, 1);
   if (r->check_only) return 0;
-  if (!study_folder_open(pool->folder, r->memory, study_name(r))) return 1;
+  if (!study_folder_open(pool->folder, r)) return 1;
   int stopped = scan_loads(&s);
   if (!stopped && s.key_alone) stopped = refine(&s);
   if (stopped > 0) return tell_stopped(&s, stopped);

@@ -161,7 +161,7 @@ static void clashes(void **state) {
   expect(w, "study two_study.nml", 0, "wrote");
   assert_int_equal(shell(w, "cp two_study.csv before; sed -i 's/1 ms/2 ms/' beam.nml"), 0);
   expect(w, "study two_study.nml", 1, "of another deck, law or setting");
-  expect(w, "study two_study.nml --set material.nu=0.1", 1, "name this one with -o");
+  expect(w, "study two_study.nml --set material.nu=0.1", 1, "name this one with `result`");
   assert_int_equal(shell(w, "cmp two_study.csv before"), 0);
   expect(w, "study two_study.nml -o other", 0, "wrote other.csv");
   /* a result that this study has not made */
@@ -339,7 +339,71 @@ static void slips_in_values(void **state) {
   assert_non_null(strstr(w->said, "  3 |   vary = 'lattice.spacing = 6 mmm, 5 mm'"));
   write_text(w, "bad_study.nml",
              "&study deck = 'beam.nml' vary = 'material.beta = 0, 1' set = 'material.nu = 7' /\n");
-  expect(w, "study bad_study.nml", 1, "bad_study.nml:1:76: error: `nu` = 7");
+  expect(w, "study bad_study.nml", 1, "bad_study.nml:1:77: error: `nu` = 7");
+}
+
+static void write_group(workplace *w, const char *keys) {
+  char text[1000];
+  snprintf(text, sizeof text, "&study deck = 'beam.nml' %s /\n", keys);
+  write_text(w, "asked_study.nml", text);
+}
+
+/* Whoever writes a group is told of its keys, whoever gives options of these. */
+static void words_of_the_asker(void **state) {
+  workplace *w = *state;
+  static const struct {
+    const char *keys, *options, *words[2];
+  } slips[] = {{"x = 'time'", "", {"or `strength`, `fit`", "or --strength, --fit"}},
+               {"vary = 'material.beta=1,2' twin = 'beam.nml'",
+                "--vary material.beta=1,2 --twin beam.nml",
+                {"belongs to `strength`", "belongs to --strength"}},
+               {"vary = 'material.beta=1,2' to = 'lab.csv'",
+                "--vary material.beta=1,2 --to lab.csv",
+                {"belong to `fit`", "belong to --fit"}},
+               {"fit = 'material.E=20..40 GPa'",
+                "--fit 'material.E=20..40 GPa'",
+                {"to = 'lab.csv'", "--to lab.csv"}},
+               {"fit = 'material.E=40..20 GPa' to = 'beam.nml'",
+                "--fit 'material.E=40..20 GPa' --to beam.nml",
+                {"fit = 'material.E=20..40 GPa'", "--fit \"material.E=20..40 GPa\""}},
+               {"vary = 'material.beta=1,2,3' converge = 'nu'",
+                "--vary material.beta=1,2,3 --converge nu",
+                {"keys of `vary`", "keys of --vary"}},
+               {"vary = 'material.beta=1,2' strength = 'force.total=1..2:1'",
+                "--vary material.beta=1,2 --strength force.total=1..2:1",
+                {"`vary` goes with `converge`", "--vary goes with --converge"}},
+               {"vary = 'material.beta=0,1' result = 'mine'",
+                "--vary material.beta=0,1 -o mine",
+                {"name it with `result`", "name it with -o"}}};
+  write_text(w, "mine.csv", "a\n");
+  for (size_t k = 0; k < sizeof slips / sizeof *slips; k++) {
+    char command[400];
+    write_group(w, slips[k].keys);
+    expect(w, "study asked_study.nml", 1, slips[k].words[0]);
+    assert_null(strstr(w->said, "--"));
+    snprintf(command, sizeof command, "study beam.nml %s", slips[k].options);
+    expect(w, command, 1, slips[k].words[1]);
+  }
+}
+
+/* A plain number is in SI, and that is said where the deck has another unit. */
+static void numbers_without_unit(void **state) {
+  workplace *w = *state;
+  expect(w, "study beam.nml --vary simulation.end_time=1e-4,2e-4 --set lattice.spacing=0.006 -o p",
+         0, "--vary:1:21: warning: `1e-4` has no unit and is read as 1e-4 s; the deck's own");
+  assert_non_null(strstr(w->said, "--set:1:17: warning: `0.006`"));
+  assert_null(strstr(w->said, "`2e-4`"));
+  expect(w, "study beam.nml --vary simulation.end_time=0.1,0.2ms --set material.nu=0.1 -o q", 0,
+         "wrote");
+  assert_null(strstr(w->said, "warning"));
+}
+
+/* Before anything runs. */
+static void too_few_sizes(void **state) {
+  workplace *w = *state;
+  expect(w, "study beam.nml --vary material.beta=0.1,0.2 --converge beta -o few", 1,
+         "need three sizes or more; `material.beta` has 2");
+  assert_false(exists(w, "few"));
 }
 
 static double fitted(workplace *w, const char *weights, const char *name) {
@@ -420,6 +484,9 @@ int main(void) {
                                      WITH(with_children_ignored),
                                      WITH(slips),
                                      WITH(slips_in_values),
+                                     WITH(words_of_the_asker),
+                                     WITH(too_few_sizes),
+                                     WITH(numbers_without_unit),
                                      WITH(weights_of_curves)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

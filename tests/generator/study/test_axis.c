@@ -60,6 +60,16 @@ static void refuses(const char *text, const char *words) {
   end(&b);
 }
 
+static void hints(const char *text, const char *words) {
+  bench b;
+  study_axis axis;
+  begin(&b);
+  const study_text it = given(&b, text);
+  assert_false(study_axis_read(b.memory, &it, &axis, &b.said));
+  if (!strstr(b.said.items[0].hint, words)) fail_msg("`%s`: %s", text, b.said.items[0].hint);
+  end(&b);
+}
+
 static void lists(void **state) {
   (void)state;
   reads("lattice.spacing=10", "lattice.spacing", "10");
@@ -115,6 +125,10 @@ static void slips(void **state) {
   refuses("a.b=1..x:1", "no range of numbers");
   refuses("a.b=1 m..2 m:5 s", "one unit");
   refuses("a.b=0..1:1e-9", "too many");
+  refuses("a.b=40:2:60 kN", "`40:2:60 kN` is no number");
+  hints("a.b=40:2:60 kN", "`40..60:2 kN`");
+  hints("a.b=40:60:2", "`40..60:2`");
+  hints("a.b=40:60 kN", "`40..60:STEP kN`");
   refuses("a.b=1..2:nan", "no range of numbers");
 }
 

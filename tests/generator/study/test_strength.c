@@ -56,6 +56,22 @@ static void holds_are_lengthened(void **state) {
   expect_cell(w, "calm.csv", 1, "end_time [ms]", "0.88");
 }
 
+/* The table has what the verdicts rest on, and the rule stands below. */
+static void the_verdict_is_explained(void **state) {
+  workplace *w = *state;
+  write_text(w, "held.nml", held_deck);
+  write_text(w, "moved.nml", held_deck);
+  expect(w,
+         "study held.nml --strength 'force.total=100 N' --set 'force.rise=0.4 ms' --set "
+         "'simulation.end_time=0.88 ms' --twin moved.nml -o told",
+         2, "first half [m]  second half [m]  verdict");
+  assert_non_null(
+      strstr(w->said, "`deflection` is the same in both halves of the hold, within 5 %"));
+  assert_non_null(strstr(w->said, "  twin: `moved.nml`, told/moved.h5\n"));
+  assert_non_null(
+      strstr(w->said, "--strength:1:1: warning: these loads act against the deck's own"));
+}
+
 /* What comes after the first hold is seen in the second: here another force. */
 static void a_longer_hold_tells(void **state) {
   workplace *w = *state;
@@ -70,6 +86,7 @@ static void a_longer_hold_tells(void **state) {
 
 int main(void) {
 #define WITH(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
-  const struct CMUnitTest tests[] = {WITH(holds_are_lengthened), WITH(a_longer_hold_tells)};
+  const struct CMUnitTest tests[] = {WITH(holds_are_lengthened), WITH(a_longer_hold_tells),
+                                     WITH(the_verdict_is_explained)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
