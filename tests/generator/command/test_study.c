@@ -455,7 +455,8 @@ static void jobs(void **state) {
                    0);
 }
 
-/* The longest run begins first, so that none is left to run by itself at the end; rows stay as asked. */
+/* The longest run begins first, so that none is left to run by itself at the end; rows stay as they
+   were asked. */
 static void longest_first(void **state) {
   workplace *w = *state;
   expect(w,
