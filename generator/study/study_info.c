@@ -1,13 +1,16 @@
 #include "generator/study/study_info.h"
 
+#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "dsl/base/characters.h"
 #include "dsl/base/units.h"
 #include "generator/kernel/document.h"
 #include "generator/study/study_table.h"
+#include "runtime/base/ordinary_file.h"
 #include "runtime/result/hdf5_tools.h"
 
 enum { MOST_ROWS = 100000, MOST_COLUMNS = 10000 };
@@ -18,9 +21,18 @@ typedef struct table_file {
   bool good;
 } table_file;
 
+/* A pipe would keep HDF5 waiting. */
+static bool is_ordinary(const char *path) {
+  const char *why;
+  const int handle = ordinary_file_open(path, O_RDONLY, &why);
+  if (handle >= 0) close(handle);
+  return handle >= 0;
+}
+
 /* Closed by H5Fclose; negative: it is none. */
 static hid_t open_table(const char *path) {
   h5_quiet();
+  if (!is_ordinary(path)) return -1;
   const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file < 0) return file;
   if (h5_stays_inside(file) && H5Lexists(file, "/table", H5P_DEFAULT) > 0 &&
