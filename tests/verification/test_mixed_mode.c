@@ -138,7 +138,9 @@ static void says(const char *row, const char *form, double value) {
 /* The page's own spacing, on either side of the transition. */
 static void the_page_has_the_beams_figures(void **unused) {
   (void)unused;
-  const struck near = beam(51, 1, false), far = beam(52, 1, false);
+  const struck nearest = beam(43, 1, false), near = beam(51, 1, false), far = beam(52, 1, false);
+  assert_true(nearest.notch > 0.070 && nearest.midspan == 0);
+  says("| 43/64", "%.2f kN", 1e-3 * nearest.peak);
   assert_true(near.notch > 0.070 && near.midspan == 0);
   assert_true(far.midspan > 0.070 && far.notch < 0.070);
   says("| 51/64", "%.2f kN", 1e-3 * near.peak);
@@ -159,7 +161,7 @@ static void half_a_turn_changes_nothing(void **unused) {
   open_plate(&c, "lattice.rotation=30");
   const double gap = image_gap(&c, &c, -1);
   print_message("  damage apart by %.1e\n", gap);
-  assert_true(gap < 0.01);
+  assert_true(gap < 0.05);
   says("| pulled and sheared, 30", "%.2f kN", 1e-3 * deck_case_largest(&c, "tension"));
   deck_case_close(&c);
 }
