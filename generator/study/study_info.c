@@ -35,10 +35,7 @@ static hid_t open_table(const char *path) {
   if (!is_ordinary(path)) return -1;
   const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file < 0) return file;
-  if (h5_stays_inside(file) && H5Lexists(file, "/table", H5P_DEFAULT) > 0 &&
-      H5Lexists(file, "/table/case", H5P_DEFAULT) > 0 &&
-      H5Lexists(file, "/cases", H5P_DEFAULT) > 0 && H5Lexists(file, "/history", H5P_DEFAULT) <= 0)
-    return file;
+  if (h5_stays_inside(file) && h5_is_study_table(file)) return file;
   H5Fclose(file);
   return -1;
 }

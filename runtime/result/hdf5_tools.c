@@ -388,3 +388,10 @@ static bool set_stays_inside(hid_t set, void *file) {
 bool h5_stays_inside(hid_t file) {
   return h5_each_set(file, set_stays_inside, &file);
 }
+
+bool h5_is_study_table(hid_t file) {
+  return H5Lexists(file, "/table", H5P_DEFAULT) > 0 &&
+         H5Lexists(file, "/table/case", H5P_DEFAULT) > 0 &&
+         H5Lexists(file, "/cases", H5P_DEFAULT) > 0 &&
+         H5Lexists(file, "/history", H5P_DEFAULT) <= 0;
+}

@@ -81,5 +81,7 @@ bool h5_each_set(hid_t file, bool (*visit)(hid_t set, void *context), void *cont
 /* All that the file holds lies in it: no links to elsewhere, no values in other files, virtual data
    sets only of data sets of the file that are not virtual themselves. */
 bool h5_stays_inside(hid_t file);
+/* Whether the file is the table of a study (`perilat study`), and no result of a run. */
+bool h5_is_study_table(hid_t file);
 
 #endif

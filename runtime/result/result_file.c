@@ -40,7 +40,7 @@ static const char *open_checked(const char *path, int handle, seal_state seal, h
   if (H5Lexists(*file, "/history", H5P_DEFAULT) > 0 &&
       H5Lexists(*file, "/particles", H5P_DEFAULT) > 0)
     return NULL;
-  return H5Lexists(*file, "/table", H5P_DEFAULT) > 0 && H5Lexists(*file, "/cases", H5P_DEFAULT) > 0
+  return h5_is_study_table(*file)
              ? "is the table of a study; the results are in the folder beside it"
              : "is damaged, or not a result of perilat";
 }
