@@ -54,10 +54,11 @@
 
 /* What a law loses: to states and damage; to rate terms. */
 enum pl_loss { PL_LOST_TO_STATES = 0, PL_LOST_TO_RATES = 1, PL_LOSSES = 2 };
-enum pl_law_kind { PL_CENTRAL = 0, PL_MICROPOLAR = 1, PL_STATE = 2 };
+enum pl_law_kind { PL_CENTRAL = 0, PL_MICROPOLAR = 1, PL_STATE = 2, PL_CONTINUUM = 3 };
 enum pl_field_kind { PL_FIELD_STATE = 0, PL_FIELD_DAMAGE = 1, PL_FIELD_OUTPUT = 2 };
-/* Where a field lives: one value a bond; one a particle; one for each neighbour of a particle. */
-enum pl_place { PL_ON_BOND = 0, PL_ON_PARTICLE = 1, PL_ON_NEIGHBOUR = 2 };
+/* Where a field lives: one value a bond; one a particle; one for each neighbour of a particle; one a
+   point of a continuum. */
+enum pl_place { PL_ON_BOND = 0, PL_ON_PARTICLE = 1, PL_ON_NEIGHBOUR = 2, PL_ON_POINT = 3 };
 
 /* Where a particle's neighbours stand: on rows at offsets that are the same along a row; on lists
    each has its own. */
@@ -280,6 +281,41 @@ typedef struct pl_program {
   const uint64_t *shared;
 } pl_program;
 
+/* Points of a continuum. Components of strains and stresses stand in this order:
+
+       in the plane   strain xx, yy, xy              stress xx, yy, xy, zz
+       in space       strain xx, yy, zz, xy, yz, xz  stress the same
+
+   A shear xy of a strain is the tensor's: half of the change of angle. In plane strain nothing is
+   strained along z; in plane stress the law finds the strain along z that leaves no stress there
+   (eight steps of Newton's method from 0, or one where that is exact). */
+enum { PL_MAX_STRAINS = 6 };
+#define PL_STRAINS(dimensions)  ((dimensions) == 2 ? 3 : 6)
+#define PL_STRESSES(dimensions) ((dimensions) == 2 ? 4 : 6)
+
+typedef struct pl_points {
+  uint32_t size;
+  long count;                        /* a multiple of PL_LANES */
+  const double *const *strain;       /* [strains][count] */
+  const double *const *strain_rate;  /* [strains][count] 1/s */
+  const double *cell_size;           /* [count] m, of the cell that the point stands for */
+  const double *const *parameter;    /* [varying_count][count] SI: those that differ in space */
+  const double *const *old_field;    /* [field_count][count] SI, when the step begins */
+  double *const *new_field;          /* [field_count][count] written; other memory than old_field */
+  double *const *stress;             /* [stresses][count] Pa, written */
+  /* Of point_tangent: [strains][strains][count] Pa, written: the stress by the strain, where shears
+     are those of engineers (twice the tensor's). In plane stress it is that of the plane alone. */
+  double *const *tangent;
+  /* Of point_observe: [1 + output_count][count], written: stored energy (J/m^3), then each output */
+  double *const *observed;
+  double *const *lost; /* of point_ledger: [PL_LOSSES][count] J/m^3, added to */
+  double time, time_step; /* s */
+} pl_points;
+
+/* uniforms: [uniform_count], as `prepare` wrote them for any bond class */
+typedef void (*pl_point_function)(const struct pl_law *law, const double *uniforms,
+                                  const pl_points *points);
+
 /* Force planes. Central 2D: Fx, Fy on i (on j the opposite). Micropolar 2D: Fx, Fy, and the end
    moments M_i, M_j of the bond (on the particles the opposite); where it twists, the moment T on
    end j. */
@@ -371,6 +407,14 @@ typedef struct pl_law {
      particle. With more passes the law reads what neighbours find of their own families, which
      earlier passes leave in links: these must have been run for the neighbours, too. */
   pl_program force_state;
+
+  /* Laws of a continuum (kind PL_CONTINUUM) have these in place of strips and passes. */
+  pl_point_function point_step;    /* stress and new fields */
+  pl_point_function point_ledger;  /* the same and lost energies */
+  pl_point_function point_observe; /* stored energy and outputs; changes nothing */
+  pl_point_function point_tangent; /* tangent; changes nothing */
+  /* The stress is the same linear function of the strain alone at all times, 0 without strain. */
+  int linear;
 } pl_law;
 
 /* The one symbol that a compiled kernel exports. */

@@ -33,7 +33,7 @@ const char *shape_words(shape s) {
 /* What a bond and a particle have in common is the particle's view of the bond: directed. */
 placement place_join(const checker *ck, placement a, placement b) {
   placement low = a < b ? a : b, high = a < b ? b : a;
-  if (!is_pairwise(ck) && low == ON_PARTICLE && high == ON_BOND) return ON_NEIGHBOUR;
+  if (!is_single(ck) && low == ON_PARTICLE && high == ON_BOND) return ON_NEIGHBOUR;
   return high;
 }
 

@@ -14,6 +14,7 @@ enum {
   IN_MICROPOLAR = 2,
   IN_STATE = 4,
   IN_SLIP = 8,
+  IN_CONTINUUM = 16,
   IN_BOND = IN_CENTRAL | IN_MICROPOLAR | IN_SLIP,
   IN_LATTICE = IN_CENTRAL | IN_MICROPOLAR | IN_STATE,
   IN_ANY = 15
@@ -70,7 +71,13 @@ enum { MOVES, FIXED };
   X(GAP, "gap", "m", BENDING, BOND, IN_SLIP, MOVES, "x = norm(gap)/s",                             \
     "how far the place has moved across the bar, as its tangent is now")                           \
   X(SLIP_RATE, "slip_rate", "m/s", SCALAR, BOND, IN_SLIP, MOVES, "x = slip_rate/1 [m/s]",          \
-    "time derivative of the slip while the gap is small against s")
+    "time derivative of the slip while the gap is small against s")                                \
+  X(STRAIN, "strain", "1", TENSOR, POINT, IN_CONTINUUM, MOVES, "x = trace(strain)",                \
+    "small strain of the point; in plane stress the third one leaves no stress")                   \
+  X(STRAIN_RATE, "strain_rate", "1/s", TENSOR, POINT, IN_CONTINUUM, MOVES,                         \
+    "x = trace(strain_rate)/10 [1/s]", "time derivative of the strain")                            \
+  X(CELL_SIZE, "h", "m", SCALAR, POINT, IN_CONTINUUM, FIXED, "x = h/1 [mm]",                       \
+    "size of the cell that the point stands for: in the plane the root of its area")
 
 /* X(code, name, least arguments, most arguments, check of the arguments (calls.c), value, formula,
      a line of a law that calls it, meaning)

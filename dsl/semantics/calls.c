@@ -101,9 +101,10 @@ static bool varies_in_family(value v) {
 
 static value reduced(checker *ck, expr *e, value v) {
   if (v.broken) return v;
-  if (is_pairwise(ck)) {
+  if (is_single(ck)) {
     complain(ck, DIAG_PLACEMENT, e->where,
-             "`%s` of one value goes over a family, which a bond law does not have", e->name);
+             "`%s` of one value goes over a family, which a %s law does not have", e->name,
+             law_word(ck));
     if (e->builtin == FUNCTION_MIN || e->builtin == FUNCTION_MAX)
       diag_hint(ck->d, "give it two values or more");
     return BROKEN;
@@ -172,7 +173,7 @@ static value previous(checker *ck, expr *e) {
   }
   complain(ck, DIAG_ARGUMENTS, of->where, "`previous` takes the name of a state or damage");
   diag_hint(ck->d, "to keep a value from step to step declare `state x on %s = 0`",
-            is_pairwise(ck) ? "bond" : "particle");
+            placement_name(natural_place(ck)));
   return BROKEN;
 }
 
@@ -230,9 +231,9 @@ static value derivative(checker *ck, expr *e) {
 /* --- of a family and of tensors --------------------------------------------------------------- */
 
 static bool needs_state_law(checker *ck, const expr *e) {
-  if (!is_pairwise(ck)) return true;
+  if (!is_single(ck)) return true;
   complain(ck, DIAG_LAW_KIND, e->where,
-           "`%s` needs a particle's family, which a bond law does not have", e->name);
+           "`%s` needs a particle's family, which a %s law does not have", e->name, law_word(ck));
   diag_hint(ck->d, "a law that begins with `law state` has it");
   return false;
 }
@@ -312,8 +313,16 @@ static value hooke(checker *ck, expr *e) {
   return with_shape(v, dimension_of("Pa"), SHAPE_TENSOR);
 }
 
+static bool has_tensors(checker *ck, const expr *e) {
+  if (!is_single(ck) || ck->tree->law == LAW_CONTINUUM) return true;
+  complain(ck, DIAG_LAW_KIND, e->where, "`%s` takes a tensor, which a bond law does not have",
+           e->name);
+  diag_hint(ck->d, "laws that begin with `law state` or `law continuum` have tensors");
+  return false;
+}
+
 static value tensor_argument(checker *ck, expr *e) {
-  if (!needs_state_law(ck, e)) return BROKEN;
+  if (!has_tensors(ck, e)) return BROKEN;
   value v = check_number(ck, operand(e, 0));
   if (v.broken || v.unknown || v.shape == SHAPE_TENSOR) return v;
   return bad_shape(ck, e, v, "it takes a stress or strain");

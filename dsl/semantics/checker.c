@@ -5,8 +5,18 @@
 
 enum { LONGEST_QUOTE = 40 };
 
-bool is_pairwise(const checker *ck) {
+bool is_single(const checker *ck) {
   return ck->tree->law != LAW_STATE;
+}
+
+placement natural_place(const checker *ck) {
+  if (ck->tree->law == LAW_CONTINUUM) return ON_POINT;
+  return is_single(ck) ? ON_BOND : ON_PARTICLE;
+}
+
+const char *law_word(const checker *ck) {
+  if (ck->tree->law == LAW_CONTINUUM) return "continuum";
+  return is_single(ck) ? "bond" : "state";
 }
 
 void complain(checker *ck, diag_code code, span where, const char *format, ...) {

@@ -91,7 +91,11 @@ void complain(checker *ck, diag_code code, span where, const char *format, ...)
 /* The written text of an expression when it is short, otherwise `otherwise`. */
 const char *written(checker *ck, const expr *e, const char *otherwise);
 
-/* Is it a law of single bonds, rather than of a particle's family? */
-bool is_pairwise(const checker *ck);
+/* Is it a law of single bonds or points, rather than of a particle's family? */
+bool is_single(const checker *ck);
+/* Where a state with one value lives: on bonds, points or particles. */
+placement natural_place(const checker *ck);
+/* "bond", "state" or "continuum", before "law". */
+const char *law_word(const checker *ck);
 
 #endif

@@ -190,7 +190,7 @@ static void declare_flow(checker *ck, stmt *s) {
   complain(ck, DIAG_UNKNOWN_NAME, s->name_where, "flow needs a state, but `%s` is not one",
            s->name);
   diag_hint(ck->d, "declare it above: `state %s on %s = 0`", s->name,
-            is_pairwise(ck) ? "bond" : "neighbour");
+            is_single(ck) ? placement_name(natural_place(ck)) : "neighbour");
 }
 
 static void declare_definition(checker *ck, stmt *s) {
@@ -207,9 +207,9 @@ static void declare_definition(checker *ck, stmt *s) {
   }
 }
 
-static const char *const result_names[RESULT_COUNT] = {"N", "V", "M_i", "M_j", "T", "W"};
-static const stmt_kind result_kinds[RESULT_COUNT] = {STMT_FORCE,  STMT_FORCE,  STMT_MOMENT,
-                                                     STMT_MOMENT, STMT_MOMENT, STMT_ENERGY};
+static const char *const result_names[RESULT_COUNT] = {"N", "V", "M_i", "M_j", "T", "W", "sigma"};
+static const stmt_kind result_kinds[RESULT_COUNT] = {
+    STMT_FORCE, STMT_FORCE, STMT_MOMENT, STMT_MOMENT, STMT_MOMENT, STMT_ENERGY, STMT_STRESS};
 
 static void report_result_name(checker *ck, const stmt *s) {
   const char *kind = stmt_kind_name(s->kind);
@@ -221,6 +221,39 @@ static void report_result_name(checker *ck, const stmt *s) {
                                                : forces[ck->tree->law];
   complain(ck, DIAG_LAW_KIND, s->name_where, "the %s of a bond law is called %s", kind, names);
   ck->result_refused = true;
+}
+
+static bool is_given_twice(checker *ck, const stmt *s, int which) {
+  const symbol *first = ck->law->results[which];
+  if (!first) return false;
+  complain(ck, DIAG_DUPLICATE_NAME, s->name_where, "`%s %s` is given twice",
+           stmt_kind_name(s->kind), s->name);
+  diag_note(ck->d, first->where, "first given here");
+  return true;
+}
+
+/* `stress sigma` and `energy W` are what a continuum gives; stresses and strains of other names are
+   only names. */
+static void declare_continuum_result(checker *ck, stmt *s) {
+  const bool energy = s->kind == STMT_ENERGY, tensor = s->kind == STMT_STRESS ||
+                                                       s->kind == STMT_STRAIN;
+  const int which = energy ? RESULT_W : RESULT_SIGMA;
+  const bool given = result_kinds[which] == s->kind && strcmp(result_names[which], s->name) == 0;
+  if (!given && !tensor) {
+    complain(ck, DIAG_LAW_KIND, s->name_where,
+             energy ? "the energy of a continuum law is called `W`"
+                    : "a continuum law has no %s", stmt_kind_name(s->kind));
+    if (!energy) diag_hint(ck->d, "a continuum law gives `stress sigma = ...` or `energy W = ...`");
+    ck->result_refused = true;
+    return;
+  }
+  if (given && is_given_twice(ck, s, which)) return;
+  entry *e = declare(ck, given ? SYMBOL_RESULT : SYMBOL_DEFINED, s);
+  if (!e) return;
+  e->symbol.rule = s;
+  if (!given) return;
+  e->symbol.index = which;
+  ck->law->results[which] = &e->symbol;
 }
 
 /* `force V` stands beside the volume V of the particle, so it cannot be read by its name. */
@@ -246,12 +279,7 @@ static void declare_bond_result(checker *ck, stmt *s) {
     report_result_name(ck, s);
     return;
   }
-  if (ck->law->results[which]) {
-    complain(ck, DIAG_DUPLICATE_NAME, s->name_where, "`%s %s` is given twice",
-             stmt_kind_name(s->kind), s->name);
-    diag_note(ck->d, ck->law->results[which]->where, "first given here");
-    return;
-  }
+  if (is_given_twice(ck, s, which)) return;
   symbol what = {.kind = SYMBOL_RESULT,
                  .name = s->name,
                  .where = s->name_where,
@@ -274,8 +302,8 @@ static void declare_bond_result(checker *ck, stmt *s) {
 
 static void report_kind_of_result(checker *ck, const stmt *s) {
   complain(ck, DIAG_LAW_KIND, s->name_where, "a %s law has no %s",
-           is_pairwise(ck) ? "bond" : "state", stmt_kind_name(s->kind));
-  if (!is_pairwise(ck))
+           law_word(ck), stmt_kind_name(s->kind));
+  if (!is_single(ck))
     diag_hint(ck->d, "a state law gives `force state F[j] = ...`");
   else if (s->kind == STMT_FORCE_STATE)
     diag_hint(ck->d, "a bond law gives `force N = ...`");
@@ -285,12 +313,16 @@ static void report_kind_of_result(checker *ck, const stmt *s) {
 
 static void declare_result(checker *ck, stmt *s) {
   if (!s->name) return;
+  if (ck->tree->law == LAW_CONTINUUM) {
+    declare_continuum_result(ck, s);
+    return;
+  }
   bool of_family = s->kind == STMT_FORCE_STATE || s->kind == STMT_STRESS || s->kind == STMT_STRAIN;
-  if (!of_family && is_pairwise(ck)) {
+  if (!of_family && is_single(ck)) {
     declare_bond_result(ck, s);
     return;
   }
-  bool refused = of_family == is_pairwise(ck) && s->kind != STMT_ENERGY;
+  bool refused = of_family == is_single(ck) && s->kind != STMT_ENERGY;
   ck->result_refused |= refused;
   if (refused) report_kind_of_result(ck, s);
   bool result = s->kind == STMT_FORCE_STATE || s->kind == STMT_ENERGY;

@@ -50,7 +50,8 @@ typedef struct symbol_list {
   int count;
 } symbol_list;
 
-/* The result quantities of pairwise laws, by position. NULL where the law does not give one. */
+/* The result quantities of laws of bonds and of continua, by position. NULL where the law does not
+   give one. */
 typedef enum law_result {
   RESULT_N,
   RESULT_V,
@@ -58,6 +59,7 @@ typedef enum law_result {
   RESULT_M_J,
   RESULT_T,
   RESULT_W,
+  RESULT_SIGMA,
   RESULT_COUNT
 } law_result;
 

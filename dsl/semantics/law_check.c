@@ -15,11 +15,12 @@ static void check_field_place(checker *ck, const stmt *s, symbol *field) {
   span where = s->place == ON_NOTHING ? s->name_where : s->place_where;
   const char *kind = stmt_kind_name(s->kind);
   field->place = s->place;
-  if (is_pairwise(ck)) {
-    field->place = ON_BOND;
-    if (s->place == ON_NOTHING || s->place == ON_BOND) return;
-    complain(ck, DIAG_PLACEMENT, where, "a bond law keeps its %s on bonds", kind);
-    diag_hint(ck->d, "write `on bond`; a state law may have it %s",
+  if (is_single(ck)) {
+    field->place = natural_place(ck);
+    if (s->place == ON_NOTHING || s->place == field->place) return;
+    const char *name = placement_name(field->place);
+    complain(ck, DIAG_PLACEMENT, where, "a %s law keeps its %s on %ss", law_word(ck), kind, name);
+    diag_hint(ck->d, "write `on %s`; a state law may have it %s", name,
               "on particles and on neighbours");
   } else if (s->place < ON_PARTICLE) {
     field->place = ON_PARTICLE;
@@ -57,10 +58,10 @@ static bool is_made_of_length(const expr *e) {
 
 /* In a state law the [j] on the left says whether there is one value or one for each neighbour. */
 static bool check_family_rule(checker *ck, const stmt *s, value *v) {
-  if (is_pairwise(ck)) {
+  if (is_single(ck)) {
     if (!s->indexed) return true;
-    complain(ck, DIAG_PLACEMENT, s->name_where, "a bond law has no neighbours to give `%s` to",
-             s->name);
+    complain(ck, DIAG_PLACEMENT, s->name_where, "a %s law has no neighbours to give `%s` to",
+             law_word(ck), s->name);
     diag_hint(ck->d, "write `%s`; only a state law has a family", s->name);
     return false;
   }
@@ -87,9 +88,9 @@ static void check_field_rule(checker *ck, stmt *s, entry *field, value v) {
                                   field->symbol.kind == SYMBOL_STATE ? "state" : "damage", s->name);
   bool directed = field->symbol.place == ON_BOND || field->symbol.place == ON_NEIGHBOUR;
   if (v.broken) return;
-  if (is_pairwise(ck) || s->kind != STMT_DAMAGE) {
+  if (is_single(ck) || s->kind != STMT_DAMAGE) {
     if (!check_family_rule(ck, s, &v)) return;
-    if (!is_pairwise(ck) && s->indexed != directed) {
+    if (!is_single(ck) && s->indexed != directed) {
       complain(ck, DIAG_PLACEMENT, s->name_where, "%s lives on the %s", what,
                directed ? "bonds" : "particle");
       diag_hint(ck->d, directed ? "write `%s[j] = ...`" : "write `%s = ...`", s->name);
@@ -155,7 +156,13 @@ static const struct {
 } results[RESULT_COUNT] = {
     [RESULT_N] = {"N", SHAPE_SCALAR},      [RESULT_V] = {"N", SHAPE_BENDING},
     [RESULT_M_I] = {"N*m", SHAPE_BENDING}, [RESULT_M_J] = {"N*m", SHAPE_BENDING},
-    [RESULT_T] = {"N*m", SHAPE_SCALAR},    [RESULT_W] = {"J", SHAPE_SCALAR}};
+    [RESULT_T] = {"N*m", SHAPE_SCALAR},    [RESULT_W] = {"J", SHAPE_SCALAR},
+    [RESULT_SIGMA] = {"Pa", SHAPE_TENSOR}};
+
+/* The energy of a continuum is one per volume. */
+static const char *unit_of_result(const checker *ck, int which) {
+  return which == RESULT_W && ck->tree->law == LAW_CONTINUUM ? "J/m^3" : results[which].unit;
+}
 
 static void check_result(checker *ck, stmt *s) {
   value v = check_number(ck, s->value);
@@ -163,7 +170,7 @@ static void check_result(checker *ck, stmt *s) {
   int which = s->symbol && s->symbol->kind == SYMBOL_RESULT ? s->symbol->index : RESULT_COUNT;
   if (which < RESULT_COUNT) {
     const char *what = arena_printf(ck->memory, "`%s %s`", stmt_kind_name(s->kind), s->name);
-    dimension dim = dimension_of(results[which].unit);
+    dimension dim = dimension_of(unit_of_result(ck, which));
     if (!expect(ck, s->value, v, dim, results[which].shape, what)) v = BROKEN;
     v.dim = dim;
     v.shape = results[which].shape;
@@ -173,7 +180,7 @@ static void check_result(checker *ck, stmt *s) {
 
 static void check_force_state(checker *ck, stmt *s) {
   value v = check_number(ck, s->value);
-  if (!v.broken && !s->indexed && !is_pairwise(ck)) {
+  if (!v.broken && !s->indexed && !is_single(ck)) {
     complain(ck, DIAG_PLACEMENT, s->name_where, "a force state has one value for each neighbour");
     diag_hint(ck->d, "write `force state %s[j] = ...`", s->name);
     v = BROKEN;
@@ -189,6 +196,10 @@ static void check_force_state(checker *ck, stmt *s) {
 }
 
 static void check_tensor(checker *ck, stmt *s) {
+  if (s->symbol && s->symbol->kind == SYMBOL_RESULT) {
+    check_result(ck, s);
+    return;
+  }
   value v = check_number(ck, s->value);
   dimension dim = s->kind == STMT_STRESS ? dimension_of("Pa") : DIMENSIONLESS;
   const char *what = s->kind == STMT_STRESS ? "a stress" : "a strain";
@@ -216,7 +227,7 @@ static void check_flow(checker *ck, stmt *s) {
 
 static void check_output(checker *ck, stmt *s) {
   value v = check_number(ck, s->value);
-  if (!v.broken && !is_pairwise(ck) && !s->indexed && v.place > ON_PARTICLE) {
+  if (!v.broken && !is_single(ck) && !s->indexed && v.place > ON_PARTICLE) {
     set_type(s, v); /* results may hold values of bonds */
     return;
   }
@@ -345,7 +356,7 @@ static void check_rules_of_fields(checker *ck) {
     const symbol *s = ck->law->fields.items[i];
     if (s->rule) continue;
     const entry *e = entry_of(s);
-    const char *index = e->symbol.place > ON_PARTICLE && !is_pairwise(ck) ? "[j]" : "";
+    const char *index = e->symbol.place > ON_PARTICLE && !is_single(ck) ? "[j]" : "";
     complain(ck, DIAG_UNDEFINED, s->where, "the %s `%s` has no rule",
              s->kind == SYMBOL_STATE ? "state" : "damage", s->name);
     diag_hint(ck->d, "say what it becomes in each step: `%s%s = ...`", s->name, index);
@@ -375,6 +386,10 @@ static void check_results_given(checker *ck) {
     diag_hint(ck->d, "with `force V` both moments are V*length/2; remove the one or the other");
   }
   if (ck->result_refused) return;
+  if (ck->tree->law == LAW_CONTINUUM) {
+    if (!r[RESULT_W] && !r[RESULT_SIGMA]) report_missing(ck, "stress sigma", "sigma");
+    return;
+  }
   const bool slip = ck->tree->law == LAW_SLIP_BOND;
   if (r[RESULT_W] && !(slip && (r[RESULT_N] || r[RESULT_V]))) return;
   if (!r[RESULT_N]) report_missing(ck, "force N", "N");
@@ -497,7 +512,7 @@ static void check_all(checker *ck, const law_choice *choices, int choice_count) 
   if (has_state(ck)) infer_states(ck);
   check_statements(ck);
   check_rules_of_fields(ck);
-  if (is_pairwise(ck))
+  if (is_single(ck))
     check_results_given(ck);
   else
     check_force_state_given(ck);

@@ -51,9 +51,12 @@ entry *names_add(checker *ck, name_space space, const char *key, symbol what) {
   return added;
 }
 
-/* Slip and gap are a law's own names where they are no quantities. */
+/* Slip and gap are a law's own names where they are no quantities; so is what continua have in laws
+   of lattices, and what lattices have in those of continua. */
 static bool is_free_here(const checker *ck, const builtin_quantity_info *q) {
-  return q->kinds == IN_SLIP && ck->tree->law != LAW_SLIP_BOND;
+  const int here = 1 << ck->tree->law;
+  if (q->kinds & here) return false;
+  return q->kinds == IN_SLIP || ((q->kinds ^ here) & IN_CONTINUUM);
 }
 
 static void add_builtins(checker *ck) {
@@ -62,7 +65,7 @@ static void add_builtins(checker *ck) {
     const builtin_quantity_info *q = &builtin_quantities[i];
     if (is_free_here(ck, q)) continue;
     dimension dim = dimension_of(q->unit);
-    const placement on = is_pairwise(ck) && q->place == ON_PARTICLE ? ON_BODY : q->place;
+    const placement on = is_single(ck) && q->place == ON_PARTICLE ? ON_BODY : q->place;
     entry *e = names_add(ck, SPACE_QUANTITIES, q->name,
                          (symbol){.kind = SYMBOL_QUANTITY,
                                   .name = q->name,
@@ -128,6 +131,7 @@ static const char *law_that_has(int kinds) {
   const law_kind kind = kinds & IN_MICROPOLAR ? LAW_MICROPOLAR_BOND
                         : kinds & IN_STATE    ? LAW_STATE
                         : kinds & IN_SLIP     ? LAW_SLIP_BOND
+                        : kinds & IN_CONTINUUM ? LAW_CONTINUUM
                                               : LAW_CENTRAL_BOND;
   return law_kind_name(kind);
 }
@@ -136,7 +140,8 @@ static void report_other_kind(checker *ck, const expr *e, const builtin_quantity
   static const char *const laws[] = {[LAW_CENTRAL_BOND] = "a central law",
                                      [LAW_MICROPOLAR_BOND] = "a micropolar law",
                                      [LAW_STATE] = "a state law",
-                                     [LAW_SLIP_BOND] = "a law of slip"};
+                                     [LAW_SLIP_BOND] = "a law of slip",
+                                     [LAW_CONTINUUM] = "a law of a continuum"};
   complain(ck, DIAG_LAW_KIND, e->name_where, "%s does not have `%s` (%s)", laws[ck->tree->law],
            e->name, q->meaning);
   diag_hint(ck->d, "a law that begins with `law %s` has it", law_that_has(q->kinds));

@@ -101,7 +101,7 @@ static void report_self(checker *ck, const expr *e, const entry *self) {
   }
   complain(ck, DIAG_CYCLE, e->name_where, "`%s` is defined by itself", e->name);
   diag_hint(ck->d, "to read its value of the last step declare `state %s on %s = 0` above", e->name,
-            is_pairwise(ck) ? "bond" : "particle");
+            placement_name(natural_place(ck)));
 }
 
 void report_undefined(checker *ck, const expr *e, entry *target) {

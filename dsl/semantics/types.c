@@ -34,6 +34,7 @@ static value check_family_name(checker *ck, expr *e, value v) {
   switch (v.place) {
   case ON_NOTHING:
   case ON_BODY:
+  case ON_POINT:
     if (e->indexed) return refuse(ck, e, "`%s` is the same for every neighbour", "write `%s`");
     break;
   case ON_PARTICLE:
@@ -74,9 +75,9 @@ static value check_name(checker *ck, expr *e) {
     if (s->word_count) diag_hint(ck->d, "compare it: `%s == %s`", e->name, s->words[0]);
     return BROKEN;
   }
-  if ((e->indexed || e->primed) && is_pairwise(ck)) {
-    complain(ck, DIAG_PLACEMENT, e->where, "a bond law has no neighbours to take `%s` from",
-             e->name);
+  if ((e->indexed || e->primed) && is_single(ck)) {
+    complain(ck, DIAG_PLACEMENT, e->where, "a %s law has no neighbours to take `%s` from",
+             law_word(ck), e->name);
     diag_hint(ck->d, "write `%s`; only a state law has a family", e->name);
     return BROKEN;
   }
@@ -88,7 +89,7 @@ static value check_name(checker *ck, expr *e) {
   }
   if (!found->known) return UNKNOWN;
   value v = found->type;
-  if (is_pairwise(ck) || v.broken || found->symbol.kind == SYMBOL_ARGUMENT) return v;
+  if (is_single(ck) || v.broken || found->symbol.kind == SYMBOL_ARGUMENT) return v;
   return check_family_name(ck, e, v);
 }
 

@@ -20,7 +20,8 @@ static const char *binary_op_text(binary_op op) {
 }
 
 const char *placement_name(placement p) {
-  static const char *const names[] = {"nothing", "body", "particle", "bond", "neighbour"};
+  static const char *const names[] = {"nothing", "body",     "point",
+                                      "particle", "bond", "neighbour"};
   return names[p];
 }
 

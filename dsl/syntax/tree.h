@@ -66,7 +66,14 @@ typedef enum shape { SHAPE_SCALAR, SHAPE_LOGICAL, SHAPE_BENDING, SHAPE_VECTOR, S
 
 /* Where a value lives. Ordered: a bond value may be made of uniform ones. NEIGHBOUR is directed, i
    toward j. */
-typedef enum placement { ON_NOTHING, ON_BODY, ON_PARTICLE, ON_BOND, ON_NEIGHBOUR } placement;
+typedef enum placement {
+  ON_NOTHING,
+  ON_BODY,
+  ON_POINT, /* of a continuum */
+  ON_PARTICLE,
+  ON_BOND,
+  ON_NEIGHBOUR
+} placement;
 
 struct symbol; /* law.h */
 struct function_builtin;
@@ -174,7 +181,8 @@ struct stmt {
   X(LAW_CENTRAL_BOND, "central bond")                                                              \
   X(LAW_MICROPOLAR_BOND, "micropolar bond")                                                        \
   X(LAW_STATE, "state")                                                                            \
-  X(LAW_SLIP_BOND, "slip bond")
+  X(LAW_SLIP_BOND, "slip bond")                                                                    \
+  X(LAW_CONTINUUM, "continuum")
 
 typedef enum law_kind {
 #define X(code, words) code,
@@ -184,7 +192,8 @@ typedef enum law_kind {
 
 const char *law_kind_name(law_kind kind);
 /* For hints: how to say which kind a law is. */
-#define LAW_LINES "`law central bond`, `law micropolar bond`, `law slip bond` or `law state`"
+#define LAW_LINES                                                                                  \
+  "`law central bond`, `law micropolar bond`, `law slip bond`, `law state` or `law continuum`"
 
 /* Whether the ends of its bonds turn, so that particles have rotations. */
 static inline bool law_kind_turns(law_kind kind) {

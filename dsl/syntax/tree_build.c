@@ -161,7 +161,10 @@ void build_placement(parsing *p, stmt *s, word on) {
   static const struct {
     const char *name;
     placement place;
-  } places[] = {{"bond", ON_BOND}, {"particle", ON_PARTICLE}, {"neighbour", ON_NEIGHBOUR}};
+  } places[] = {{"bond", ON_BOND},
+                {"particle", ON_PARTICLE},
+                {"neighbour", ON_NEIGHBOUR},
+                {"point", ON_POINT}};
   if (!on.text) return;
   s->place_where = on.where;
   for (size_t i = 0; i < sizeof places / sizeof places[0]; i++)
@@ -169,7 +172,7 @@ void build_placement(parsing *p, stmt *s, word on) {
   if (s->place != ON_NOTHING || !first_complaint(p)) return;
   diag_report(p->messages, DIAG_SYNTAX, on.where, "a %s cannot live on `%s`",
               stmt_kind_name(s->kind), on.text);
-  diag_hint(p->messages, "write `on bond`, `on particle` or `on neighbour`");
+  diag_hint(p->messages, "write `on bond`, `on particle`, `on neighbour` or `on point`");
 }
 
 void build_force_state(parsing *p, word state, stmt *s, word direction) {

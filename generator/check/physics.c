@@ -12,6 +12,7 @@
 #include "generator/check/physics_healing.h"
 #include "generator/check/physics_hold.h"
 #include "generator/check/physics_paths.h"
+#include "generator/check/physics_points.h"
 #include "generator/check/physics_states.h"
 #include "generator/check/physics_tangent.h"
 #include "runtime/base/clock.h"
@@ -217,8 +218,9 @@ bool physics_check(const law *l, const physics_options *o, diagnostics *d, physi
   physics_report unwanted;
   report = report ? report : &unwanted;
   *report = (physics_report){0};
-  (l->tree->law == LAW_STATE ? check_law_of_families : check_law_of_bonds)(l, o ? o : &usual, d,
-                                                                           report);
+  (l->tree->law == LAW_CONTINUUM ? physics_check_points
+   : l->tree->law == LAW_STATE   ? check_law_of_families
+                                 : check_law_of_bonds)(l, o ? o : &usual, d, report);
   report->seconds = monotonic_seconds() - begun;
   return d->errors == errors;
 }

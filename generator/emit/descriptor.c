@@ -37,7 +37,8 @@ static void write_varying(c_text *out, const kernel_plan *p) {
 }
 
 static const char *place_of_field(const symbol *s) {
-  return s->place <= ON_PARTICLE ? "PL_ON_PARTICLE"
+  return s->place == ON_POINT    ? "PL_ON_POINT"
+         : s->place <= ON_PARTICLE ? "PL_ON_PARTICLE"
          : s->place == ON_BOND   ? "PL_ON_BOND"
                                  : "PL_ON_NEIGHBOUR";
 }
@@ -141,7 +142,12 @@ static void write_programs(c_text *out, const kernel_plan *p) {
 void descriptor_entry(const kernel_plan *p, c_text *out) {
   c_text_add(out, "#if PL_IN_PART(0)\n");
   write_law(out, p);
-  if (p->form != FORM_STRIPS) {
+  if (p->form == FORM_POINTS) {
+#define X(task, member) c_text_add(out, "    .%s = %s,\n", #member, #member);
+    POINT_PROGRAMS(X)
+#undef X
+    c_text_add(out, "    .linear = %d,\n", p->linear);
+  } else if (p->form != FORM_STRIPS) {
     write_programs(out, p);
   } else {
 #define X(task, member) c_text_add(out, "    .%s = %s,\n", #member, #member);

@@ -7,7 +7,8 @@
 
 static void write_prelude(emitter *e) {
   say(e, SAY_PRELUDE,
-      spell(e, e->plan->form == FORM_STRIPS ? SAY_STRIP_OPTIONS : SAY_FAMILY_OPTIONS));
+      spell(e, e->plan->form == FORM_STRIPS || e->plan->form == FORM_POINTS ? SAY_STRIP_OPTIONS
+                                                                          : SAY_FAMILY_OPTIONS));
   c_text_add(e->out, "%s\n%s\n", prelude_kernel_h, prelude_elementary_h);
   say(e, SAY_PRELUDE_END);
 }

@@ -6,9 +6,11 @@
 #include "dsl/base/arena.h"
 #include "generator/emit/strip.h"
 #include "generator/lower/kinematics.h"
+#include "generator/lower/point_inputs.h"
 #include "generator/plan/plan_roots.h"
 
 static const char *const segment_names[] = {[OVER_BODY] = "once",
+                                            [OVER_POINTS] = "point by point",
                                             [OVER_PARTICLES] = "particle by particle",
                                             [OVER_NEIGHBOURS] = "neighbour by neighbour",
                                             [OVER_BONDS] = "bond by bond",
@@ -20,9 +22,12 @@ static const char *const segment_names[] = {[OVER_BODY] = "once",
 static const char *force_name(const kernel_plan *p, int index) {
   static const char *const of_strips[] = {"force x", "force y", "end moment i", "end moment j",
                                           "twisting moment"},
+                           *const stresses[] = {"stress xx", "stress yy", "stress zz",
+                                                "stress xy", "stress yz", "stress xz"},
                            *const forces[] = {"force x", "force y", "force z"},
                            *const moments[] = {"moment x", "moment y", "moment z"};
   if (p->form == FORM_STRIPS) return of_strips[index];
+  if (p->form == FORM_POINTS) return stresses[point_component(p->dimensions, index)];
   if (index < p->dimensions) return forces[index];
   return moments[p->rotations == 1 ? 2 : index - p->dimensions];
 }
@@ -65,6 +70,9 @@ static const char *root_name(const kernel_plan *p, const segment_root *r, char *
     return "lost to rates";
   case TO_OBSERVED:
     return observed_name(p, r->index);
+  case TO_TANGENT:
+    snprintf(text, size, "tangent %d", r->index);
+    break;
   case TO_OUT:
     snprintf(text, size, "out %d", r->index);
     break;
@@ -147,6 +155,7 @@ static int dump_reads(const kernel_plan *p, const segment *a, FILE *out) {
 
 static void dump_segment(const kernel_plan *p, const segment *a, FILE *out) {
   static const char *const each[] = {[OVER_BODY] = "",
+                                     [OVER_POINTS] = " a point",
                                      [OVER_PARTICLES] = " a particle",
                                      [OVER_NEIGHBOURS] = " a bond",
                                      [OVER_BONDS] = " a bond",
@@ -157,7 +166,7 @@ static void dump_segment(const kernel_plan *p, const segment *a, FILE *out) {
   fprintf(out, "    %-12s", "writes");
   for (int k = 0; k < a->root_count; k++)
     fprintf(out, "%s %s", k ? "," : "", root_name(p, &a->roots[k], text, sizeof text));
-  const ir_cost c = plan_cost(p, a, ON_PARTICLE);
+  const ir_cost c = plan_cost(p, a, ON_POINT);
   fprintf(out,
           "\n    %-12s %d additions, %d multiplications, %d selects, %d divisions and roots, "
           "%d functions; %d bytes%s\n",
@@ -167,7 +176,7 @@ static void dump_segment(const kernel_plan *p, const segment *a, FILE *out) {
 
 /* Of families passes are numbered; over strips, and of what knows no body, they stand alone. */
 static bool is_numbered(const kernel_plan *p, int task) {
-  return p->form != FORM_STRIPS && task <= PROGRAM_FORCE_STATE;
+  return plan_is_of_families(p) && task <= PROGRAM_FORCE_STATE;
 }
 
 static void dump_name(const kernel_plan *p, int task, int number, FILE *out) {
@@ -194,10 +203,15 @@ static void dump_pass(const kernel_plan *p, int task, int number, FILE *out) {
 
 void plan_dump(const kernel_plan *p, FILE *out) {
   static const char *const kinds[] = {
-      [PL_CENTRAL] = "central bond", [PL_MICROPOLAR] = "micropolar bond", [PL_STATE] = "family"};
+      [PL_CENTRAL] = "central bond",
+      [PL_MICROPOLAR] = "micropolar bond",
+      [PL_STATE] = "family",
+      [PL_CONTINUUM] = "continuum"};
   fprintf(out, "kernel of %s: %s, %d dimensions, %d degrees of freedom, ", p->law->tree->name,
           kinds[plan_kind(p)], p->dimensions, p->dof);
-  if (p->form != FORM_STRIPS)
+  if (p->form == FORM_POINTS)
+    fprintf(out, "%s\n", p->linear ? "linear" : "not linear");
+  else if (plan_is_of_families(p))
     fprintf(out, "%d links of particles, %d of bonds\n", p->links.of_particles, p->links.of_bonds);
   else
     fprintf(out, "%d force planes\n", p->force_planes);

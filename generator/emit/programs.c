@@ -6,6 +6,7 @@
 #include "generator/emit/family_pairs.h"
 #include "generator/emit/family_unrolled.h"
 #include "generator/emit/law_functions.h"
+#include "generator/emit/point_loops.h"
 #include "generator/emit/strip.h"
 #include "generator/plan/program_facts.h"
 
@@ -119,6 +120,10 @@ static void write_strips(emitter *e) {
 void programs_functions(emitter *e) {
   if (e->plan->form == FORM_STRIPS) {
     write_strips(e);
+    return;
+  }
+  if (e->plan->form == FORM_POINTS) {
+    point_loops(e);
     return;
   }
   say(e, SAY_UNIFORM_COUNT, numeral(e, e->plan->uniform_count));

@@ -57,6 +57,15 @@ static void give_back(worker *w) {
 STRIP_PROGRAMS(X)
 #undef X
 
+#define X(task, member)                                                                            \
+  static void run_##member(const pl_law *kernel, const double *uniforms, const pl_points *s) {     \
+    worker *w = borrow(kernel);                                                                    \
+    interpreted_points(w->run, task, uniforms, s);                                                 \
+    give_back(w);                                                                                  \
+  }
+POINT_PROGRAMS(X)
+#undef X
+
 static void run_states(const pl_law *kernel, const double *uniforms, const pl_states *s) {
   worker *w = borrow(kernel);
   interpreted_states(w->run, PROGRAM_STATES, uniforms, s);
@@ -146,6 +155,7 @@ static int field_kind(const symbol *s) {
 }
 
 static int field_place(const symbol *s) {
+  if (s->place == ON_POINT) return PL_ON_POINT;
   if (s->place <= ON_PARTICLE) return PL_ON_PARTICLE;
   return s->place == ON_BOND ? PL_ON_BOND : PL_ON_NEIGHBOUR;
 }
@@ -194,6 +204,13 @@ static void describe_strips(interpreted *p) {
   p->law.state_inputs = describe_state_inputs(p->memory);
   p->law.states = run_states;
   p->law.tangent = run_tangent;
+}
+
+static void describe_points(interpreted *p) {
+#define X(task, member) p->law.member = run_##member;
+  POINT_PROGRAMS(X)
+#undef X
+  p->law.linear = p->plan->linear;
 }
 
 static void describe_families(interpreted *p) {
@@ -251,6 +268,8 @@ static void describe(interpreted *p) {
   };
   if (plan->form == FORM_STRIPS)
     describe_strips(p);
+  else if (plan->form == FORM_POINTS)
+    describe_points(p);
   else
     describe_families(p);
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "generator/lower/law_inputs.h"
+#include "generator/lower/point_inputs.h"
 
 enum { LANES = RUNNER_LANES };
 
@@ -100,6 +101,55 @@ void interpreted_states(runner *r, program_task task, const double *uniforms, co
       const int index = a->roots[k].index;
       double *to = index < results ? s->out[index] : s->new_field[index - results];
       memcpy(to + first, r->result[k], (size_t)now * sizeof(double));
+    }
+  }
+}
+
+/* --- points of a continuum -------------------------------------------------------------------- */
+
+static void point_at_points(runner *r, const pl_points *s, long first) {
+  const int dimensions = r->plan->dimensions;
+  const double **at = r->at[IR_FROM_POINT];
+  for (int k = 0; k < PL_STRAINS(dimensions); k++) {
+    const int component = point_component(dimensions, k);
+    at[POINT_STRAIN + component] = s->strain[k] + first;
+    at[POINT_STRAIN_RATE + component] = s->strain_rate ? s->strain_rate[k] + first : NULL;
+  }
+  at[POINT_CELL_SIZE] = s->cell_size ? s->cell_size + first : NULL;
+  r->at[IR_FROM_ENDS][ENDS_TIME_STEP] = &s->time_step;
+  for (int k = 0; k < r->plan->law->fields.count; k++)
+    r->at[IR_FROM_FIELD][k] = s->old_field[k] + first;
+  for (int k = 0; k < r->plan->variation.varying_count; k++)
+    r->at[IR_FROM_BOND_PARAMETER][k] = s->parameter[k] + first;
+}
+
+static double *array_of_root(const segment_root *root, const pl_points *s) {
+  switch (root->target) {
+  case TO_FORCE:
+    return s->stress[root->index];
+  case TO_FIELD:
+    return s->new_field[root->index];
+  case TO_TANGENT:
+    return s->tangent[root->index];
+  case TO_OBSERVED:
+    return s->observed[root->index];
+  default:
+    return s->lost[root->index];
+  }
+}
+
+void interpreted_points(runner *r, program_task task, const double *uniforms, const pl_points *s) {
+  const segment *a = plan_segment(r->plan, task);
+  runner_take_uniforms(r, uniforms);
+  for (long first = 0; first < s->count; first += LANES) {
+    const int now = lanes_left(s->count, first);
+    point_at_points(r, s, first);
+    evaluate(r, task, now);
+    for (int k = 0; k < a->root_count; k++) {
+      double *to = array_of_root(&a->roots[k], s) + first;
+      for (int lane = 0; lane < now; lane++)
+        to[lane] = segment_is_loss(&a->roots[k]) ? to[lane] + r->result[k][lane]
+                                                 : r->result[k][lane];
     }
   }
 }

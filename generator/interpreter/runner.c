@@ -5,6 +5,7 @@
 
 #include "dsl/base/arena.h"
 #include "generator/lower/law_inputs.h"
+#include "generator/lower/point_inputs.h"
 
 /* What the passes of a plan keep for themselves, the most. */
 typedef struct needs {
@@ -81,6 +82,8 @@ static int input_count(const kernel_plan *p, ir_source from, const needs *most) 
   case IR_FROM_SHARED:
   case IR_FROM_SHARED_ODD:
     return 2 * p->links.of_bonds;
+  case IR_FROM_POINT:
+    return POINT_INPUTS;
   case IR_FROM_SLOT:
     return most->slots;
   case IR_FROM_PLANE:

@@ -12,6 +12,7 @@
 #include "generator/lower/lower_inputs.h"
 #include "generator/lower/lower_slip.h"
 #include "generator/lower/lower_value.h"
+#include "generator/lower/point_inputs.h"
 
 /* --- rules ------------------------------------------------------------------------------------ */
 
@@ -311,11 +312,34 @@ static void lower_force_state(lowering *c, lowered_law *out) {
   lower_name_node(c->graph, out->F, "F", (span){0, 0, 0});
 }
 
+/* sigma = dW/dstrain where the law gives the energy alone; a shear stands in it twice. */
+static void lower_stress(lowering *c, lowered_law *out) {
+  ir *g = c->graph;
+  static const char *const names[] = {"sigma_xx", "sigma_yy", "sigma_zz",
+                                      "sigma_xy", "sigma_yz", "sigma_xz"};
+  const components given = components_of(c, c->law->results[RESULT_SIGMA]);
+  for (int k = 0; k < LOWERED_STRESSES; k++) {
+    const ir_node strain = lower_point_strain(g, c->law, k, false);
+    if (given.count == TENSOR_COUNT)
+      out->sigma[k] = given.of[k];
+    else if (given.count == 1) /* stress sigma = 0 */
+      out->sigma[k] = given.of[0];
+    else if (ir_operation(g, strain) == IR_CONSTANT)
+      out->sigma[k] = strain;
+    else
+      out->sigma[k] = ir_derivative(g, out->W, strain);
+    if (given.count == 0 && k >= TENSOR_XY) out->sigma[k] = half(g, out->sigma[k]);
+    lower_name_node(g, out->sigma[k], names[k], (span){0, 0, 0});
+  }
+}
+
 static void lower_results(lowering *c, lowered_law *out) {
   const symbol_list *outputs = &c->law->outputs;
   out->W = result_node(c, RESULT_W);
   if (lower_is_state_law(c))
     lower_force_state(c, out);
+  else if (c->law->tree->law == LAW_CONTINUUM)
+    lower_stress(c, out);
   else
     lower_bond_results(c, out);
   for (int k = 0; k < outputs->count; k++) {
@@ -414,6 +438,8 @@ bool lower_law_varying(const law *l, ir *g, lower_mode mode, const law_variation
   *out = (lowered_law){.N = IR_NONE, .T = IR_NONE, .F = IR_NONE, .W = IR_NONE};
   for (int k = 0; k < BENDING_AXES; k++)
     out->M_i[k] = out->M_j[k] = IR_NONE;
+  for (int k = 0; k < LOWERED_STRESSES; k++)
+    out->sigma[k] = IR_NONE;
   c.text.rules = arena_alloc(memory, field_bytes);
   c.new_value = must_alloc(field_bytes);
   c.rule = must_alloc(field_bytes);

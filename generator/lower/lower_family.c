@@ -223,7 +223,7 @@ components lower_family_call(lowering *c, const expr *e, const components *a) {
   case FUNCTION_UNIFORM_STRETCH:
     return scalar(tensor_contract(g, dyad(g, c->law), a[0]));
   case FUNCTION_HOOKE:
-    return tensor_hooke(g, c->law->setting, a[0], a[1].of[0], a[2].of[0]);
+    return tensor_hooke(g, lower_hooke_setting(c), a[0], a[1].of[0], a[2].of[0]);
   case FUNCTION_PRINCIPAL:
     return scalar(tensor_principal(g, a[0], (int)e->arguments[1].value->number));
   case FUNCTION_TRACE:

@@ -9,6 +9,7 @@
 #include "generator/lower/lower_inputs.h"
 #include "generator/lower/lower_slip.h"
 #include "generator/lower/lower_tensor.h"
+#include "generator/lower/point_inputs.h"
 
 /* --- names ------------------------------------------------------------------------------------ */
 
@@ -19,7 +20,17 @@ static components lower_bending_quantity(const lowering *c, builtin_quantity q) 
   return v;
 }
 
+static components lower_tensor_of_point(const lowering *c, bool rate) {
+  components v = {TENSOR_COUNT, {0}};
+  for (int k = 0; k < TENSOR_COUNT; k++)
+    v.of[k] = lower_point_strain(c->graph, c->law, k, rate);
+  return v;
+}
+
 static components lower_quantity_name(lowering *c, builtin_quantity q) {
+  if (q == QUANTITY_STRAIN || q == QUANTITY_STRAIN_RATE)
+    return lower_tensor_of_point(c, q == QUANTITY_STRAIN_RATE);
+  if (q == QUANTITY_CELL_SIZE) return scalar(point_input_node(c->graph, POINT_CELL_SIZE));
   if (q == QUANTITY_V) return scalar(lower_volume(c->graph, c->law));
   if (q == QUANTITY_RESOLVED) return scalar(lower_resolved(c->graph, c->law));
   if (builtin_quantities[q].kinds == IN_SLIP) return lower_slip_quantity(c, q);

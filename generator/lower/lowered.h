@@ -47,7 +47,8 @@ typedef struct lowered_text {
   int line_count, place_count, flow_count;
 } lowered_text;
 
-enum { BENDING_AXES = 3, LOWERED_FORCES = 2 * BENDING_AXES + 3 };
+enum { BENDING_AXES = 3, LOWERED_STRESSES = 6 };
+enum { LOWERED_FORCES = 2 * BENDING_AXES + 3 + LOWERED_STRESSES };
 
 /* What a law does not give is IR_NONE. */
 typedef struct lowered_law {
@@ -56,6 +57,7 @@ typedef struct lowered_law {
   ir_node M_i[BENDING_AXES], M_j[BENDING_AXES];
   ir_node T; /* twisting moment on end j, on end i the opposite; in space */
   ir_node F; /* force state in N (the bond force is the mean of both sides), or IR_NONE */
+  ir_node sigma[LOWERED_STRESSES]; /* of a continuum: xx, yy, zz, xy, yz, xz; Pa */
   bool along_reference; /* it acts along the reference bond */
   ir_node W;            /* the law's own `energy`, or IR_NONE */
   ir_node *fields;      /* [law->fields.count] new values (LOWER_FROZEN: the inputs themselves) */
@@ -63,7 +65,7 @@ typedef struct lowered_law {
   lowered_text text;
 } lowered_law;
 
-/* The places of N, M_i, M_j, T and F that are not IR_NONE. Returns how many. */
+/* The places of N, M_i, M_j, T, F and sigma that are not IR_NONE. Returns how many. */
 int lowered_forces(lowered_law *p, ir_node **forces);
 
 #endif

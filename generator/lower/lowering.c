@@ -20,6 +20,10 @@ bool lower_is_state_law(const lowering *c) {
   return c->law->tree->law == LAW_STATE;
 }
 
+law_setting lower_hooke_setting(const lowering *c) {
+  return c->law->tree->law == LAW_CONTINUUM ? SETTING_SPACE : c->law->setting;
+}
+
 /* --- names ------------------------------------------------------------------------------------ */
 
 /* Where the symbol is bound, or would be. */
@@ -34,9 +38,12 @@ ir_node lower_own_parameter(const lowering *c, int k) {
   const law_variation *v = c->variation;
   for (int n = 0; n < v->varying_count; n++)
     if (v->varying[n] == k) {
-      const bool families = lower_is_state_law(c);
+      const bool families = lower_is_state_law(c), points = c->law->tree->law == LAW_CONTINUUM;
       return ir_input(c->graph, families ? IR_FROM_PARTICLE_PARAMETER : IR_FROM_BOND_PARAMETER, n,
-                      c->law->parameters.items[k]->name, families ? ON_PARTICLE : ON_BOND);
+                      c->law->parameters.items[k]->name,
+                      points     ? ON_POINT
+                      : families ? ON_PARTICLE
+                                 : ON_BOND);
     }
   return lower_parameter(c->graph, c->law, k);
 }

@@ -62,6 +62,8 @@ typedef struct lowering {
 ir_node lower_fail(lowering *c, span where, const char *what);
 components lower_failed_value(lowering *c, span where, const char *what);
 bool lower_is_state_law(const lowering *c);
+/* Of `hooke`: a continuum has all three directions, in the plane, too. */
+law_setting lower_hooke_setting(const lowering *c);
 
 static inline ir_node half(ir *g, ir_node n) {
   return ir_mul(g, ir_constant(g, 0.5), n);

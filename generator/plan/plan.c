@@ -4,7 +4,9 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/semantics/law_variant.h"
+#include "generator/lower/lower_inputs.h"
 #include "generator/plan/plan_family.h"
+#include "generator/plan/plan_points.h"
 #include "generator/plan/plan_roots.h"
 #include "generator/plan/plan_strips.h"
 #include "generator/plan/program_facts.h"
@@ -70,8 +72,16 @@ kernel_plan *plan_kernel_of_families(const law *l, const law_variation *v, diagn
   return plan_families(l, v, few ? FORM_UNROLLED : FORM_LOOPS, d);
 }
 
+static kernel_plan *plan_kernel_of_points(const law *l, const law_variation *v, diagnostics *d) {
+  kernel_plan *plan = plan_begin(l, FORM_POINTS);
+  keep_variation(plan, v);
+  plan->dimensions = plan->dof = lower_dimensions(l);
+  return finish(plan, plan_points(plan, d), d);
+}
+
 kernel_plan *plan_kernel_varying(const law *l, const law_variation *v, diagnostics *d) {
   if (l->tree->law == LAW_STATE) return plan_kernel_of_families(l, v, d);
+  if (l->tree->law == LAW_CONTINUUM) return plan_kernel_of_points(l, v, d);
   bool micropolar = law_kind_turns(l->tree->law);
   bool twists = micropolar && l->setting == SETTING_SPACE;
   kernel_plan *plan = plan_begin(twists ? law_twisting(l) : l, FORM_STRIPS);

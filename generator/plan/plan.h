@@ -14,6 +14,13 @@
   X(PROGRAM_LEDGER, rows_ledger)                                                                   \
   X(PROGRAM_OBSERVE, rows_observe)
 
+/* Programs over points, likewise. */
+#define POINT_PROGRAMS(X)                                                                          \
+  X(PROGRAM_STEP, point_step)                                                                      \
+  X(PROGRAM_LEDGER, point_ledger)                                                                  \
+  X(PROGRAM_OBSERVE, point_observe)                                                                \
+  X(PROGRAM_TANGENT, point_tangent)
+
 typedef enum program_task {
   PROGRAM_STEP, /* forces and new fields */
   /* The same, and the energies that are lost; of families the latter: passes that follow those of a
@@ -22,7 +29,7 @@ typedef enum program_task {
   PROGRAM_OBSERVE,     /* stored energy and outputs */
   PROGRAM_FORCE_STATE, /* of families: new fields and force states, family by family */
   PROGRAM_STATES,      /* a bond alone, state by state (pl_states) */
-  PROGRAM_TANGENT,     /* its derivatives */
+  PROGRAM_TANGENT,     /* its derivatives; of points the tangent */
   PROGRAM_BOUNDS,      /* of parameters */
   PROGRAM_COUNT
 } program_task;
@@ -51,7 +58,8 @@ typedef enum kernel_form {
   FORM_LOOPS,  /* families by loops over particles and neighbours, any number of these */
   /* One loop over the particles, neighbour by neighbour in its body: law->neighbours of them */
   FORM_UNROLLED,
-  FORM_PAIRS /* loops over bonds that add to both ends (SHARE_PAIRS) */
+  FORM_PAIRS, /* loops over bonds that add to both ends (SHARE_PAIRS) */
+  FORM_POINTS /* loops over points of a continuum */
 } kernel_form;
 
 typedef struct kernel_plan {
@@ -76,14 +84,19 @@ typedef struct kernel_plan {
   bool reads_shape;         /* inverse shape matrices */
   bool reads_share;         /* shares of particles */
   bool reads_mass;          /* and masses */
-  bool stores, reads_rates; /* pl_law */
+  bool stores, reads_rates, linear; /* pl_law */
   arena *memory;
 } kernel_plan;
 
-/* PL_CENTRAL, PL_MICROPOLAR over strips; else PL_STATE, of families. */
+/* PL_CONTINUUM over points; PL_CENTRAL, PL_MICROPOLAR over strips; else PL_STATE, of families. */
 static inline int plan_kind(const kernel_plan *p) {
+  if (p->form == FORM_POINTS) return PL_CONTINUUM;
   if (p->form != FORM_STRIPS) return PL_STATE;
   return law_kind_turns(p->law->tree->law) ? PL_MICROPOLAR : PL_CENTRAL;
+}
+
+static inline bool plan_is_of_families(const kernel_plan *p) {
+  return p->form != FORM_STRIPS && p->form != FORM_POINTS;
 }
 
 /* The segment of a program that has but one. */

@@ -83,13 +83,13 @@ ir_cost plan_cost(const kernel_plan *p, const segment *a, placement at_least) {
 
 /* Of families what is done once for both ends counts half. */
 void plan_count_cost(kernel_plan *p) {
-  const bool strips = p->form == FORM_STRIPS;
+  const bool strips = p->form == FORM_STRIPS || p->form == FORM_POINTS;
   const kernel_program *step = &p->programs[PROGRAM_STEP];
   for (int k = 0; k < step->pass_count; k++)
     for (int s = 0; s < step->passes[k].segment_count; s++) {
       const segment *a = &step->passes[k].segments[s];
       if (a->kind == OVER_PARTICLES) continue;
-      const ir_cost cost = plan_cost(p, a, strips ? ON_PARTICLE : ON_BOND);
+      const ir_cost cost = plan_cost(p, a, strips ? ON_POINT : ON_BOND);
       const double part = strips || a->kind == OVER_NEIGHBOURS ? 1 : 0.5;
       p->flops_per_bond += part * (cost.additions + cost.multiplications + cost.selects);
       p->divisions_per_bond += part * cost.divisions;

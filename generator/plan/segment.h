@@ -12,6 +12,7 @@ enum { FAMILY_CHUNK = 64 };
 
 typedef enum segment_kind {
   OVER_BODY, /* once */
+  OVER_POINTS, /* of a continuum */
   OVER_PARTICLES,
   OVER_NEIGHBOURS,
   OVER_BONDS, /* of a strip, or those that the particles of a chunk own; single states */
@@ -28,11 +29,13 @@ static inline segment_kind segment_kind_at(placement on) {
    loss, gets nothing; a field of a strip stays; fields toward neighbours, forces and what is
    observed are 0. */
 typedef enum segment_target {
-  TO_FORCE,            /* force[index] = node, or force_state[index][neighbour] */
+  /* force[index] = node, or force_state[index][neighbour]; of points stress[index] */
+  TO_FORCE,
   TO_FIELD,            /* field[index] = node, of families new_field */
   TO_DISSIPATED_STATE, /* dissipated_state += node; of families lost[index] */
   TO_DISSIPATED_RATE,  /* dissipated_rate += node; the same */
   TO_OBSERVED,         /* observed[index] = node */
+  TO_TANGENT,          /* of points: tangent[index] = node */
   TO_OUT,              /* out[index] = node, behind these new_field: of single states */
   TO_LOWER,
   TO_UPPER,    /* lower[index], upper[index] = node; infinite where there is no bound */

@@ -50,6 +50,7 @@
   X(OVER_STRIP, "const pl_strip *strip")                                                           \
   X(OVER_PART_OF_STRIP, "const pl_strip *strip, long first, long last,\n    "                      \
     "double *const *lent, double (*kept)[$1]")                                                     \
+  X(OVER_POINTS, "const pl_points *points")                                                        \
   X(OVER_FAMILY, "const pl_family *family")                                                        \
   X(UNIFORM, "uniforms[$1]")                                                                       \
   X(INPUT_ARRAY, "at_$1")                                                                          \
@@ -73,6 +74,21 @@
   X(STATE_FIELD, "given->field[$1]")                                                              \
   X(STATE_RESULT, "given->out[$1]")                                                               \
   X(STATE_NEW_FIELD, "given->new_field[$1]")                                                      \
+                                                                                                   \
+  /* --- points of a continuum --- */                                                              \
+  X(POINTS_HEAD, "  (void)law, (void)uniforms;\n"                                                  \
+    "  const long count = points->count / PL_LANES * PL_LANES;\n")                                 \
+  X(POINT_STRAIN, "points->strain[$1]")                                                            \
+  X(POINT_RATE, "points->strain_rate[$1]")                                                         \
+  X(POINT_SIZE, "points->cell_size")                                                               \
+  X(POINT_PARAMETER, "points->parameter[$1]")                                                      \
+  X(POINT_TIME_STEP, "points->time_step")                                                          \
+  X(POINT_OLD_FIELD, "points->old_field[$1]")                                                      \
+  X(POINT_NEW_FIELD, "points->new_field[$1]")                                                      \
+  X(POINT_STRESS, "points->stress[$1]")                                                            \
+  X(POINT_TANGENT, "points->tangent[$1]")                                                          \
+  X(POINT_OBSERVED, "points->observed[$1]")                                                        \
+  X(POINT_LOST, "points->lost[$1]")                                                                \
                                                                                                    \
   /* --- strips of bonds --- */                                                                    \
   X(STRIP_HEAD, "  (void)law, (void)uniforms;\n"                                                   \

@@ -1,0 +1,357 @@
+#include "generator/plan/plan_points.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/arena.h"
+#include "generator/ir/derive.h"
+#include "generator/ir/rewrite.h"
+#include "generator/lower/lower_inputs.h"
+#include "generator/lower/lowering.h"
+#include "generator/lower/point_inputs.h"
+#include "generator/plan/plan_roots.h"
+
+enum { MOST_STRAINS = PL_MAX_STRAINS, MOST_TANGENTS = MOST_STRAINS * MOST_STRAINS };
+
+typedef struct planner {
+  kernel_plan *plan;
+  ir *graph;
+  int strains;                                /* 3 in the plane, 6 in space */
+  ir_node strain[MOST_STRAINS], rate[MOST_STRAINS]; /* what a kernel reads */
+  ir_node z, z_rate;                          /* along z, in the plane; else IR_NONE */
+  lowered_law step, frozen;
+  ir_node tangent[MOST_TANGENTS];
+} planner;
+
+/* --- the third direction ---------------------------------------------------------------------- */
+
+/* All that a law gives, as places that may be changed. */
+static int all_of(const planner *p, lowered_law *of, ir_node **all) {
+  const law *l = p->plan->law;
+  int count = lowered_forces(of, all);
+  if (of->W != IR_NONE) all[count++] = &of->W;
+  for (int k = 0; k < l->fields.count; k++)
+    all[count++] = &of->fields[k];
+  for (int k = 0; k < l->outputs.count; k++)
+    all[count++] = &of->outputs[k];
+  return count;
+}
+
+static ir_node **places_for(const planner *p) {
+  const law *l = p->plan->law;
+  return must_alloc(((size_t)LOWERED_FORCES + 2 + (size_t)l->fields.count +
+                     (size_t)l->outputs.count) * sizeof(ir_node *));
+}
+
+/* z and its rate are these. */
+static void settle(planner *p, lowered_law *of, ir_node z, ir_node z_rate) {
+  const ir_node from[] = {p->z, p->z_rate}, to[] = {z, z_rate};
+  ir_node **all = places_for(p);
+  const int count = all_of(p, of, all);
+  for (int k = 0; k < count; k++)
+    ir_substitute(p->graph, all[k], 1, from, to, 2, all[k]);
+  free(all);
+}
+
+/* The root of sigma_zz(z) by Newton's method from 0; z itself counts for nothing where sigma_zz does
+   not depend on it. */
+static ir_node strain_without_stress(planner *p, ir_node sigma_zz, diagnostics *d) {
+  enum { NEWTON_STEPS = 8 };
+  ir *g = p->graph;
+  const ir_node slope = ir_derivative(g, sigma_zz, p->z), zero = ir_constant(g, 0);
+  if (ir_is_number(g, slope, 0)) return zero;
+  const bool affine = !rewrite_depends(g, &slope, 1, &p->z, 1);
+  const ir_node next = ir_sub(g, p->z, ir_div(g, sigma_zz, slope));
+  ir_node found = zero;
+  for (int k = 0; k < (affine ? 1 : NEWTON_STEPS); k++) {
+    ir_substitute(g, &next, 1, &p->z, &found, 1, &found);
+    if (ir_count(g) <= MOST_NODES) continue;
+    diag_report(d, DIAG_NOT_SUPPORTED, p->plan->law->tree->name_where,
+                "with its strain along z written out the law is too large to compile in plane "
+                "stress");
+    return IR_NONE;
+  }
+  return found;
+}
+
+/* How z follows a strain of the plane where sigma_zz stays: -D_zb/D_zz. */
+static ir_node follows(planner *p, ir_node sigma_zz, ir_node strain) {
+  ir *g = p->graph;
+  const ir_node by = ir_derivative(g, sigma_zz, strain), slope = ir_derivative(g, sigma_zz, p->z);
+  if (ir_is_number(g, slope, 0) || ir_is_number(g, by, 0)) return ir_constant(g, 0);
+  return ir_neg(g, ir_div(g, by, slope));
+}
+
+static ir_node rate_along_z(planner *p, ir_node sigma_zz) {
+  ir *g = p->graph;
+  ir_node sum = ir_constant(g, 0);
+  for (int k = 0; k < p->strains; k++)
+    sum = ir_add(g, sum, ir_mul(g, follows(p, sigma_zz, p->strain[k]), p->rate[k]));
+  return sum;
+}
+
+/* The stress by the strain, z being free to follow in plane stress. */
+static void find_tangent(planner *p, bool z_is_free) {
+  ir *g = p->graph;
+  for (int a = 0; a < p->strains; a++)
+    for (int b = 0; b < p->strains; b++) {
+      const ir_node stress = p->step.sigma[point_component(p->plan->dimensions, a)];
+      ir_node D = ir_derivative(g, stress, p->strain[b]);
+      if (z_is_free)
+        D = ir_add(g, D, ir_mul(g, ir_derivative(g, stress, p->z),
+                                follows(p, p->step.sigma[TENSOR_ZZ], p->strain[b])));
+      const bool shear = point_component(p->plan->dimensions, b) >= TENSOR_XY;
+      p->tangent[a * p->strains + b] = shear ? half(g, D) : D;
+    }
+}
+
+static bool settle_plane(planner *p, diagnostics *d) {
+  ir *g = p->graph;
+  const bool is_free = p->plan->law->setting == SETTING_PLANE_STRESS;
+  const ir_node zero = ir_constant(g, 0);
+  lowered_law *both[] = {&p->step, &p->frozen};
+  find_tangent(p, is_free);
+  for (int k = 0; k < 2; k++) {
+    ir_node z = zero, z_rate = zero;
+    if (is_free) {
+      const ir_node sigma_zz = both[k]->sigma[TENSOR_ZZ];
+      z = strain_without_stress(p, sigma_zz, d);
+      if (z == IR_NONE) return false;
+      z_rate = rate_along_z(p, sigma_zz);
+      ir_substitute(g, &z_rate, 1, &p->z, &z, 1, &z_rate);
+    }
+    if (k == 0) {
+      const ir_node from[] = {p->z, p->z_rate}, to[] = {z, z_rate};
+      ir_substitute(g, p->tangent, p->strains * p->strains, from, to, 2, p->tangent);
+    }
+    settle(p, both[k], z, z_rate);
+    if (is_free) both[k]->sigma[TENSOR_ZZ] = zero;
+  }
+  return true;
+}
+
+/* --- energies --------------------------------------------------------------------------------- */
+
+/* stress : strain, of what a kernel reads; shears count twice. */
+static ir_node contract(planner *p, const ir_node *stress, const ir_node *strain) {
+  ir *g = p->graph;
+  ir_node sum = IR_NONE;
+  for (int k = 0; k < p->strains; k++) {
+    ir_node term = ir_mul(g, stress[k], strain[k]);
+    if (point_component(p->plan->dimensions, k) >= TENSOR_XY)
+      term = ir_mul(g, ir_constant(g, 2), term);
+    sum = sum == IR_NONE ? term : ir_add(g, sum, term);
+  }
+  return sum;
+}
+
+/* Stresses that a kernel gives with the fields at hand; at zero rate. */
+static void frozen_stress(planner *p, bool at_rest, ir_node *stress) {
+  for (int k = 0; k < p->strains; k++)
+    stress[k] = p->frozen.sigma[point_component(p->plan->dimensions, k)];
+  if (at_rest) rewrite_zero(p->graph, stress, p->strains, p->rate, p->strains, stress);
+}
+
+static ir_node path_energy(planner *p, const ir_node *stress) {
+  static const double at[2] = {0.86113631159405257522, 0.33998104358485626480};
+  static const double weight[2] = {0.34785484513745385737, 0.65214515486254614263};
+  ir *g = p->graph;
+  ir_node sum = IR_NONE;
+  for (int point = 0; point < 4; point++) {
+    const double sign = point < 2 ? -1 : 1;
+    const ir_node fraction = ir_constant(g, 0.5 * (1 + sign * at[point % 2]));
+    ir_node there[MOST_STRAINS], here[MOST_STRAINS];
+    for (int k = 0; k < p->strains; k++)
+      there[k] = ir_mul(g, fraction, p->strain[k]);
+    ir_substitute(g, stress, p->strains, p->strain, there, p->strains, here);
+    const ir_node part = ir_mul(g, ir_constant(g, 0.5 * weight[point % 2]),
+                                contract(p, here, p->strain));
+    sum = sum == IR_NONE ? part : ir_add(g, sum, part);
+  }
+  return sum;
+}
+
+static ir_node stored_energy(planner *p) {
+  ir *g = p->graph;
+  if (p->frozen.W != IR_NONE) {
+    ir_node W;
+    rewrite_zero(g, &p->frozen.W, 1, p->rate, p->strains, &W);
+    return W;
+  }
+  ir_node stress[MOST_STRAINS];
+  frozen_stress(p, true, stress);
+  for (int k = 0; k < p->strains; k++) {
+    const double degree = rewrite_degree(g, stress[k], p->strain, p->strains);
+    if (degree != 1 && degree != REWRITE_ZERO) return path_energy(p, stress);
+  }
+  return half(g, contract(p, stress, p->strain));
+}
+
+/* What the stress does that vanishes at zero rate: W/m^3. */
+static ir_node rate_power(planner *p) {
+  ir *g = p->graph;
+  ir_node whole[MOST_STRAINS], still[MOST_STRAINS];
+  frozen_stress(p, false, whole);
+  frozen_stress(p, true, still);
+  if (!rewrite_depends(g, whole, p->strains, p->rate, p->strains)) return ir_constant(g, 0);
+  for (int k = 0; k < p->strains; k++)
+    whole[k] = ir_sub(g, whole[k], still[k]);
+  return contract(p, whole, p->rate);
+}
+
+/* --- programs --------------------------------------------------------------------------------- */
+
+static void want(planner *p, segment *a, ir_node node, segment_target target, int index) {
+  segment_add(p->plan->memory, a,
+              (segment_root){.node = node, .target = target, .over = a->kind, .index = index});
+}
+
+typedef struct seen_points {
+  ir_node stored, rate_power;
+} seen_points;
+
+static void plan_step(planner *p, const seen_points *t, segment *a) {
+  (void)t;
+  for (int k = 0; k < PL_STRESSES(p->plan->dimensions); k++)
+    want(p, a, p->step.sigma[point_component(p->plan->dimensions, k)], TO_FORCE, k);
+  for (int k = 0; k < p->plan->law->fields.count; k++)
+    want(p, a, p->step.fields[k], TO_FIELD, k);
+}
+
+static ir_node with_new_fields(planner *p, ir_node n) {
+  const int fields = p->plan->law->fields.count;
+  ir_node *at_hand = must_alloc(((size_t)fields + 1) * sizeof *at_hand), result;
+  for (int k = 0; k < fields; k++)
+    at_hand[k] = lower_field(p->graph, p->plan->law, k);
+  ir_substitute(p->graph, &n, 1, at_hand, p->step.fields, fields, &result);
+  free(at_hand);
+  return result;
+}
+
+/* Lost to states: what is stored with the old fields less what is with the new ones, both at the
+   present strain. Lost to rates: their power over the step. */
+static void plan_ledger(planner *p, const seen_points *t, segment *a) {
+  ir *g = p->graph;
+  plan_step(p, t, a);
+  const ir_node kept = with_new_fields(p, t->stored), zero = ir_constant(g, 0);
+  want(p, a, kept == t->stored ? zero : ir_sub(g, t->stored, kept), TO_DISSIPATED_STATE,
+       PL_LOST_TO_STATES);
+  want(p, a,
+       ir_mul(g, with_new_fields(p, t->rate_power), kinematics_input(g, ENDS_TIME_STEP)),
+       TO_DISSIPATED_RATE, PL_LOST_TO_RATES);
+}
+
+static void plan_observe(planner *p, const seen_points *t, segment *a) {
+  want(p, a, t->stored, TO_OBSERVED, 0);
+  for (int k = 0; k < p->plan->law->outputs.count; k++)
+    want(p, a, p->frozen.outputs[k], TO_OBSERVED, 1 + k);
+}
+
+static void plan_tangent(planner *p, const seen_points *t, segment *a) {
+  (void)t;
+  for (int k = 0; k < p->strains * p->strains; k++)
+    want(p, a, p->tangent[k], TO_TANGENT, k);
+}
+
+/* --- the plan --------------------------------------------------------------------------------- */
+
+/* Everything at once, so that all programs compute a value in the same way. */
+static void improve(planner *p, seen_points *t) {
+  ir *g = p->graph;
+  const law *l = p->plan->law;
+  const size_t most = (size_t)(2 * (LOWERED_FORCES + 1 + l->fields.count + l->outputs.count) +
+                               MOST_TANGENTS + 2);
+  ir_node **all = must_alloc(most * sizeof *all), *nodes = must_alloc(most * sizeof *nodes);
+  int count = all_of(p, &p->step, all);
+  count += all_of(p, &p->frozen, all + count);
+  for (int k = 0; k < p->strains * p->strains; k++)
+    all[count++] = &p->tangent[k];
+  all[count++] = &t->stored;
+  all[count++] = &t->rate_power;
+  for (int k = 0; k < count; k++)
+    nodes[k] = *all[k];
+  rewrite_reciprocals(g, nodes, count, nodes);
+  rewrite_factors(g, nodes, count, nodes);
+  rewrite_fused(g, nodes, count, nodes);
+  for (int k = 0; k < count; k++)
+    *all[k] = nodes[k];
+  free(all);
+  free(nodes);
+}
+
+/* Neither strain, fields, rates nor the size of a cell are in the tangent, and without strain there
+   is no stress. */
+static bool is_linear(planner *p) {
+  ir *g = p->graph;
+  const int fields = p->plan->law->fields.count;
+  if (fields > 0) return false;
+  for (int k = 0; k < p->strains * p->strains; k++)
+    if (ir_place(g, p->tangent[k]) > ON_BODY &&
+        !(p->plan->variation.varying_count && ir_place(g, p->tangent[k]) == ON_POINT))
+      return false;
+  ir_node moving[2 * MOST_STRAINS + 1];
+  int count = 0;
+  for (int k = 0; k < p->strains; k++) {
+    moving[count++] = p->strain[k];
+    moving[count++] = p->rate[k];
+  }
+  moving[count++] = point_input_node(g, POINT_CELL_SIZE);
+  if (rewrite_depends(g, p->tangent, p->strains * p->strains, moving, count)) return false;
+  for (int k = 0; k < p->strains; k++) {
+    ir_node rest = p->step.sigma[point_component(p->plan->dimensions, k)];
+    if (rewrite_depends(g, &rest, 1, p->rate, p->strains)) return false;
+    rewrite_zero(g, &rest, 1, p->strain, p->strains, &rest);
+    if (!ir_is_number(g, rest, 0)) return false;
+  }
+  return true;
+}
+
+static bool reads_rates(planner *p) {
+  ir_node **all = places_for(p);
+  const int count = all_of(p, &p->step, all);
+  bool found = false;
+  for (int k = 0; k < count && !found; k++)
+    found = rewrite_depends(p->graph, all[k], 1, p->rate, p->strains);
+  free(all);
+  return found;
+}
+
+static void point_at_inputs(planner *p) {
+  const int dimensions = p->plan->dimensions;
+  ir *g = p->graph;
+  p->strains = PL_STRAINS(dimensions);
+  for (int k = 0; k < p->strains; k++) {
+    p->strain[k] = point_input_node(g, POINT_STRAIN + point_component(dimensions, k));
+    p->rate[k] = point_input_node(g, POINT_STRAIN_RATE + point_component(dimensions, k));
+  }
+  if (dimensions == 3) return;
+  p->z = point_input_node(g, POINT_STRAIN + TENSOR_ZZ);
+  p->z_rate = point_input_node(g, POINT_STRAIN_RATE + TENSOR_ZZ);
+}
+
+bool plan_points(kernel_plan *plan, diagnostics *d) {
+  planner p = {.plan = plan, .graph = plan->graph, .z = IR_NONE, .z_rate = IR_NONE};
+  const law_variation *v = &plan->variation;
+  if (!lower_law_varying(plan->law, plan->graph, LOWER_STEP, v, plan->memory, &p.step, d) ||
+      !lower_law_varying(plan->law, plan->graph, LOWER_FROZEN, v, plan->memory, &p.frozen, d))
+    return false;
+  point_at_inputs(&p);
+  if (plan->dimensions == 3)
+    find_tangent(&p, false);
+  else if (!settle_plane(&p, d))
+    return false;
+  plan->linear = is_linear(&p);
+  plan->stores = plan->law->nonconservative == NULL;
+  plan->reads_rates = reads_rates(&p);
+  seen_points seen = {stored_energy(&p), rate_power(&p)};
+  improve(&p, &seen);
+  static void (*const program[])(planner *, const seen_points *, segment *) = {
+      [PROGRAM_STEP] = plan_step,
+      [PROGRAM_LEDGER] = plan_ledger,
+      [PROGRAM_OBSERVE] = plan_observe,
+      [PROGRAM_TANGENT] = plan_tangent};
+#define X(task, member) program[task](&p, &seen, plan_single(plan, task, #member, OVER_POINTS));
+  POINT_PROGRAMS(X)
+#undef X
+  return true;
+}

@@ -1,0 +1,20 @@
+/* The programs of a law of a continuum: stress and new fields of points, their energies, the
+   tangent; and what the setting makes of the third direction.
+
+       plane strain   strain_zz = 0
+       plane stress   strain_zz such that sigma_zz = 0, by Newton's method:
+                      z <- z - sigma_zz/(d sigma_zz/dz), once where sigma_zz is affine in z
+                      tangent D_ab - D_az D_zb/D_zz, rate of z: -sum_b D_zb/D_zz rate_b
+
+   A law that gives no energy stores sigma : strain/2 where the stress is homogeneous of degree one in
+   the strain (linear, also piecewise); else the work of the straight path from rest (Gauss, 4
+   points: exact for stresses up to degree 7). */
+#ifndef PERILAT_GENERATOR_PLAN_POINTS_H
+#define PERILAT_GENERATOR_PLAN_POINTS_H
+
+#include "generator/plan/plan.h"
+
+/* Fills in a plan of points. False after a diagnostic. */
+bool plan_points(kernel_plan *plan, diagnostics *d);
+
+#endif

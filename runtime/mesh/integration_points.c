@@ -1,0 +1,88 @@
+#include "runtime/mesh/integration_points.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
+
+/* Legendre's polynomial of the order and its derivative. */
+static double legendre(int order, double x, double *slope) {
+  double before = 1, now = x;
+  for (int k = 2; k <= order; k++) {
+    const double next = ((2 * k - 1) * x * now - (k - 1) * before) / k;
+    before = now;
+    now = next;
+  }
+  *slope = order * (x * now - before) / (x * x - 1);
+  return now;
+}
+
+void gauss_rule(int order, double at[MESH_MOST_GAUSS], double weight[MESH_MOST_GAUSS]) {
+  enum { NEWTON_STEPS = 8 };
+  for (int k = 0; k < order; k++) {
+    double x = -pl_cos(3.14159265358979323846 * (k + 0.75) / (order + 0.5)), slope = 1;
+    if (order == 1) x = 0;
+    for (int step = 0; step < NEWTON_STEPS && order > 1; step++) {
+      const double value = legendre(order, x, &slope);
+      x -= value / slope;
+    }
+    if (order > 1) legendre(order, x, &slope);
+    at[k] = x;
+    weight[k] = order == 1 ? 2 : 2 / ((1 - x * x) * slope * slope);
+  }
+}
+
+static void rule_of(const mesh *m, int cell, int *order, int *parts) {
+  const bool element = m->cell[cell] == CELL_ELEMENT;
+  *order = element ? m->element_gauss[cell] : m->gauss;
+  *parts = element ? 1 : m->gauss_parts;
+}
+
+static int points_of(const mesh *m, int cell) {
+  int order, parts;
+  if (m->cell[cell] == CELL_ABSENT) return 0;
+  rule_of(m, cell, &order, &parts);
+  return order * order * parts * parts;
+}
+
+static void place_points(integration_points *p, const mesh *m, int cell, int first) {
+  const int i = cell % (m->nodes[0] - 1), j = cell / (m->nodes[0] - 1);
+  int order, parts, at = first;
+  double place[MESH_MOST_GAUSS], weight[MESH_MOST_GAUSS];
+  rule_of(m, cell, &order, &parts);
+  gauss_rule(order, place, weight);
+  const double size[2] = {m->spacing[0] / parts, m->spacing[1] / parts};
+  for (int up = 0; up < parts; up++)
+    for (int along = 0; along < parts; along++)
+      for (int b = 0; b < order; b++)
+        for (int a = 0; a < order; a++, at++) {
+          p->at[at][0] = mesh_at(m, 0, i) + size[0] * (along + 0.5 * (1 + place[a]));
+          p->at[at][1] = mesh_at(m, 1, j) + size[1] * (up + 0.5 * (1 + place[b]));
+          p->area[at] = 0.25 * weight[a] * weight[b] * size[0] * size[1];
+          p->cell[at] = cell;
+        }
+}
+
+void integration_points_open(integration_points *p, const mesh *m) {
+  const int cells = mesh_cell_count(m);
+  *p = (integration_points){.first = must_alloc(((size_t)cells + 1) * sizeof *p->first)};
+  for (int c = 0; c < cells; c++) {
+    p->first[c] = p->count;
+    p->count += points_of(m, c);
+  }
+  p->first[cells] = p->count;
+  const size_t count = (size_t)p->count + 1;
+  p->at = must_alloc(count * sizeof *p->at);
+  p->area = must_alloc(count * sizeof *p->area);
+  p->cell = must_alloc(count * sizeof *p->cell);
+  for (int c = 0; c < cells; c++)
+    if (p->first[c + 1] > p->first[c]) place_points(p, m, c, p->first[c]);
+}
+
+void integration_points_close(integration_points *p) {
+  free(p->at);
+  free(p->area);
+  free(p->cell);
+  free(p->first);
+}

@@ -1,0 +1,64 @@
+#include "runtime/mesh/mesh.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/arena.h"
+
+void mesh_open(mesh *m, const int nodes[2], const double corner[2], const double size[2],
+               double thickness, double support) {
+  *m = (mesh){.thickness = thickness, .support = support, .gauss = 4, .gauss_parts = 1};
+  for (int a = 0; a < 2; a++) {
+    m->nodes[a] = nodes[a];
+    m->corner[a] = corner[a];
+    m->spacing[a] = size[a] / (nodes[a] - 1);
+  }
+  const size_t count = (size_t)mesh_node_count(m), cells = (size_t)mesh_cell_count(m);
+  m->element_free = must_alloc(count);
+  m->moving = must_calloc(count, 1);
+  m->cell = must_alloc(cells);
+  m->element_gauss = must_alloc(cells);
+  memset(m->element_free, 1, count);
+  memset(m->cell, CELL_ELEMENT_FREE, cells);
+  memset(m->element_gauss, 2, cells);
+  crack_lines_open(&m->cracks);
+  mesh_settle(m);
+}
+
+void mesh_close(mesh *m) {
+  free(m->element_free);
+  free(m->moving);
+  free(m->cell);
+  free(m->element_gauss);
+  crack_lines_close(&m->cracks);
+}
+
+void mesh_settle(mesh *m) {
+  int corner[4];
+  memset(m->moving, 0, (size_t)mesh_node_count(m));
+  for (int c = 0; c < mesh_cell_count(m); c++) {
+    if (m->cell[c] == CELL_ABSENT) continue;
+    mesh_corners(m, c, corner);
+    int free_corners = 0;
+    for (int k = 0; k < 4; k++)
+      free_corners += m->element_free[corner[k]];
+    m->cell[c] = (unsigned char)(free_corners == 0   ? CELL_ELEMENT
+                                 : free_corners == 4 ? CELL_ELEMENT_FREE
+                                                     : CELL_INTERFACE);
+    for (int k = 0; k < 4 && free_corners > 0; k++)
+      m->moving[corner[k]] = 1;
+  }
+}
+
+int mesh_cell_of(const mesh *m, const double at[2]) {
+  int place[2];
+  for (int a = 0; a < 2; a++) {
+    const double cells = m->nodes[a] - 1, u = (at[a] - m->corner[a]) / m->spacing[a];
+    if (!(u >= -1e-9 * cells && u <= cells * (1 + 1e-9))) return -1;
+    place[a] = (int)floor(u);
+    if (place[a] < 0) place[a] = 0;
+    if (place[a] > m->nodes[a] - 2) place[a] = m->nodes[a] - 2;
+  }
+  return mesh_cell_at(m, place[0], place[1]);
+}

@@ -1,0 +1,88 @@
+/* This room: meshes of nodes on a regular grid in the plane, what acts at a point of them, cracks
+   that hide nodes from points, points of integration. It knows no deck and no law.
+
+   A mesh is nodes[0] x nodes[1] nodes at equal spacings; node (i, j) has number j*nodes[0] + i, the
+   cell to its upper right number j*(nodes[0] - 1) + i. Each node is one of finite elements or
+   element-free, and a cell is what its corners are:
+
+       o---o---o---o---x---x      o  finite elements    x  element-free
+       | F | F | F | I | E |      F  bilinear element
+       o---o---o---o---x---x      I  interface, blended (shape_functions.h)
+       | F | F | I | E | E |      E  element-free cell
+       o---o---o---x---x---x                                                                     */
+#ifndef PERILAT_RUNTIME_MESH_H
+#define PERILAT_RUNTIME_MESH_H
+
+#include <stdbool.h>
+
+#include "dsl/base/c_linkage.h"
+#include "runtime/mesh/crack_lines.h"
+
+C_LINKAGE_BEGIN
+
+enum { MESH_MOST_GAUSS = 6 };
+
+typedef enum mesh_cell { CELL_ABSENT, CELL_ELEMENT, CELL_INTERFACE, CELL_ELEMENT_FREE } mesh_cell;
+
+typedef struct mesh {
+  int nodes[2];
+  double corner[2], spacing[2]; /* m */
+  double thickness;             /* m */
+  double support;   /* d_max: half width of a node's support, in spacings; 1.5 to 5.5 */
+  int gauss;        /* background rule of element-free and interface cells: gauss x gauss points */
+  int gauss_parts;  /* in each of gauss_parts x gauss_parts equal parts of the cell */
+  bool smooth_ramp; /* blending by 3R^2 - 2R^3 in place of R */
+  /* Radius about the nearest live tip (m) within which sqrt(r) is in the basis; 0: nowhere */
+  double enriched;
+  crack_lines cracks;
+  unsigned char *element_free; /* [nodes] 1: element-free, 0: of finite elements */
+  unsigned char *moving;       /* [nodes] 1: has a moving least squares function */
+  unsigned char *cell;         /* [cells] mesh_cell */
+  unsigned char *element_gauss; /* [cells] rule of a bilinear element: 1 or 2 */
+} mesh;
+
+/* A mesh all of whose nodes are element-free, with 4 x 4 points a cell, without cracks. Memory is
+   the mesh's. */
+void mesh_open(mesh *m, const int nodes[2], const double corner[2], const double size[2],
+               double thickness, double support);
+void mesh_close(mesh *m);
+/* Once nodes are flagged: which cells are what, and which nodes have moving least squares. Absent
+   cells stay so. */
+void mesh_settle(mesh *m);
+
+static inline int mesh_node_count(const mesh *m) {
+  return m->nodes[0] * m->nodes[1];
+}
+static inline int mesh_cell_count(const mesh *m) {
+  return (m->nodes[0] - 1) * (m->nodes[1] - 1);
+}
+static inline int mesh_node(const mesh *m, int i, int j) {
+  return j * m->nodes[0] + i;
+}
+static inline double mesh_at(const mesh *m, int axis, int k) {
+  return m->corner[axis] + m->spacing[axis] * k;
+}
+/* Where node n stands. */
+static inline void mesh_place(const mesh *m, int n, double at[2]) {
+  at[0] = mesh_at(m, 0, n % m->nodes[0]);
+  at[1] = mesh_at(m, 1, n / m->nodes[0]);
+}
+/* Number of the cell at place (i, j), and its corners: lower left and right, upper left and right.
+   */
+static inline int mesh_cell_at(const mesh *m, int i, int j) {
+  return j * (m->nodes[0] - 1) + i;
+}
+static inline void mesh_corners(const mesh *m, int cell, int corner[4]) {
+  const int i = cell % (m->nodes[0] - 1), j = cell / (m->nodes[0] - 1);
+  corner[0] = mesh_node(m, i, j);
+  corner[1] = corner[0] + 1;
+  corner[2] = corner[0] + m->nodes[0];
+  corner[3] = corner[2] + 1;
+}
+/* The cell that holds a point (on a border: the one to its upper right, at the mesh's edge the
+   last); -1 outside the mesh. */
+int mesh_cell_of(const mesh *m, const double at[2]);
+
+C_LINKAGE_END
+
+#endif
