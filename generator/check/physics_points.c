@@ -172,8 +172,8 @@ static double largest(const double *v, int count) {
 /* --- what is said ----------------------------------------------------------------------------- */
 
 static const char *component_name(const point *p, int k) {
-  static const char *const plane[] = {"xx", "yy", "xy"},
-                           *const space[] = {"xx", "yy", "zz", "xy", "yz", "xz"};
+  static const char *const plane[] = {"xx", "yy", "xy"}, *const space[] = {"xx", "yy", "zz",
+                                                                           "xy", "yz", "xz"};
   return p->strains == 3 ? plane[k] : space[k];
 }
 
@@ -188,8 +188,8 @@ static void say(point *p, diag_code code, const double *strain, const char *form
   va_start(values, format);
   vsnprintf(message, sizeof message, format, values);
   va_end(values);
-  const symbol *s = p->law->results[RESULT_SIGMA] ? p->law->results[RESULT_SIGMA]
-                                                  : p->law->results[RESULT_W];
+  const symbol *s =
+      p->law->results[RESULT_SIGMA] ? p->law->results[RESULT_SIGMA] : p->law->results[RESULT_W];
   diag_report(p->said, code, s->rule->where, "%s", message);
   for (int k = 0; strain && k < p->strains; k++) {
     const size_t used = strlen(state);
@@ -233,8 +233,7 @@ static double least_stiffness(const point *p) {
   double matrix[EIGEN_MOST][EIGEN_MOST], value[EIGEN_MOST], vectors[EIGEN_MOST][EIGEN_MOST];
   for (int a = 0; a < p->strains; a++)
     for (int b = 0; b < p->strains; b++)
-      matrix[a][b] =
-          0.5 * (p->tangent[a * p->strains + b][0] + p->tangent[b * p->strains + a][0]);
+      matrix[a][b] = 0.5 * (p->tangent[a * p->strains + b][0] + p->tangent[b * p->strains + a][0]);
   eigen_symmetric(p->strains, matrix, value, vectors);
   double least = value[0];
   for (int k = 1; k < p->strains; k++)
@@ -305,7 +304,7 @@ static void check_symmetry(point *p) {
   for (int a = 0; a < p->strains; a++)
     for (int b = 0; b < a; b++)
       most = pl_fmax(most,
-                  fabs(p->tangent[a * p->strains + b][0] - p->tangent[b * p->strains + a][0]));
+                     fabs(p->tangent[a * p->strains + b][0] - p->tangent[b * p->strains + a][0]));
   if (!(most <= SYMMETRY_TOLERANCE * scale))
     say(p, DIAG_STORED_ENERGY, strain,
         "the stress has no energy: its tangent is not symmetric, by %.3g of its largest entry",
@@ -381,13 +380,14 @@ static void check_paths(point *p) {
   const bool conserves = p->law->fields.count == 0 && !p->kernel->reads_rates;
   if (!p->law->nonconservative && conserves && fabs(total) > 1e-3 * size)
     say(p, DIAG_CLOSED_PATH, corner[1],
-        "around a closed path of strain the point %s %.3g of the work", total < 0 ? "gains" : "loses",
-        fabs(total) / size);
+        "around a closed path of strain the point %s %.3g of the work",
+        total < 0 ? "gains" : "loses", fabs(total) / size);
   if (!conserves && total < -1e-3 * size)
-    say(p, DIAG_CLOSED_PATH, corner[1], "around a closed path of strain the point gains %.3g of the work",
-        -total / size);
+    say(p, DIAG_CLOSED_PATH, corner[1],
+        "around a closed path of strain the point gains %.3g of the work", -total / size);
   if (!p->law->nonconservative && lost_least < -PATH_TOLERANCE * size / (CORNERS * STEPS))
-    say(p, DIAG_DISSIPATION, worst, "a step of strain loses a negative energy, %.3g J/m^3", lost_least);
+    say(p, DIAG_DISSIPATION, worst, "a step of strain loses a negative energy, %.3g J/m^3",
+        lost_least);
 }
 
 void physics_check_points(const law *l, const physics_options *o, diagnostics *d,

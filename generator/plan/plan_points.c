@@ -16,9 +16,9 @@ enum { MOST_STRAINS = PL_MAX_STRAINS, MOST_TANGENTS = MOST_STRAINS * MOST_STRAIN
 typedef struct planner {
   kernel_plan *plan;
   ir *graph;
-  int strains;                                /* 3 in the plane, 6 in space */
+  int strains;                                      /* 3 in the plane, 6 in space */
   ir_node strain[MOST_STRAINS], rate[MOST_STRAINS]; /* what a kernel reads */
-  ir_node z, z_rate;                          /* along z, in the plane; else IR_NONE */
+  ir_node z, z_rate;                                /* along z, in the plane; else IR_NONE */
   lowered_law step, frozen;
   ir_node tangent[MOST_TANGENTS];
 } planner;
@@ -39,8 +39,9 @@ static int all_of(const planner *p, lowered_law *of, ir_node **all) {
 
 static ir_node **places_for(const planner *p) {
   const law *l = p->plan->law;
-  return must_alloc(((size_t)LOWERED_FORCES + 2 + (size_t)l->fields.count +
-                     (size_t)l->outputs.count) * sizeof(ir_node *));
+  return must_alloc(
+      ((size_t)LOWERED_FORCES + 2 + (size_t)l->fields.count + (size_t)l->outputs.count) *
+      sizeof(ir_node *));
 }
 
 /* z and its rate are these. */
@@ -98,8 +99,9 @@ static void find_tangent(planner *p, bool z_is_free) {
       const ir_node stress = p->step.sigma[point_component(p->plan->dimensions, a)];
       ir_node D = ir_derivative(g, stress, p->strain[b]);
       if (z_is_free)
-        D = ir_add(g, D, ir_mul(g, ir_derivative(g, stress, p->z),
-                                follows(p, p->step.sigma[TENSOR_ZZ], p->strain[b])));
+        D = ir_add(g, D,
+                   ir_mul(g, ir_derivative(g, stress, p->z),
+                          follows(p, p->step.sigma[TENSOR_ZZ], p->strain[b])));
       const bool shear = point_component(p->plan->dimensions, b) >= TENSOR_XY;
       p->tangent[a * p->strains + b] = shear ? half(g, D) : D;
     }
@@ -164,8 +166,8 @@ static ir_node path_energy(planner *p, const ir_node *stress) {
     for (int k = 0; k < p->strains; k++)
       there[k] = ir_mul(g, fraction, p->strain[k]);
     ir_substitute(g, stress, p->strains, p->strain, there, p->strains, here);
-    const ir_node part = ir_mul(g, ir_constant(g, 0.5 * weight[point % 2]),
-                                contract(p, here, p->strain));
+    const ir_node part =
+        ir_mul(g, ir_constant(g, 0.5 * weight[point % 2]), contract(p, here, p->strain));
     sum = sum == IR_NONE ? part : ir_add(g, sum, part);
   }
   return sum;
@@ -236,8 +238,7 @@ static void plan_ledger(planner *p, const seen_points *t, segment *a) {
   const ir_node kept = with_new_fields(p, t->stored), zero = ir_constant(g, 0);
   want(p, a, kept == t->stored ? zero : ir_sub(g, t->stored, kept), TO_DISSIPATED_STATE,
        PL_LOST_TO_STATES);
-  want(p, a,
-       ir_mul(g, with_new_fields(p, t->rate_power), kinematics_input(g, ENDS_TIME_STEP)),
+  want(p, a, ir_mul(g, with_new_fields(p, t->rate_power), kinematics_input(g, ENDS_TIME_STEP)),
        TO_DISSIPATED_RATE, PL_LOST_TO_RATES);
 }
 
@@ -259,8 +260,8 @@ static void plan_tangent(planner *p, const seen_points *t, segment *a) {
 static void improve(planner *p, seen_points *t) {
   ir *g = p->graph;
   const law *l = p->plan->law;
-  const size_t most = (size_t)(2 * (LOWERED_FORCES + 1 + l->fields.count + l->outputs.count) +
-                               MOST_TANGENTS + 2);
+  const size_t most =
+      (size_t)(2 * (LOWERED_FORCES + 1 + l->fields.count + l->outputs.count) + MOST_TANGENTS + 2);
   ir_node **all = must_alloc(most * sizeof *all), *nodes = must_alloc(most * sizeof *nodes);
   int count = all_of(p, &p->step, all);
   count += all_of(p, &p->frozen, all + count);
@@ -345,11 +346,11 @@ bool plan_points(kernel_plan *plan, diagnostics *d) {
   plan->reads_rates = reads_rates(&p);
   seen_points seen = {stored_energy(&p), rate_power(&p)};
   improve(&p, &seen);
-  static void (*const program[])(planner *, const seen_points *, segment *) = {
-      [PROGRAM_STEP] = plan_step,
-      [PROGRAM_LEDGER] = plan_ledger,
-      [PROGRAM_OBSERVE] = plan_observe,
-      [PROGRAM_TANGENT] = plan_tangent};
+  static void (*const program[])(planner *, const seen_points *,
+                                 segment *) = {[PROGRAM_STEP] = plan_step,
+                                               [PROGRAM_LEDGER] = plan_ledger,
+                                               [PROGRAM_OBSERVE] = plan_observe,
+                                               [PROGRAM_TANGENT] = plan_tangent};
 #define X(task, member) program[task](&p, &seen, plan_single(plan, task, #member, OVER_POINTS));
   POINT_PROGRAMS(X)
 #undef X

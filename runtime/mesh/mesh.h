@@ -28,16 +28,16 @@ typedef struct mesh {
   int nodes[2];
   double corner[2], spacing[2]; /* m */
   double thickness;             /* m */
-  double support;   /* d_max: half width of a node's support, in spacings; 1.5 to 5.5 */
+  double support;               /* d_max: half width of a node's support, in spacings; 1.5 to 5.5 */
   int gauss;        /* background rule of element-free and interface cells: gauss x gauss points */
   int gauss_parts;  /* in each of gauss_parts x gauss_parts equal parts of the cell */
   bool smooth_ramp; /* blending by 3R^2 - 2R^3 in place of R */
   /* Radius about the nearest live tip (m) within which sqrt(r) is in the basis; 0: nowhere */
   double enriched;
   crack_lines cracks;
-  unsigned char *element_free; /* [nodes] 1: element-free, 0: of finite elements */
-  unsigned char *moving;       /* [nodes] 1: has a moving least squares function */
-  unsigned char *cell;         /* [cells] mesh_cell */
+  unsigned char *element_free;  /* [nodes] 1: element-free, 0: of finite elements */
+  unsigned char *moving;        /* [nodes] 1: has a moving least squares function */
+  unsigned char *cell;          /* [cells] mesh_cell */
   unsigned char *element_gauss; /* [cells] rule of a bilinear element: 1 or 2 */
 } mesh;
 

@@ -229,7 +229,8 @@ bool moving_least_squares(const mesh *m, const double at[2], point_shape *out) {
   enum { LINEAR = 3 };
   neighbour n[MOST_ALONG * MOST_ALONG];
   const double p[MOST_BASIS] = {1, 0, 0, 0};
-  const double p_slope[2][MOST_BASIS] = {{0, 1 / m->spacing[0], 0, 0}, {0, 0, 1 / m->spacing[1], 0}};
+  const double p_slope[2][MOST_BASIS] = {{0, 1 / m->spacing[0], 0, 0},
+                                         {0, 0, 1 / m->spacing[1], 0}};
   moments a;
   int count = visible_nodes(m, at, false, n);
   const bool sees = moments_of(n, count, LINEAR, &a);

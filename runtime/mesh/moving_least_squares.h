@@ -22,7 +22,7 @@ enum { SHAPE_MOST_NODES = 148 }; /* of a point: supports of 5.5 spacings, and co
 typedef struct point_shape {
   int count;
   int node[SHAPE_MOST_NODES];
-  double n[SHAPE_MOST_NODES];                          /* 1 */
+  double n[SHAPE_MOST_NODES];                        /* 1 */
   double nx[SHAPE_MOST_NODES], ny[SHAPE_MOST_NODES]; /* 1/m */
 } point_shape;
 

@@ -9,7 +9,10 @@
 #include <cmocka.h>
 
 #include "runtime/base/random_number.h"
+#include "runtime/mesh/crack_lines.h"
 #include "runtime/mesh/integration_points.h"
+#include "runtime/mesh/mesh.h"
+#include "runtime/mesh/moving_least_squares.h"
 #include "runtime/mesh/shape_functions.h"
 
 /* 41 x 41 nodes at (-20 .. 20)^2, all element-free. */

@@ -1,0 +1,171 @@
+#include "runtime/continuum/static_solution.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
+
+/* LAPACK: factors of a symmetric positive band matrix, and a solution by them. The last argument is
+   the hidden text length. */
+void dpbtrf_(const char *triangle, const int *n, const int *bands, double *ab, const int *ldab,
+             int *info, size_t triangle_length);
+void dpbtrs_(const char *triangle, const int *n, const int *bands, const int *columns,
+             const double *ab, const int *ldab, double *b, const int *ldb, int *info,
+             size_t triangle_length);
+
+/* Freedoms are numbered along the mesh's shorter side, so that the band is narrow. */
+typedef struct band {
+  const node_stencil *k;
+  bool by_columns;
+  int n, bands, rows; /* freedoms; below the diagonal; bands + 1 */
+  double *matrix;     /* [n][rows], lower */
+} band;
+
+static int freedom(const band *b, int node, int axis) {
+  const int nx = b->k->layout.nodes[0], ny = b->k->layout.nodes[1];
+  const int number = b->by_columns ? node % nx * ny + node / nx : node;
+  return 2 * number + axis;
+}
+
+static int node_of(const band *b, int freedom) {
+  const int nx = b->k->layout.nodes[0], ny = b->k->layout.nodes[1], number = freedom / 2;
+  return b->by_columns ? number % ny * nx + number / ny : number;
+}
+
+/* A node that nothing holds: no cell has it. */
+static bool is_alone(const node_stencil *k, int node) {
+  return node_stencil_entry(k, node, node, 0, 0) == 0 &&
+         node_stencil_entry(k, node, node, 1, 1) == 0;
+}
+
+typedef void (*pair_visitor)(band *b, int node, int other, void *context);
+static void visit_pairs(band *b, pair_visitor visit, void *context) {
+  const node_layout *l = &b->k->layout;
+  for (int node = 0; node < l->nodes[0] * l->nodes[1]; node++)
+    for (int dj = -l->reach; dj <= l->reach; dj++)
+      for (int di = -l->reach; di <= l->reach; di++) {
+        const int i = node % l->nodes[0] + di, j = node / l->nodes[0] + dj;
+        if (i >= 0 && j >= 0 && i < l->nodes[0] && j < l->nodes[1])
+          visit(b, node, j * l->nodes[0] + i, context);
+      }
+}
+
+typedef struct filling {
+  const unsigned char *fixed; /* [2 nodes] held, or alone */
+  const double *const *u;
+  double *right; /* [n] */
+} filling;
+
+static void fill(band *b, int node, int other, void *context) {
+  filling *f = context;
+  for (int d = 0; d < 2; d++)
+    for (int e = 0; e < 2; e++) {
+      const int row = freedom(b, node, d), column = freedom(b, other, e);
+      if (f->fixed[2 * node + d]) continue;
+      const double entry = node_stencil_entry(b->k, node, other, d, e);
+      if (f->fixed[2 * other + e])
+        f->right[row] -= entry * f->u[e][other];
+      else if (row >= column)
+        b->matrix[(size_t)column * (size_t)b->rows + (size_t)(row - column)] = entry;
+    }
+}
+
+static void multiply(const node_stencil *k, const double *const u[2], double *const product[2]) {
+  const node_layout *l = &k->layout;
+  pool *memory = pool_new();
+  double *in[2], *out[2];
+  for (int d = 0; d < 2; d++) {
+    in[d] = pool_doubles(memory, l->size);
+    out[d] = pool_doubles(memory, l->size);
+    for (int n = 0; n < l->nodes[0] * l->nodes[1]; n++)
+      in[d][node_layout_at(l, n)] = u[d][n];
+  }
+  node_stencil_multiply(k, (const double *const *)in, out, 0, l->nodes[1]);
+  for (int d = 0; d < 2; d++)
+    for (int n = 0; n < l->nodes[0] * l->nodes[1]; n++)
+      product[d][n] = out[d][node_layout_at(l, n)];
+  pool_free(memory);
+}
+
+static void judge(const node_stencil *k, const unsigned char *fixed, const double *const force[2],
+                  double *const u[2], double *const reaction[2], static_result *r) {
+  const int nodes = k->layout.nodes[0] * k->layout.nodes[1];
+  double most = 0, off = 0;
+  multiply(k, (const double *const *)u, reaction);
+  for (int d = 0; d < 2; d++)
+    for (int n = 0; n < nodes; n++) {
+      r->energy += 0.5 * u[d][n] * reaction[d][n];
+      most = pl_max(most, pl_max(fabs(force[d][n]), fabs(reaction[d][n])));
+      reaction[d][n] -= force[d][n];
+      if (!fixed[2 * n + d]) off = pl_max(off, fabs(reaction[d][n]));
+    }
+  r->residual = most > 0 ? off / most : 0;
+}
+
+static bool factor(band *b, double *right, static_result *r) {
+  const int one = 1;
+  int info = 0;
+  dpbtrf_("L", &b->n, &b->bands, b->matrix, &b->rows, &info, 1);
+  if (info > 0) {
+    r->loose = node_of(b, info - 1);
+    r->loose_axis = (info - 1) % 2;
+    return false;
+  }
+  dpbtrs_("L", &b->n, &b->bands, &one, b->matrix, &b->rows, right, &b->n, &info, 1);
+  return info == 0;
+}
+
+/* A pivot lost to rounding is no stiffness either. */
+static bool stays_positive(const band *b, const double *diagonal, static_result *r) {
+  for (int k = 0; k < b->n; k++) {
+    const double pivot = b->matrix[(size_t)k * (size_t)b->rows];
+    if (pivot * pivot > 1e-12 * diagonal[k]) continue;
+    r->loose = node_of(b, k);
+    r->loose_axis = k % 2;
+    return false;
+  }
+  return true;
+}
+
+static_result static_solution(const node_stencil *k, const unsigned char *held,
+                              const double *const force[2], double *const u[2],
+                              double *const reaction[2]) {
+  const node_layout *l = &k->layout;
+  const int nodes = l->nodes[0] * l->nodes[1], narrow = l->nodes[0] < l->nodes[1] ? 0 : 1;
+  band b = {.k = k, .by_columns = narrow == 1, .n = 2 * nodes};
+  static_result r = {.solved = false};
+  b.bands = 2 * (l->reach * l->nodes[narrow] + l->reach) + 1;
+  if (b.bands > b.n - 1) b.bands = b.n - 1;
+  b.rows = b.bands + 1;
+  b.matrix = must_calloc((size_t)b.n * (size_t)b.rows, sizeof *b.matrix);
+  unsigned char *fixed = must_alloc(2 * (size_t)nodes);
+  double *right = must_calloc((size_t)b.n, sizeof *right),
+         *diagonal = must_calloc((size_t)b.n, sizeof *diagonal);
+  for (int n = 0; n < nodes; n++)
+    for (int d = 0; d < 2; d++) {
+      fixed[2 * n + d] = held[2 * n + d] || is_alone(k, n);
+      if (fixed[2 * n + d] && !held[2 * n + d]) u[d][n] = 0;
+      right[freedom(&b, n, d)] = fixed[2 * n + d] ? 0 : force[d][n];
+    }
+  filling f = {.fixed = fixed, .u = (const double *const *)u, .right = right};
+  visit_pairs(&b, fill, &f);
+  for (int n = 0; n < nodes; n++)
+    for (int d = 0; d < 2; d++) {
+      const int at = freedom(&b, n, d);
+      double *entry = &b.matrix[(size_t)at * (size_t)b.rows];
+      if (fixed[2 * n + d]) *entry = 1;
+      diagonal[at] = *entry;
+    }
+  r.solved = factor(&b, right, &r) && stays_positive(&b, diagonal, &r);
+  for (int n = 0; n < nodes && r.solved; n++)
+    for (int d = 0; d < 2; d++)
+      if (!fixed[2 * n + d]) u[d][n] = right[freedom(&b, n, d)];
+  if (r.solved) judge(k, fixed, force, u, reaction, &r);
+  free(b.matrix);
+  free(fixed);
+  free(right);
+  free(diagonal);
+  return r;
+}
