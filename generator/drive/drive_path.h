@@ -5,7 +5,7 @@
 #define PERILAT_GENERATOR_DRIVE_PATH_H
 
 #include "runtime/deck/deck.h"
-#include "runtime/deck/namelist.h"
+#include "runtime/base/namelist.h"
 
 /* What a path prescribes: X(code, name, unit) */
 #define DRIVE_QUANTITIES(X)                                                                        \

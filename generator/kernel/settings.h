@@ -4,7 +4,7 @@
 #define PERILAT_GENERATOR_SETTINGS_H
 
 #include "runtime/deck/deck.h"
-#include "runtime/deck/namelist.h"
+#include "runtime/base/namelist.h"
 
 /* Adds to m->assignments what the texts set, e.g. "E=40 GPa" or "softening=exponential"; what
    was assigned to such a name before is replaced; "E=" takes it back to the law's default. Each

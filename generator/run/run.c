@@ -22,7 +22,7 @@
 #include "generator/run/stopping.h"
 #include "runtime/base/clock.h"
 #include "runtime/deck/deck_read.h"
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 
 enum { EARLY_CHECKPOINT = 30 }; /* s: the first one, so that a long run is never lost whole */
 

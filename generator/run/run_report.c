@@ -13,7 +13,7 @@
 #include "runtime/analysis/uniform_strain.h"
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/geometry/polyline.h"
-#include "runtime/lattice/bar_placing.h"
+#include "runtime/filling/bar_placing.h"
 #include "runtime/lattice/notch_depth.h"
 #include "runtime/lattice/parameter_planes.h"
 #include "runtime/result/checkpoint.h"

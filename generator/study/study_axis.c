@@ -6,7 +6,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "runtime/deck/namelist.h"
+#include "runtime/base/namelist.h"
 
 typedef struct piece { /* of a given text, without blanks around it */
   const char *text;    /* in the arena */

@@ -7,7 +7,7 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "runtime/base/eigen.h"
-#include "runtime/lattice/tied.h"
+#include "runtime/filling/tied.h"
 
 enum { PARTS = 4 /* a spacing */, MOST_SITES = 2 * ROWS_MOST_COPIED, STRAINS = 6 };
 

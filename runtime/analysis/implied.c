@@ -7,7 +7,7 @@
 #include "runtime/analysis/bond_probe.h"
 #include "runtime/analysis/stability.h"
 #include "runtime/analysis/stencil.h"
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 
 /* LAPACK: factors of a symmetric positive matrix, and its inverse from them. The last argument is
  * the hidden text length. */

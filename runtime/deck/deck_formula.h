@@ -4,7 +4,7 @@
 
 #include "dsl/semantics/formula.h"
 #include "runtime/deck/deck.h"
-#include "runtime/deck/namelist.h"
+#include "runtime/base/namelist.h"
 
 /* x, y, z, t; x, y, z; t: in the order of FORMULA_X ... */
 extern const formula_scope deck_formula_of_all, deck_formula_of_place, deck_formula_of_time;

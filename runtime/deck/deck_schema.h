@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 #include "runtime/deck/deck.h"
-#include "runtime/deck/namelist.h"
+#include "runtime/base/namelist.h"
 
 typedef enum deck_type {
   DECK_TEXT,   /* a text, perhaps empty */

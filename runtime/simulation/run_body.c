@@ -9,8 +9,8 @@
 #include "runtime/analysis/material.h"
 #include "runtime/analysis/stability.h"
 #include "runtime/interaction/interaction.h"
-#include "runtime/lattice/lattice.h"
-#include "runtime/lattice/linked.h"
+#include "runtime/filling/lattice.h"
+#include "runtime/filling/linked.h"
 #include "runtime/simulation/law_fits.h"
 #include "runtime/simulation/step_choice.h"
 

@@ -20,7 +20,7 @@
 #include "runtime/deck/deck_read.h"
 #include "runtime/interaction/interaction.h"
 #include "runtime/interaction/sweep.h"
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 #include "runtime/lattice/scattered.h"
 #include "runtime/simulation/simulation.h"
 #include "tests/benchmark/handwritten_families.h"

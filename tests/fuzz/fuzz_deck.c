@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "runtime/deck/deck_read.h"
-#include "runtime/deck/namelist.h"
+#include "runtime/base/namelist.h"
 #include "tests/fuzz/fuzz.h"
 
 enum { LONGEST = 1 << 16, MOST_OVERRIDES = 8 };

@@ -7,7 +7,7 @@
 
 #include "dsl/base/arena.h"
 #include "runtime/deck/deck_read.h"
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 
 typedef struct built_rows {
   arena *memory;

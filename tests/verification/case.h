@@ -16,7 +16,7 @@
 #include "generator/run/run.h"
 #include "runtime/deck/deck_read.h"
 #include "runtime/interaction/pairwise.h"
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 #include "runtime/simulation/simulation.h"
 
 /* A law as the interpreter and as the compiled kernel have it, with one set of parameters. */

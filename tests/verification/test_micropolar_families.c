@@ -13,7 +13,7 @@
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/stability.h"
 #include "runtime/analysis/stencil.h"
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 #include "runtime/simulation/simulation_save.h"
 #include "tests/runtime/rigid_motion.h"
 #include "tests/verification/cantilever.h"

@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "runtime/analysis/stability.h"
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 #include "runtime/lattice/rows.h"
 
 /* --- laws written by hand: the linear micropolar bond, with dampers --------------------------- */

@@ -17,7 +17,7 @@
 #include "generator/drive/drive_grammar.h"
 #include "generator/kernel/model.h"
 #include "runtime/deck/deck_groups.h"
-#include "runtime/deck/namelist.h"
+#include "runtime/base/namelist.h"
 #include "tests/generator/command_tools.h"
 
 enum { MOST_DECKS = 200, MOST_OWN = 100, MOST_VALUES = 100 };

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
-#include "runtime/deck/namelist.h"
+#include "runtime/base/namelist.h"
 
 typedef struct notation {
   arena *memory;

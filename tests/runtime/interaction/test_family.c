@@ -16,7 +16,7 @@
 #include "runtime/deck/deck_read.h"
 #include "runtime/interaction/family.h"
 #include "runtime/interaction/interaction.h"
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 #include "tests/runtime/family_law.h"
 
 static const double spacing = 0.01, thickness = 0.1, step = 1e-7;

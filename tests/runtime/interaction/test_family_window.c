@@ -11,7 +11,7 @@
 #include "runtime/interaction/family_run.h"
 #include "runtime/interaction/family_window.h"
 #include "runtime/interaction/interaction.h"
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 #include "tests/runtime/family_law.h"
 #include "tests/runtime/interaction/pass_record.h"
 #include "tests/runtime/small_run.h"

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 
 enum { MOST_SHAPES = 8 };
 

@@ -14,7 +14,7 @@
 #include "runtime/deck/deck_read.h"
 #include "runtime/interaction/interaction.h"
 #include "runtime/interaction/sweep.h"
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 #include "runtime/lattice/rows_select.h"
 #include "runtime/lattice/scattered.h"
 #include "runtime/lattice/shape_matrix.h"

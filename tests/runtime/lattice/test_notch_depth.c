@@ -10,7 +10,7 @@
 #include <cmocka.h>
 
 #include "runtime/deck/deck_read.h"
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 #include "runtime/lattice/notch_depth.h"
 
 /* Depths of the notches of a deck that has these groups besides its lattice's name and

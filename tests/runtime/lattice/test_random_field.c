@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "runtime/deck/deck_read.h"
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 #include "runtime/lattice/parameter_planes.h"
 #include "runtime/lattice/random_field.h"
 #include "runtime/analysis/material.h"

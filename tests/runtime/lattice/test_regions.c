@@ -6,7 +6,7 @@
 
 #include <cmocka.h>
 
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 #include "runtime/lattice/regions.h"
 #include "tests/runtime/small_run.h"
 

@@ -13,7 +13,7 @@
 
 #include "dsl/base/arena.h"
 #include "runtime/deck/deck_read.h"
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 #include "runtime/lattice/shape_matrix.h"
 
 enum { MOST_VALUES = PL_SHAPE_PLANES(3) };

@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "runtime/interaction/sweep.h"
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 #include "runtime/loads/tributary.h"
 #include "tests/runtime/small_run.h"
 

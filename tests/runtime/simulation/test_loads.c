@@ -9,7 +9,7 @@
 
 #include "runtime/body/motion.h"
 #include "runtime/interaction/interaction.h"
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 #include "runtime/loads/load_steps.h"
 #include "runtime/loads/loads.h"
 #include "tests/runtime/simulation/chain.h"

@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "runtime/interaction/sweep.h"
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 #include "runtime/simulation/monitor.h"
 #include "tests/runtime/simulation/chain.h"
 

@@ -8,7 +8,7 @@
 #include <cmocka.h>
 
 #include "runtime/interaction/sweep.h"
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 #include "runtime/simulation/relaxation.h"
 #include "tests/runtime/family_law.h"
 #include "tests/runtime/hand_over.h"

@@ -1,4 +1,4 @@
-#include "runtime/lattice/bar_placing.h"
+#include "runtime/filling/bar_placing.h"
 
 #include <math.h>
 

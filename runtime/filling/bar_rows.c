@@ -1,4 +1,4 @@
-#include "runtime/lattice/bar_rows.h"
+#include "runtime/filling/bar_rows.h"
 
 #include <stdlib.h>
 

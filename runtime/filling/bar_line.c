@@ -1,4 +1,4 @@
-#include "runtime/lattice/bar_line.h"
+#include "runtime/filling/bar_line.h"
 
 #include <math.h>
 #include <stdlib.h>

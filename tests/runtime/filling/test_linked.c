@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "runtime/lattice/linked.h"
+#include "runtime/filling/linked.h"
 #include "tests/runtime/built_rows.h"
 
 enum { CONCRETE, BAR, LINK, LATTICES };

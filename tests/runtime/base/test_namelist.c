@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "runtime/deck/namelist.h"
+#include "runtime/base/namelist.h"
 
 typedef struct reading {
   source_set sources;

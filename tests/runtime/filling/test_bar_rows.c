@@ -11,7 +11,7 @@
 #include <stdlib.h>
 
 #include "runtime/deck/lattice_kind.h"
-#include "runtime/lattice/bar_rows.h"
+#include "runtime/filling/bar_rows.h"
 #include "tests/runtime/built_rows.h"
 
 static const double area = 2e-4, rho = 7850; /* m^2, kg/m^3 */

@@ -1,7 +1,7 @@
-#include "runtime/lattice/lattice.h"
+#include "runtime/filling/lattice.h"
 
-#include "runtime/lattice/bar_rows.h"
-#include "runtime/lattice/linked.h"
+#include "runtime/filling/bar_rows.h"
+#include "runtime/filling/linked.h"
 #include "runtime/lattice/rows_build.h"
 #include "runtime/lattice/scattered.h"
 

@@ -1,4 +1,4 @@
-#include "runtime/deck/namelist.h"
+#include "runtime/base/namelist.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "runtime/lattice/bar_placing.h"
+#include "runtime/filling/bar_placing.h"
 #include "tests/runtime/built_rows.h"
 
 #define BEGIN "&simulation end_time = 1 /\n"

@@ -9,7 +9,7 @@
 
 #include <math.h>
 
-#include "runtime/lattice/bar_line.h"
+#include "runtime/filling/bar_line.h"
 #include "tests/runtime/built_rows.h"
 
 typedef struct built_line {

@@ -10,9 +10,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "runtime/lattice/lattice.h"
-#include "runtime/lattice/linked.h"
-#include "runtime/lattice/tied.h"
+#include "runtime/filling/lattice.h"
+#include "runtime/filling/linked.h"
+#include "runtime/filling/tied.h"
 #include "tests/runtime/built_rows.h"
 
 enum { BODY, BAR, LINK, LATTICES };

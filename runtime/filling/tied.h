@@ -19,7 +19,7 @@
 
 #include "dsl/base/diagnostics.h"
 #include "runtime/deck/deck.h"
-#include "runtime/lattice/bar_line.h"
+#include "runtime/filling/bar_line.h"
 #include "runtime/lattice/near_particles.h"
 #include "runtime/lattice/rows.h"
 

@@ -1,4 +1,4 @@
-#include "runtime/lattice/tied.h"
+#include "runtime/filling/tied.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,14 +1,14 @@
-#include "runtime/lattice/linked.h"
+#include "runtime/filling/linked.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "runtime/lattice/bar_line.h"
+#include "runtime/filling/bar_line.h"
 #include "runtime/lattice/near_particles.h"
 #include "runtime/lattice/scattered.h"
-#include "runtime/lattice/tied.h"
+#include "runtime/filling/tied.h"
 #include "runtime/particles/site_marks.h"
 
 /* A place is reached that is further by so much: rounding. */
