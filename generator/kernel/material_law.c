@@ -136,6 +136,7 @@ static int neighbours_of(const deck_lattice *l) {
 /* What a bond knows of the third direction its law must say; `for` is the word that it has. */
 static void warn_of_plane_strain(const deck_lattice *l, const model *m, diagnostics *said) {
   if (m->law->setting != SETTING_PLANE_STRAIN || m->law->tree->law == LAW_STATE ||
+      m->law->tree->law == LAW_CONTINUUM ||
       m->tree->setting_count > 0)
     return;
   diag_report(
@@ -324,7 +325,7 @@ static bool reads_masses(const law *l) {
    other lattices, beside other laws, and where they read masses that differ. */
 static bool needs_families(const deck_material *m, const deck_lattice *l, const law *of,
                            const law_variation *v) {
-  if (of->tree->law == LAW_STATE) return false;
+  if (of->tree->law == LAW_STATE || of->tree->law == LAW_CONTINUUM) return false;
   return m->beside || !bravais_is_hexagon(l) || (v->masses && reads_masses(of));
 }
 

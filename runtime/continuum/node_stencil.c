@@ -16,33 +16,23 @@ static bool all_elements(const mesh *m) {
   return true;
 }
 
-node_layout node_layout_of(const mesh *m) {
-  node_layout l = {.nodes = {m->nodes[0], m->nodes[1]}};
-  l.reach = all_elements(m) ? 1 : (int)ceil(2 * m->support) - 1;
-  l.padded = (m->nodes[0] + PL_LANES - 1) / PL_LANES * PL_LANES;
-  l.stride = l.padded + 2 * l.reach;
-  l.origin = l.reach * l.stride + l.reach;
-  l.size = l.stride * (m->nodes[1] + 2 * l.reach);
-  return l;
-}
-
 /* --- blocks ----------------------------------------------------------------------------------- */
 
 static int width(const node_stencil *k) {
-  return 2 * k->layout.reach + 1;
+  return 2 * k->reach + 1;
 }
 
 /* Of the first lane of `node`'s block toward (di, dj), entry 0. */
 static double *block_of(const node_stencil *k, int node, int di, int dj) {
   const long i = node % k->layout.nodes[0], j = node / k->layout.nodes[0], w = width(k),
              group = j * (k->layout.padded / PL_LANES) + i / PL_LANES;
-  const long at = (group * w + dj + k->layout.reach) * w + di + k->layout.reach;
+  const long at = (group * w + dj + k->reach) * w + di + k->reach;
   return k->blocks + at * 4 * PL_LANES + i % PL_LANES;
 }
 
 double node_stencil_entry(const node_stencil *k, int node, int other, int a, int b) {
   const int nx = k->layout.nodes[0], di = other % nx - node % nx, dj = other / nx - node / nx;
-  if (abs(di) > k->layout.reach || abs(dj) > k->layout.reach) return 0;
+  if (abs(di) > k->reach || abs(dj) > k->reach) return 0;
   return block_of(k, node, di, dj)[(2 * a + b) * PL_LANES];
 }
 
@@ -76,7 +66,8 @@ static void add_point(node_stencil *k, int point, const point_shape *s, double s
 
 void node_stencil_open(node_stencil *k, const mesh *m, const integration_points *p,
                        const plane_stiffness *laws, const unsigned char *law_of_cell) {
-  *k = (node_stencil){.layout = node_layout_of(m),
+  *k = (node_stencil){.layout = node_layout_of(m->nodes, m->support),
+                      .reach = all_elements(m) ? 1 : (int)ceil(2 * m->support) - 1,
                       .of = m,
                       .points = p,
                       .laws = laws,
@@ -100,7 +91,7 @@ void node_stencil_close(node_stencil *k) {
 /* Of PL_LANES nodes: blocks and the vectors at the first of them. */
 static inline void multiply_group(const node_stencil *k, const double *blocks,
                                   const double *const u[2], double *const f[2], long at) {
-  const int reach = k->layout.reach;
+  const int reach = k->reach;
   double x[PL_LANES] = {0}, y[PL_LANES] = {0};
   for (int dj = -reach; dj <= reach; dj++) {
     const double *ux = u[0] + at + dj * k->layout.stride, *uy = u[1] + at + dj * k->layout.stride;

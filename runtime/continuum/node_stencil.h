@@ -22,17 +22,7 @@
 #include "runtime/kernel.h"
 #include "runtime/mesh/integration_points.h"
 #include "runtime/mesh/moving_least_squares.h"
-
-/* Where values of nodes stand: value of (i, j) at origin + j*stride + i of each plane. */
-typedef struct node_layout {
-  int nodes[2], reach;       /* m */
-  long stride, origin, size; /* doubles of a plane */
-  long padded;               /* nodes of a row, filled up to PL_LANES */
-} node_layout;
-node_layout node_layout_of(const mesh *m);
-static inline long node_layout_at(const node_layout *l, int node) {
-  return l->origin + node / l->nodes[0] * l->stride + node % l->nodes[0];
-}
+#include "runtime/mesh/node_layout.h"
 
 /* Tangent of a cell's law in the plane, Pa: xx yy xy by xx yy xy, shears being those of engineers. */
 typedef struct plane_stiffness {
@@ -41,6 +31,7 @@ typedef struct plane_stiffness {
 
 typedef struct node_stencil {
   node_layout layout;
+  int reach; /* m of the blocks: 1 of bilinear elements alone */
   const mesh *of;
   const integration_points *points;
   const plane_stiffness *laws;      /* not owned */

@@ -44,8 +44,8 @@ typedef void (*pair_visitor)(band *b, int node, int other, void *context);
 static void visit_pairs(band *b, pair_visitor visit, void *context) {
   const node_layout *l = &b->k->layout;
   for (int node = 0; node < l->nodes[0] * l->nodes[1]; node++)
-    for (int dj = -l->reach; dj <= l->reach; dj++)
-      for (int di = -l->reach; di <= l->reach; di++) {
+    for (int dj = -b->k->reach; dj <= b->k->reach; dj++)
+      for (int di = -b->k->reach; di <= b->k->reach; di++) {
         const int i = node % l->nodes[0] + di, j = node / l->nodes[0] + dj;
         if (i >= 0 && j >= 0 && i < l->nodes[0] && j < l->nodes[1])
           visit(b, node, j * l->nodes[0] + i, context);
@@ -136,7 +136,7 @@ static_result static_solution(const node_stencil *k, const unsigned char *held,
   const int nodes = l->nodes[0] * l->nodes[1], narrow = l->nodes[0] < l->nodes[1] ? 0 : 1;
   band b = {.k = k, .by_columns = narrow == 1, .n = 2 * nodes};
   static_result r = {.solved = false};
-  b.bands = 2 * (l->reach * l->nodes[narrow] + l->reach) + 1;
+  b.bands = 2 * (k->reach * l->nodes[narrow] + k->reach) + 1;
   if (b.bands > b.n - 1) b.bands = b.n - 1;
   b.rows = b.bands + 1;
   b.matrix = must_calloc((size_t)b.n * (size_t)b.rows, sizeof *b.matrix);

@@ -35,8 +35,11 @@ enum link_to { LINK_TO_SITES, LINK_TO_PLACE };
 
 typedef enum volume_correction { VOLUME_WHOLE, VOLUME_LINEAR } volume_correction;
 
-/* Of a &lattice, or of a &bar or a &link, which are of the kinds `bar` and `link`: they stand
-   behind them, in this order. */
+/* Of nodes and cells: bilinear finite elements, or moving least squares. */
+typedef enum mesh_method { MESH_ELEMENT_FREE, MESH_FINITE_ELEMENTS } mesh_method;
+
+/* Of a &lattice, or of a &bar, a &link or a &mesh, which are of the kinds `bar`, `link` and `mesh`:
+   they stand behind them, in this order. */
 typedef struct deck_lattice {
   deck_item item;
   const char *name;
@@ -68,8 +71,29 @@ typedef struct deck_lattice {
   int every, first; /* particles of the bar that are joined: first, first + every, ... */
   enum link_to to;
   double within; /* spacings; to sites */
+  /* of a mesh: the corner of least coordinates, extent, nodes along x and y */
+  double corner[3], size[3]; /* m */
+  double nodes[2];           /* whole */
+  mesh_method method;
+  double support;   /* d_max, spacings */
+  int gauss, parts; /* background rule: gauss x gauss points in each of parts x parts of a cell */
+  double rich;      /* radius of the enriched basis, spacings; 0: a linear basis */
+  bool smooth;      /* zones are blended by a smooth ramp */
 } deck_lattice;
-typedef deck_lattice deck_bar, deck_link;
+typedef deck_lattice deck_bar, deck_link, deck_mesh;
+
+typedef struct deck_zone { /* a part of a mesh with the other method */
+  deck_item item;
+  const char *mesh;
+  mesh_method method;
+  int gauss; /* of finite elements: 1 or 2 */
+  deck_shape shape;
+} deck_zone;
+
+typedef struct deck_newmark { /* of meshes */
+  deck_item item;
+  double beta_1; /* 1/2: no numerical damping; up to 1 */
+} deck_newmark;
 
 typedef struct deck_placed {     /* a value that may differ from place to place */
   double value;                  /* SI */
@@ -94,7 +118,7 @@ typedef struct deck_assignment { /* parameter = value in a &material */
 typedef struct deck_material {
   deck_item item;
   const char *lattice;    /* name; of a bar's the bar, of a link's the link */
-  const char *bar, *link; /* the same where the deck says that it is one; else NULL */
+  const char *bar, *link, *mesh; /* the same where the deck says that it is one; else NULL */
   const char *region;     /* name; NULL: of the whole lattice, but for what others say */
   const char *between[2]; /* names of regions; NULL: not of the bonds between two */
   const char *model;      /* name in models/ or a path ending in .plm */
@@ -382,6 +406,9 @@ typedef struct deck_file { /* a table that a load was read from */
   LIST(lattice)                                                                                    \
   MORE(bar)                                                                                        \
   MORE(link)                                                                                       \
+  MORE(mesh)                                                                                       \
+  LIST(zone)                                                                                       \
+  ONE(newmark)                                                                                     \
   LIST(material)                                                                                   \
   LIST(field)                                                                                      \
   LIST(body)                                                                                       \

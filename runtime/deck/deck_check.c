@@ -37,6 +37,7 @@ static void report_unknown(deck_reader *r, span where, const char *kind, const c
 KNOWN(lattice, lattice, true)
 KNOWN(bar, lattice, deck_lattice_is_bar(&k->lattices[found]))
 KNOWN(link, lattice, deck_lattice_is_link(&k->lattices[found]))
+KNOWN(mesh, lattice, deck_lattice_is_mesh(&k->lattices[found]))
 KNOWN(region, region, true)
 KNOWN(monitor, monitor, true)
 
@@ -54,6 +55,10 @@ bool deck_bar_known(deck_reader *r, const deck_item *item, const char *name) {
 
 bool deck_link_known(deck_reader *r, const deck_item *item, const char *name) {
   return link_is_known(r, deck_where(item, "link"), name);
+}
+
+bool deck_mesh_known(deck_reader *r, const deck_item *item, const char *name) {
+  return mesh_is_known(r, deck_where(item, "mesh"), name);
 }
 
 bool deck_region_known(deck_reader *r, span where, const char *name) {

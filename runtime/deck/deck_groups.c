@@ -6,6 +6,7 @@
 #include "runtime/deck/group_body.h"
 #include "runtime/deck/group_lattice.h"
 #include "runtime/deck/group_load.h"
+#include "runtime/deck/group_mesh.h"
 #include "runtime/deck/group_monitor.h"
 #include "runtime/deck/group_run.h"
 

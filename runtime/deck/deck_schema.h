@@ -60,7 +60,7 @@ typedef void deck_group_check(struct deck_reader *r, const namelist_group *from,
 typedef struct deck_group_info {
   const char *name;
   const char *identity; /* key that tells groups of this name apart in overrides, or NULL */
-  const char *parts[4]; /* keys that do so in its place where a group has them, the last of them */
+  const char *parts[5]; /* keys that do so in its place where a group has them, the last of them */
   bool single;          /* at most one in a deck */
   bool open;            /* other keys are assignments */
   const deck_key_info *keys;

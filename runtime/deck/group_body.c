@@ -376,6 +376,43 @@ static void check_region(deck_reader *r, const namelist_group *from, void *into)
 DECK_LIST(region, .identity = "name", .check = check_region,
           .doc = "Names the particles inside or on a shape, for loads and monitors.");
 
+static const deck_key_info zone_keys[] = {
+    {.name = "mesh",
+     .type = DECK_NAME,
+     .required = true,
+     DECK_AT(zone, mesh),
+     .doc = "name of the mesh"},
+    {.name = "method",
+     .type = DECK_CHOICE,
+     .choices = "element_free|finite_elements",
+     .required = true,
+     DECK_AT(zone, method),
+     .doc = "of its nodes; cells between nodes of both blend them"},
+    {.name = "gauss",
+     .type = DECK_COUNT,
+     .fallback = "2",
+     .most = 2,
+     DECK_AT(zone, gauss),
+     .doc = "of finite elements: points of integration along either axis, 1 or 2"},
+    SHAPE_KEYS(zone),
+};
+
+static void check_zone(deck_reader *r, const namelist_group *from, void *into) {
+  deck_zone *item = into;
+  check_shape(r, from, &deck_group_zone, &item->item, &item->shape, item->mesh);
+  deck_mesh_known(r, &item->item, item->mesh);
+  if (item->gauss < 1)
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "gauss"),
+                "an element has 1 or 2 points along either axis");
+  if (item->method == MESH_ELEMENT_FREE && namelist_find(from, "gauss"))
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "gauss"),
+                "element-free cells have the points of the mesh: give `gauss` there");
+}
+
+DECK_LIST(zone, .identity = "mesh", .check = check_zone,
+          .doc = "The nodes of a mesh inside or on a shape have this method. Of several zones the "
+                 "last one counts.");
+
 static const deck_key_info point_mass_keys[] = {
     {.name = "region",
      .type = DECK_NAME,

@@ -286,6 +286,10 @@ static const deck_key_info material_keys[] = {
      .type = DECK_NAME,
      DECK_AT(material, link),
      .doc = "instead: name of the link"},
+    {.name = "mesh",
+     .type = DECK_NAME,
+     DECK_AT(material, mesh),
+     .doc = "instead: name of the mesh"},
     {.name = "model",
      .type = DECK_NAME,
      .required = true,
@@ -371,20 +375,26 @@ bool deck_assignments_read(arena *memory, const namelist_group *g, deck_material
 
 /* The name of what the material is for. */
 static bool take_lattice(deck_reader *r, const namelist_group *from, deck_material *item) {
-  const char *of = item->bar ? item->bar : item->link;
-  const bool both = (item->lattice && of) || (item->bar && item->link);
+  const char *of = item->bar ? item->bar : item->link ? item->link : item->mesh;
+  const int named = !!item->lattice + !!item->bar + !!item->link + !!item->mesh;
   deck_refuse_both(r, from, "lattice", "bar");
   deck_refuse_both(r, from, "lattice", "link");
   deck_refuse_both(r, from, "bar", "link");
-  if (both) return false;
+  deck_refuse_both(r, from, "lattice", "mesh");
+  deck_refuse_both(r, from, "bar", "mesh");
+  deck_refuse_both(r, from, "link", "mesh");
+  if (named > 1) return false;
   if (item->lattice) return deck_lattice_known(r, &item->item, item->lattice);
   if (!of) {
     diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&material` has no `lattice`");
-    diag_hint(r->d, "lattice: name of the lattice; of a bar's material `bar`, of a link's `link`");
+    diag_hint(r->d, "lattice: name of the lattice; of a bar's material `bar`, of a link's `link`, of a "
+                   "mesh's `mesh`");
     return false;
   }
   item->lattice = of;
-  return (item->bar ? deck_bar_known : deck_link_known)(r, &item->item, of);
+  return (item->bar    ? deck_bar_known
+          : item->link ? deck_link_known
+                       : deck_mesh_known)(r, &item->item, of);
 }
 
 static void check_material(deck_reader *r, const namelist_group *from, void *into) {
@@ -395,7 +405,7 @@ static void check_material(deck_reader *r, const namelist_group *from, void *int
   const int first = deck_find_material(r->k, item->lattice);
   deck_refuse_both(r, from, "region", "between");
   if (first < 0 || item->region || item->between[0]) return;
-  const char *word = item->bar ? "bar" : item->link ? "link" : "lattice";
+  const char *word = item->bar ? "bar" : item->link ? "link" : item->mesh ? "mesh" : "lattice";
   diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, word),
               "the %s `%s` has a material already", word, deck_shown(r->memory, item->lattice));
   diag_note(r->d, r->k->materials[first].item.where, "it is given here");
@@ -403,10 +413,10 @@ static void check_material(deck_reader *r, const namelist_group *from, void *int
 }
 
 DECK_LIST(
-    material, .identity = "lattice", .parts = {"bar", "link", "region", "between"}, .open = true,
+    material, .identity = "lattice", .parts = {"bar", "link", "mesh", "region", "between"}, .open = true,
     .check = check_material,
     .doc =
-        "The law of a lattice's, a bar's or a link's bonds, or its parameters in a region. Every "
+        "The law of a lattice's, a bar's or a link's bonds or of a mesh, or its parameters in a region. Every "
         "other key "
         "sets a "
         "parameter or an option of the law, e.g. `E = '30 GPa'`, or by place `E = '30 [GPa]*(1 + "

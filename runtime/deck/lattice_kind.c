@@ -33,6 +33,10 @@ bool deck_lattice_is_link(const deck_lattice *l) {
   return l->kind && strcmp(l->kind, lattice_kinds[LATTICE_KIND_link].name) == 0;
 }
 
+bool deck_lattice_is_mesh(const deck_lattice *l) {
+  return l->kind && strcmp(l->kind, lattice_kinds[LATTICE_KIND_mesh].name) == 0;
+}
+
 bool deck_lattice_touches(const deck_lattice *l, const deck_contact *by) {
   bool named = by->lattice_count == 0 && !deck_lattice_is_bar(l) && !deck_lattice_is_link(l);
   for (int n = 0; n < by->lattice_count; n++)
@@ -41,7 +45,10 @@ bool deck_lattice_touches(const deck_lattice *l, const deck_contact *by) {
 }
 
 const char *deck_lattice_word(const deck_lattice *l) {
-  return deck_lattice_is_bar(l) ? "bar" : deck_lattice_is_link(l) ? "link" : "lattice";
+  return deck_lattice_is_bar(l)    ? "bar"
+         : deck_lattice_is_link(l) ? "link"
+         : deck_lattice_is_mesh(l) ? "mesh"
+                                   : "lattice";
 }
 
 bool deck_lattice_is_irregular(const deck_lattice *l) {

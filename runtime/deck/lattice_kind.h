@@ -22,7 +22,8 @@ C_LINKAGE_BEGIN
 #define LATTICE_KINDS(X) KINDS_OF_DECKS(X) KINDS_OF_GROUPS(X)
 #define KINDS_OF_GROUPS(X)                                                                         \
   X(bar, 0, (0, 0, 0), (0, 0))  /* of a &bar */                                                    \
-  X(link, 0, (0, 0, 0), (0, 0)) /* of a &link */
+  X(link, 0, (0, 0, 0), (0, 0)) /* of a &link */                                                   \
+  X(mesh, 2, (1, 1, 0), (0, 0)) /* nodes of a &mesh, whose steps need not be alike */
 #define KINDS_OF_DECKS(X) KINDS_OF_SITES(X) KINDS_WITHOUT_SITES(X)
 #define KINDS_OF_SITES(X)                                                                          \
   KINDS_OF_FAMILIES(X)                                                                             \
@@ -75,9 +76,11 @@ bool deck_lattice_is_irregular(const deck_lattice *l);
 bool deck_lattice_is_bar(const deck_lattice *l);
 /* True for the copies of particles that a &link joins. */
 bool deck_lattice_is_link(const deck_lattice *l);
+/* True for the nodes of a &mesh. */
+bool deck_lattice_is_mesh(const deck_lattice *l);
 /* By the contact its particles touch: its own, or those of others, or both. */
 bool deck_lattice_touches(const deck_lattice *l, const deck_contact *by);
-/* What messages call it: "bar", "link", or "lattice". */
+/* What messages call it: "bar", "link", "mesh", or "lattice". */
 const char *deck_lattice_word(const deck_lattice *l);
 /* 2 or 3: by the kind, where particles stand on no lattice by the setting; 0 for an unknown
    kind. */

@@ -41,7 +41,7 @@ static sweep *begin(body *of, const rows *lattice, const pl_law *law) {
 sweep *sweep_new(body *of, const pl_law *law, const double *parameters, sweep_engine_new *engine) {
   sweep *w = begin(of, of->lattice, law);
   new_fields(w);
-  w->engine = engine(w, parameters);
+  if (engine) w->engine = engine(w, parameters);
   return w;
 }
 

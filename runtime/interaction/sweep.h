@@ -54,7 +54,8 @@ struct sweep {
   sweep_engine engine;
 };
 
-/* The fields start at their initial values. The body is the sweep's from then on. */
+/* The fields start at their initial values. The body is the sweep's from then on. Without an engine
+   the caller sets it. */
 sweep *sweep_new(body *of, const pl_law *law, const double *parameters, sweep_engine_new *engine);
 /* One that finds forces of its own on a body that others move, and that it does not own. */
 sweep *sweep_beside(body *of, const rows *lattice, const pl_law *law, const double *parameters,

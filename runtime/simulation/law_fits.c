@@ -4,6 +4,7 @@
 #include <strings.h>
 
 #include "runtime/deck/group_monitor.h"
+#include "runtime/deck/lattice_kind.h"
 
 span law_fits_where(const deck *k, int lattice) {
   const deck_lattice *l = &k->lattices[lattice];
@@ -78,10 +79,24 @@ static bool topology_serves(const pl_law *law, const deck_lattice *l, const rows
   return false;
 }
 
+/* Laws of continua are for meshes, and these have no others. */
+static bool kind_differs(const pl_law *law, const deck *k, int lattice, diagnostics *d) {
+  const bool continuum = law->kind == PL_CONTINUUM;
+  diag_report(d, DIAG_CONFLICT, law_fits_where(k, lattice),
+              continuum ? "`%s` is a law of a continuum, but `%s` is no mesh"
+                        : "`%s` is no law of a continuum, but `%s` is a mesh",
+              law->name, k->lattices[lattice].name);
+  diag_hint(d, continuum ? "take a law of bonds or families, such as `lps`, or a &mesh"
+                         : "take a law that begins with `law continuum`, such as `elastic`");
+  return false;
+}
+
 bool law_fits_lattice(const pl_law *law, const deck *k, int lattice, const rows *w,
                       diagnostics *d) {
   const deck_lattice *l = &k->lattices[lattice];
   const bool same = law->dimensions == w->dimensions;
+  if ((law->kind == PL_CONTINUUM) != deck_lattice_is_mesh(l)) return kind_differs(law, k, lattice, d);
+  if (same && law->kind == PL_CONTINUUM) return true;
   if (same && (law->kind == PL_STATE || w->list)) return topology_serves(law, l, w, d);
   if (same && bravais_is_hexagon(l)) return true;
   if (!same) {

@@ -8,6 +8,7 @@
 #include "dsl/base/arena.h"
 #include "runtime/analysis/material.h"
 #include "runtime/analysis/stability.h"
+#include "runtime/deck/lattice_kind.h"
 #include "runtime/interaction/interaction.h"
 #include "runtime/filling/lattice.h"
 #include "runtime/filling/linked.h"
@@ -127,8 +128,28 @@ static const run_law *law_at_fault(const run_body *b) {
   return b->laws;
 }
 
+/* Freedoms of nodes that supports or drives have. */
+static unsigned char *held_freedoms(const run_body *b) {
+  unsigned char *held = must_calloc(2 * (size_t)b->lattice_rows->particle_count, 1);
+  for (long n = 0; n < b->loads->constraint_count; n++) {
+    const constraint *c = &b->loads->constraints[n];
+    held[2 * b->lattice_rows->site_particle[c->site] + c->component] = 1;
+  }
+  return held;
+}
+
+static bool find_limit_of_cells(run_body *b, const deck *k, diagnostics *d) {
+  const run_law *l = &b->laws[0];
+  unsigned char *held = held_freedoms(b);
+  cells_take_law(b->cells, l->law, l->parameters);
+  cells_step_limit(b->cells, held, &b->limit);
+  free(held);
+  return step_limit_check(k, law_fits_where(k, b->lattice), l->law, &b->limit, d);
+}
+
 static bool find_limit(run_body *b, const deck *k, diagnostics *d) {
   const run_law *l = &b->laws[0];
+  if (b->cells) return b->loads && find_limit_of_cells(b, k, d);
   if (b->law_count == 1)
     return step_limit_of(k, b->lattice, l->law, l->parameters, l->planes, b->lattice_rows,
                          &b->limit, d);
@@ -211,6 +232,10 @@ bool run_body_open(run_body *b, const deck *k, rows **built, diagnostics *d) {
   b->loads = loads_new(k, b->lattice, b->lattice_rows, b->fits ? b->law->name : "",
                        b->fits ? b->law->dof : ANY_DOF, d);
   if (!b->fits) return false;
+  if (deck_lattice_is_mesh(&k->lattices[b->lattice])) {
+    b->cells = cells_new(k, b->lattice, b->lattice_rows, d);
+    if (!b->cells) return false;
+  }
   for (int n = 0; n < b->law_count; n++)
     law_fits_protection(b->laws[n].law, k, b->lattice, d);
   return open_parts(b, k, d) && all_have_parameters(b) && open_materials(b, k, built, d) &&
@@ -237,6 +262,10 @@ static void open_state(run_body *b, const deck *k, double step) {
                                : k->output.losses ? BODY_LOSSES
                                                   : BODY_LEDGER;
   const int threads = choose_threads(b, k);
+  if (b->cells) {
+    b->state = l->state = cells_sweep(b->cells, l->parameters, step, threads, energies);
+    return;
+  }
   if (b->law_count == 1 && !run_body_is_link(b)) {
     b->state = l->state = interaction_new(b->lattice_rows, l->law, l->parameters, step, threads,
                                           energies, k->relaxation.increments > 0);
@@ -281,6 +310,7 @@ void run_body_free(run_body *b) {
     free(b->laws[n].bonds);
   }
   law_parts_free(b->parts, b->law_count);
+  cells_free(b->cells);
   if (b->lattice_rows) rows_free(b->lattice_rows);
 }
 

@@ -6,6 +6,7 @@
 #define PERILAT_RUNTIME_RUN_BODY_H
 
 #include "dsl/base/diagnostics.h"
+#include "runtime/continuum/cells.h"
 #include "runtime/analysis/step_limit.h"
 #include "runtime/interaction/damage.h"
 #include "runtime/interaction/sweep.h"
@@ -41,6 +42,7 @@ typedef struct run_body {
   sweep *state;      /* what moves the body: that of its law, or all of them together */
   body *body;        /* of the state */
   loads *loads;
+  cells *cells;     /* of a mesh; else NULL */
   step_limit limit; /* of this body alone; `step` is that of the run */
   ledger ledger;
   ledger_laws energies;

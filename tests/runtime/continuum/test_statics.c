@@ -67,7 +67,7 @@ static void elements_pass_the_patch_test(void **state) {
   open_patch(&c, 4);
   memset(c.m.element_free, 0, (size_t)mesh_node_count(&c.m));
   case_settle(&c);
-  assert_int_equal(c.K.layout.reach, 1);
+  assert_int_equal(c.K.reach, 1);
   pull_patch(&c);
   const static_result r = solve(&c);
   assert_true(r.solved && r.residual < 1e-11);

@@ -1,0 +1,44 @@
+/* The cells of a mesh at work: an engine (sweep.h) that finds the forces of nodes and moves them. A
+   linear law has its stiffness assembled once (node_stencil.h), f = K u.
+
+   Steps are those of the time loop, central differences. Newmark's method with beta_2 = 0 and
+   beta_1 > 1/2 is the same with the forces
+
+       f_n + (beta_1 - 1/2)(f_n - f_(n-1)),
+
+   which damps fast waves by (beta_1 - 1/2) omega dt/2 of the critical damping; what that takes is
+   in the ledger. Stable up to dt = sqrt(2/beta_1)/omega_max (Hughes 1987, 9.1). */
+#ifndef PERILAT_RUNTIME_CELLS_H
+#define PERILAT_RUNTIME_CELLS_H
+
+#include "dsl/base/diagnostics.h"
+#include "runtime/analysis/step_limit.h"
+#include "runtime/continuum/node_stencil.h"
+#include "runtime/deck/deck.h"
+#include "runtime/interaction/sweep.h"
+
+typedef struct cells {
+  const pl_law *law;
+  const rows *nodes; /* the mesh's, not owned */
+  double beta_1;
+  mesh mesh;
+  integration_points points;
+  plane_stiffness stiffness;
+  node_stencil stencil;
+  bool has_stencil;
+} cells;
+
+/* Of the deck's lattice of that number, a &mesh; its nodes learn what volume each stands for.
+   NULL with diagnostics. */
+cells *cells_new(const deck *k, int lattice, rows *nodes, diagnostics *d);
+void cells_free(cells *c);
+
+/* The law with its parameters. */
+void cells_take_law(cells *c, const pl_law *law, const double *parameters);
+/* The longest stable step; held[2 n + d]: freedoms that do not move by themselves. */
+void cells_step_limit(const cells *c, const unsigned char *held, step_limit *limit);
+/* At rest; to be freed by sweep_free, before the cells. */
+sweep *cells_sweep(cells *c, const double *parameters, double time_step, int threads,
+                   body_ledger ledger);
+
+#endif
