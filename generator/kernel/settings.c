@@ -8,7 +8,7 @@
 
 bool settings_of_group(arena *a, const namelist_group *g, deck_material *m, diagnostics *d) {
   m->item.where = g->where;
-  bool good = deck_assignments_read(a, g, m, d);
+  bool good = deck_assignments_read(a, g, &deck_group_material, m, d);
   for (int k = 0; k < m->assignment_count; k++) {
     const deck_placed *by = m->assignments[k].placed;
     if (!by) continue;

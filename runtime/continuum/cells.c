@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "runtime/analysis/material.h"
 #include "runtime/base/lane_sum.h"
 #include "runtime/body/advance.h"
 #include "runtime/body/motion.h"
@@ -40,6 +41,12 @@ cells *cells_new(const deck *k, int lattice, rows *nodes, diagnostics *d) {
     free(c);
     return NULL;
   }
+  if (!tips_new(k, k->lattices[lattice].name, &c->mesh, &c->tips, d)) {
+    tips_free(c->tips);
+    mesh_close(&c->mesh);
+    free(c);
+    return NULL;
+  }
   integration_points_open(&c->points, &c->mesh);
   find_volumes(c, nodes);
   return c;
@@ -50,6 +57,7 @@ void cells_free(cells *c) {
   if (c->has_stencil) node_stencil_close(&c->stencil);
   integration_points_close(&c->points);
   mesh_close(&c->mesh);
+  tips_free(c->tips);
   free(c);
 }
 
@@ -178,6 +186,8 @@ static void move_rows(sweep *w, int block) {
 static void step(sweep *w, int stage, int block) {
   if (stage == 0) {
     body_step_begins(w->body, block);
+    if (block == 0 && own(w)->of->tips)
+      tips_before(own(w)->of->tips, w->body, &own(w)->of->stencil);
     find_resistance(w, block);
   } else {
     move_rows(w, block);
@@ -198,6 +208,7 @@ static void turn(sweep *w) {
     exchange(&e->added_before[d], &e->added[d]);
   }
   e->begun = true;
+  if (e->of->tips) tips_after(e->of->tips, w->body, &e->of->stencil);
 }
 
 static void observe_rows(sweep *w, int block) {
@@ -263,6 +274,7 @@ sweep *cells_sweep(cells *c, const double *parameters, double time_step, int thr
     e->driving[d] = body_doubles(of, c->nodes->size);
   }
   e->row_rate = body_doubles(of, c->nodes->row_count);
+  if (c->tips) tips_take(c->tips, &c->stiffness, material_density(c->law, parameters), time_step);
   w->engine = (sweep_engine){.step_stages = 2,
                              .force_stages = 2,
                              .observe_stages = 2,

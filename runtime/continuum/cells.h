@@ -14,6 +14,7 @@
 #include "dsl/base/diagnostics.h"
 #include "runtime/analysis/step_limit.h"
 #include "runtime/continuum/node_stencil.h"
+#include "runtime/continuum/tips.h"
 #include "runtime/deck/deck.h"
 #include "runtime/interaction/sweep.h"
 
@@ -26,6 +27,7 @@ typedef struct cells {
   plane_stiffness stiffness;
   node_stencil stencil;
   bool has_stencil;
+  tips *tips; /* of its cracks; NULL without */
 } cells;
 
 /* Of the deck's lattice of that number, a &mesh; its nodes learn what volume each stands for.

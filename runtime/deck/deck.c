@@ -71,6 +71,7 @@ deck_names *deck_names_new(arena *a) {
 FIND(region, name, true)
 FIND(lattice, name, true)
 FIND(monitor, name, true)
+FIND(crack, name, true)
 FIND(material, lattice, !k->materials[i].region && !k->materials[i].between[0])
 
 const deck_material *deck_material_of(const deck *k, int lattice) {

@@ -135,6 +135,29 @@ typedef struct deck_material {
   bool beside; /* other laws are at work on the lattice, too */
 } deck_material;
 
+typedef struct deck_crack { /* in the element-free part of a mesh */
+  deck_item item;
+  const char *name, *mesh;
+  const double *points; /* x1, y1, x2, y2, ..., m */
+  int point_count;      /* pairs */
+  bool grows;
+  const char *model;      /* law of its tips; NULL where it does not grow */
+  deck_material material; /* that law with what the deck sets of it */
+} deck_crack;
+
+typedef enum tip_integral { TIPS_PLATEAU, TIPS_PYRAMID } tip_integral;
+
+typedef struct deck_tips { /* how stress intensities are found, and how often */
+  deck_item item;
+  tip_integral integral;
+  double half_size;   /* of the box, spacings along x */
+  int points;         /* own points: cells of 2 x 2 a quadrant along either axis; 0: the mesh's */
+  double check_every; /* s; 0: check_steps */
+  int check_steps, updates;
+  double segment; /* least length of a leg before the crack may turn, spacings along x */
+  double corner[3], size[3]; /* m: the rectangle in which cracks grow; size 0: the mesh */
+} deck_tips;
+
 /* A law at work on a lattice: that of its material without region first, then those of regions with
    another law, and of bonds between regions. */
 typedef struct deck_interaction {
@@ -408,6 +431,8 @@ typedef struct deck_file { /* a table that a load was read from */
   MORE(link)                                                                                       \
   MORE(mesh)                                                                                       \
   LIST(zone)                                                                                       \
+  LIST(crack)                                                                                      \
+  ONE(tips)                                                                                        \
   ONE(newmark)                                                                                     \
   LIST(material)                                                                                   \
   LIST(field)                                                                                      \
@@ -479,6 +504,7 @@ bool deck_lacks(const deck *k, const char *group);
 int deck_find_region(const deck *k, const char *name);
 int deck_find_lattice(const deck *k, const char *name);
 int deck_find_monitor(const deck *k, const char *name);
+int deck_find_crack(const deck *k, const char *name);
 /* Index of the first &material of a lattice that is of the whole of it, or -1. */
 int deck_find_material(const deck *k, const char *lattice);
 /* That of lattice number `lattice`; NULL without one. */

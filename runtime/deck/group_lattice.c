@@ -360,12 +360,12 @@ static bool read_assignment(arena *memory, const namelist_group *g, const nameli
   return true;
 }
 
-bool deck_assignments_read(arena *memory, const namelist_group *g, deck_material *m,
-                           diagnostics *d) {
+bool deck_assignments_read(arena *memory, const namelist_group *g, const deck_group_info *info,
+                           deck_material *m, diagnostics *d) {
   const int errors = d->errors;
   m->assignments = arena_alloc(memory, (size_t)g->key_count * sizeof *m->assignments);
   for (int i = 0; i < g->key_count; i++) {
-    if (deck_key_find(&deck_group_material, g->keys[i].name) >= 0) continue;
+    if (deck_key_find(info, g->keys[i].name) >= 0) continue;
     if (read_assignment(memory, g, &g->keys[i], m->lattice, &m->assignments[m->assignment_count],
                         d))
       m->assignment_count++;
@@ -400,7 +400,7 @@ static bool take_lattice(deck_reader *r, const namelist_group *from, deck_materi
 static void check_material(deck_reader *r, const namelist_group *from, void *into) {
   deck_material *item = into;
   const bool known = take_lattice(r, from, item);
-  deck_assignments_read(r->memory, from, item, r->d);
+  deck_assignments_read(r->memory, from, &deck_group_material, item, r->d);
   if (!known) return;
   const int first = deck_find_material(r->k, item->lattice);
   deck_refuse_both(r, from, "region", "between");

@@ -3,6 +3,8 @@
 #include <math.h>
 
 #include "runtime/deck/deck_check.h"
+#include "runtime/deck/deck_value.h"
+#include "runtime/deck/group_lattice.h"
 #include "runtime/deck/lattice_kind.h"
 
 /* --- the mesh --------------------------------------------------------------------------------- */
@@ -140,6 +142,159 @@ DECK_MORE(mesh, lattice, .identity = "name", .begin = begin_mesh, .check = check
           .doc = "A rectangle of nodes and cells, whose law is one of a continuum. It needs no "
                  "`&body`; everywhere else it is named as a lattice is, and its nodes are the "
                  "particles.");
+
+/* --- cracks ----------------------------------------------------------------------------------- */
+
+static const deck_key_info crack_keys[] = {
+    {.name = "name", .type = DECK_NAME, .required = true, DECK_AT(crack, name), .doc = "its name"},
+    {.name = "mesh",
+     .type = DECK_NAME,
+     .required = true,
+     DECK_AT(crack, mesh),
+     .doc = "name of the mesh that it is in"},
+    {.name = "points",
+     .type = DECK_REALS,
+     .unit = "m",
+     .required = true,
+     DECK_AT(crack, points),
+     DECK_COUNT_AT(crack, point_count),
+     .doc = "x1, y1, x2, y2, ... of its legs, from end to end; an end inside the mesh is a tip"},
+    {.name = "grows",
+     .type = DECK_LOGICAL,
+     .fallback = ".false.",
+     DECK_AT(crack, grows),
+     .doc = "its tips run on as the law says"},
+    {.name = "model",
+     .type = DECK_NAME,
+     DECK_AT(crack, model),
+     .fallback = "= none; required of a crack that grows",
+     .doc = "name of a law of cracks in `models/`, or a path that ends in `.plm`"},
+};
+
+static bool has_points(deck_reader *r, deck_crack *item) {
+  const span where = deck_where(&item->item, "points");
+  if (item->point_count % 2 || item->point_count < 4) {
+    diag_report(r->d, DIAG_BAD_VALUE, where,
+                item->point_count % 2 ? "a point has two coordinates, but `points` has %d values"
+                                      : "a crack has at least two points: here are %d values",
+                item->point_count);
+    return false;
+  }
+  item->point_count /= 2;
+  for (int k = 1; k < item->point_count; k++)
+    if (item->points[2 * k] == item->points[2 * k - 2] &&
+        item->points[2 * k + 1] == item->points[2 * k - 1]) {
+      diag_report(r->d, DIAG_BAD_VALUE, where, "points %d and %d are the same", k, k + 1);
+      return false;
+    }
+  return true;
+}
+
+static void check_crack(deck_reader *r, const namelist_group *from, void *into) {
+  deck_crack *item = into;
+  const int first = deck_find_crack(r->k, item->name);
+  deck_check_name(r, "crack", item->name, &item->item,
+                  first < 0 ? NULL : &r->k->cracks[first].item);
+  deck_mesh_known(r, &item->item, item->mesh);
+  if (item->point_count > 0) has_points(r, item);
+  item->material = (deck_material){
+      .item = item->item, .lattice = item->mesh, .mesh = item->mesh, .model = item->model};
+  deck_assignments_read(r->memory, from, &deck_group_crack, &item->material, r->d);
+  if (item->grows && !item->model) {
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "a crack that grows needs a `model`");
+    diag_hint(r->d, "such as model = 'lefm'  K_Ic = '0.8 MPa*m^(1/2)'");
+  } else if (!item->model && item->material.assignment_count > 0) {
+    diag_report(r->d, DIAG_UNKNOWN_KEY, item->material.assignments[0].name_where,
+                "`&crack` has no key `%s`", item->material.assignments[0].name);
+    diag_hint(r->d, "parameters are those of a `model`");
+  }
+}
+
+DECK_LIST(crack, .identity = "name", .open = true, .check = check_crack,
+          .doc = "A crack in the element-free part of a mesh: nodes do not act across it. Every "
+                 "other key sets a parameter or an option of its law.");
+
+static const deck_key_info tips_keys[] = {
+    {.name = "integral",
+     .type = DECK_CHOICE,
+     .choices = "plateau|pyramid",
+     .fallback = "'plateau'",
+     DECK_AT(tips, integral),
+     .doc =
+         "weight of the interaction integral over the box: 1 up to half of the way from the tip, "
+         "or falling from the tip on"},
+    {.name = "half_size",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_POSITIVE,
+     .fallback = "4",
+     DECK_AT(tips, half_size),
+     .doc = "of the box around a tip, in spacings along x; less than 4 is coarse"},
+    {.name = "points",
+     .type = DECK_COUNT,
+     .fallback = "0",
+     .most = 64,
+     DECK_AT(tips, points),
+     .doc = "own points of the integral: so many cells of 2 x 2 along either axis of a quadrant of "
+            "the box; 0: the mesh's points inside"},
+    {.name = "check_every",
+     .type = DECK_REAL,
+     .unit = "s",
+     .bound = BOUND_POSITIVE,
+     DECK_AT(tips, check_every),
+     .fallback = "= as `check_steps` says",
+     .doc = "time between two looks at the tips: stress intensities, whether and where to they "
+            "grow"},
+    {.name = "check_steps",
+     .type = DECK_COUNT,
+     .fallback = "100",
+     .most = 1000000000,
+     DECK_AT(tips, check_steps),
+     .doc = "the same in steps"},
+    {.name = "updates",
+     .type = DECK_COUNT,
+     .fallback = "5",
+     .most = 1000000,
+     DECK_AT(tips, updates),
+     .doc = "growing tips advance so often from one look to the next"},
+    {.name = "segment",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_NOT_NEGATIVE,
+     .fallback = "= half of `half_size`",
+     DECK_AT(tips, segment),
+     .doc = "in spacings along x: a crack turns once its last leg is at least as long"},
+    {.name = "corner",
+     .type = DECK_PLACE,
+     .unit = "m",
+     DECK_AT(tips, corner),
+     .fallback = "= the mesh's",
+     .doc = "of the rectangle in which cracks grow, the corner of least coordinates"},
+    {.name = "size",
+     .type = DECK_PLACE,
+     .unit = "m",
+     .bound = BOUND_POSITIVE,
+     DECK_AT(tips, size),
+     .fallback = "= the mesh's",
+     .doc = "its extent; tips that leave it are finished"},
+};
+
+static void check_tips(deck_reader *r, const namelist_group *from, void *into) {
+  deck_tips *item = into;
+  deck_refuse_both(r, from, "check_every", "check_steps");
+  deck_check_places(r, from, &deck_group_tips, 2);
+  if (!namelist_find(from, "segment")) item->segment = 0.5 * item->half_size;
+  const char *const counts[] = {"check_steps", "updates"};
+  const int values[] = {item->check_steps, item->updates};
+  for (int k = 0; k < 2; k++)
+    if (values[k] < 1)
+      diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, counts[k]),
+                  "`%s` is at least 1", counts[k]);
+}
+
+DECK_ONE(tips, .check = check_tips,
+         .doc = "How stress intensities at the tips of cracks are found, how often, and what of a "
+                "path they allow.");
 
 /* --- steps ------------------------------------------------------------------------------------ */
 

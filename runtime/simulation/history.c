@@ -72,22 +72,65 @@ static char *energy_name(const history *h, int energy) {
   return name;
 }
 
+/* Series of the tips of all meshes. */
+static int crack_series(const history *h) {
+  int count = 0;
+  for (int b = 0; b < h->monitors->body_count; b++) {
+    const cells *c = h->monitors->bodies[b].cells;
+    count += c && c->tips ? c->tips->count * TIP_SERIES_COUNT : 0;
+  }
+  return count;
+}
+
+/* "notch/K_I", "notch/start/K_I". */
+static char *crack_name(const history *h, int series) {
+  char folder[256], *name;
+  int tip = series / TIP_SERIES_COUNT;
+  for (int b = 0;; b++) {
+    const cells *c = h->monitors->bodies[b].cells;
+    const int here = c && c->tips ? c->tips->count : 0;
+    if (tip < here) {
+      tip_folder(c->tips, tip, folder, sizeof folder);
+      break;
+    }
+    tip -= here;
+  }
+  const char *last = tip_series_names[series % TIP_SERIES_COUNT];
+  const size_t size = strlen(folder) + strlen(last) + 2;
+  name = must_alloc(size);
+  snprintf(name, size, "%s/%s", folder, last);
+  return name;
+}
+
+/* Of the last look at each tip. */
+static void sample_cracks(history *h) {
+  double *values = h->sampled + h->monitors->count + h->energies;
+  for (int b = 0; b < h->monitors->body_count; b++) {
+    const cells *c = h->monitors->bodies[b].cells;
+    for (int n = 0; c && c->tips && n < c->tips->count; n++, values += TIP_SERIES_COUNT)
+      tip_series_values(c->tips, &c->tips->items[n], values);
+  }
+}
+
 history history_new(const monitors *m, const run_contacts *c, const relaxation *r, bool energies,
                     int64_t capacity) {
   history h = {.monitors = m, .contacts = c, .relaxation = r, .capacity = capacity};
   h.energies = energies ? whole_terms(&h) + laws_beside(&h) * HISTORY_LAW_TERMS : 0;
-  h.series_count = m->count + h.energies + (r ? INCREMENT_SERIES : 0);
+  h.cracks = crack_series(&h);
+  h.series_count = m->count + h.energies + h.cracks + (r ? INCREMENT_SERIES : 0);
   h.time = must_calloc((size_t)capacity, sizeof *h.time);
   h.values = must_calloc((size_t)capacity * (size_t)h.series_count + 1, sizeof *h.values);
   h.sampled = must_calloc((size_t)h.series_count + 1, sizeof *h.sampled);
-  h.names = must_calloc((size_t)h.energies + 1, sizeof *h.names);
+  h.names = must_calloc((size_t)(h.energies + h.cracks) + 1, sizeof *h.names);
   for (int k = 0; k < h.energies; k++)
     h.names[k] = energy_name(&h, k);
+  for (int k = 0; k < h.cracks; k++)
+    h.names[h.energies + k] = crack_name(&h, k);
   return h;
 }
 
 void history_free(history *h) {
-  for (int k = 0; k < h->energies; k++)
+  for (int k = 0; k < h->energies + h->cracks; k++)
     free(h->names[k]);
   free(h->names);
   free(h->time);
@@ -114,22 +157,31 @@ void history_add(history *h, int64_t sample, double time) {
     own[INCREMENT_STEPS] = (double)h->relaxation->state.steps;
     own[INCREMENT_UNBALANCE] = h->relaxation->state.unbalance;
   }
+  sample_cracks(h);
   h->time[sample] = time;
   for (int k = 0; k < h->series_count; k++)
     h->values[k * h->capacity + sample] = h->sampled[k];
 }
 
 const char *history_series(const history *h, int k, const char **symbol, const double **values) {
-  const int energy = k - h->monitors->count, own = energy - h->energies;
+  const int energy = k - h->monitors->count, of_crack = energy - h->energies,
+            own = of_crack - h->cracks;
   if (values) *values = h->values + k * h->capacity;
-  if (symbol) *symbol = energy < 0 ? h->monitors->items[k].unit : own < 0 ? "J" : "1";
+  if (symbol)
+    *symbol = energy < 0     ? h->monitors->items[k].unit
+              : of_crack < 0 ? "J"
+              : own < 0      ? tip_series_units[of_crack % TIP_SERIES_COUNT]
+                             : "1";
   if (energy < 0) return h->monitors->deck->monitors[k].name;
   return own < 0 ? h->names[energy] : increment_names[own];
 }
 
 char *history_words(const history *h, int k, arena *a) {
-  const int energy = k - h->monitors->count, own = energy - h->energies;
+  const int energy = k - h->monitors->count, of_crack = energy - h->energies,
+            own = of_crack - h->cracks;
   if (energy < 0) return monitor_words(h->monitors, k, a);
+  if (of_crack >= 0 && own < 0)
+    return arena_printf(a, "%s", tip_series_words[of_crack % TIP_SERIES_COUNT]);
   if (own >= 0) return arena_printf(a, "%s", increment_words[own]);
   const char *words = ledger_words[term_of(h, energy)], *owner = owner_of(h, energy);
   return owner ? arena_printf(a, "%s, of `%s`", words, owner) : arena_printf(a, "%s", words);

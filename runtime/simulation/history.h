@@ -16,7 +16,8 @@ typedef struct history {
   const run_contacts *contacts;
   const relaxation *relaxation; /* NULL: a dynamic run */
   int energies;                 /* series of energies, or 0 */
-  char **names;                 /* [energies] */
+  int cracks;                   /* series of the tips of cracks, behind these */
+  char **names;                 /* [energies + cracks] */
   int series_count;
   int64_t capacity;
   double *time, *values; /* [capacity]; [series][capacity] */

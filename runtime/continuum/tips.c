@@ -1,0 +1,296 @@
+#include "runtime/continuum/tips.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
+#include "runtime/crack/hoop_stress.h"
+#include "runtime/mesh/shape_functions.h"
+
+static const double ON_BORDER = 1e-6; /* spacings */
+
+/* --- set-up ----------------------------------------------------------------------------------- */
+
+static bool is_inside(const mesh *m, const double at[2]) {
+  bool inside = true;
+  for (int a = 0; a < 2; a++) {
+    const double margin = ON_BORDER * m->spacing[a];
+    inside =
+        inside && at[a] > m->corner[a] + margin && at[a] < mesh_at(m, a, m->nodes[a] - 1) - margin;
+  }
+  return inside;
+}
+
+static double distance(const double a[2], const double b[2]) {
+  return pl_hypot(b[0] - a[0], b[1] - a[1]);
+}
+
+static double line_length(const deck_crack *c) {
+  double sum = 0;
+  for (int k = 1; k < c->point_count; k++)
+    sum += distance(c->points + 2 * k - 2, c->points + 2 * k);
+  return sum;
+}
+
+static mesh_tip tip_of(const deck_crack *c, bool at_start) {
+  const int end = at_start ? 0 : c->point_count - 1, before = at_start ? 1 : end - 1;
+  const double *at = c->points + 2 * end, *from = c->points + 2 * before;
+  return (mesh_tip){.of = c,
+                    .at_start = at_start,
+                    .now = {.at = {at[0], at[1]},
+                            .angle = pl_atan2(at[1] - from[1], at[0] - from[0]),
+                            .last = distance(from, at),
+                            .length = line_length(c)}};
+}
+
+static void add_tip(tips *t, mesh *m, mesh_tip tip) {
+  tip.number = t->count;
+  t->items = must_realloc(t->items, ((size_t)t->count + 1) * sizeof *t->items);
+  m->cracks.tips = must_realloc(m->cracks.tips, ((size_t)t->count + 1) * sizeof *m->cracks.tips);
+  memcpy(m->cracks.tips[t->count], tip.now.at, sizeof tip.now.at);
+  t->items[t->count++] = tip;
+  m->cracks.tip_count = t->count;
+}
+
+/* A finite element knows nothing of cracks. */
+static bool is_seen(const deck_crack *c, const mesh *m, diagnostics *d) {
+  for (int k = 1; k < c->point_count; k++) {
+    const double *a = c->points + 2 * k - 2, *b = c->points + 2 * k;
+    const double finest = 0.1 * pl_min(m->spacing[0], m->spacing[1]);
+    const int parts = (int)ceil(distance(a, b) / finest) + 1;
+    for (int n = 0; n < parts; n++) {
+      const double u = (n + 0.5) / parts,
+                   at[2] = {a[0] + u * (b[0] - a[0]), a[1] + u * (b[1] - a[1])};
+      const int cell = mesh_cell_of(m, at);
+      if (cell >= 0 && m->cell[cell] != CELL_ELEMENT) continue;
+      diag_report(d, DIAG_BAD_VALUE, deck_where(&c->item, "points"),
+                  cell < 0 ? "the crack leaves the mesh at (%.6g, %.6g) mm"
+                           : "at (%.6g, %.6g) mm the crack is in a finite element, which does not "
+                             "see it",
+                  1e3 * at[0], 1e3 * at[1]);
+      diag_hint(d, cell < 0 ? "a crack may end on the edge of the mesh, not beyond"
+                            : "make that part element-free: leave it out of the `&zone`");
+      return false;
+    }
+  }
+  return true;
+}
+
+/* Along a row of nodes all of these count as on one side: K_I is 57 % low, and K_II is none of the
+   body's. */
+static void warn_of_nodes(const deck_crack *c, const mesh *m, diagnostics *d) {
+  for (int k = 1; k < c->point_count; k++)
+    for (int a = 0; a < 2; a++) {
+      const double *from = c->points + 2 * k - 2, *to = c->points + 2 * k;
+      const double row = (from[a] - m->corner[a]) / m->spacing[a];
+      if (fabs(from[a] - to[a]) > ON_BORDER * m->spacing[a] || fabs(row - round(row)) > ON_BORDER)
+        continue;
+      diag_report(d, DIAG_DECK_WARNING, deck_where(&c->item, "points"),
+                  "leg %d of the crack runs along a %s of nodes, which all count as on one of its "
+                  "sides: stress intensities will be wrong",
+                  k, a ? "row" : "column");
+      diag_hint(d,
+                "move it by a fifth of a spacing, %.4g mm, along %c, or take another number of "
+                "nodes",
+                0.2e3 * m->spacing[a], "xy"[a]);
+      return;
+    }
+}
+
+static bool add_crack(tips *t, const deck_crack *c, mesh *m, diagnostics *d) {
+  if (!is_seen(c, m, d)) return false;
+  warn_of_nodes(c, m, d);
+  for (int k = 1; k < c->point_count; k++)
+    crack_lines_add(&m->cracks, c->points + 2 * k - 2, c->points + 2 * k);
+  for (int start = 1; start >= 0; start--) {
+    const mesh_tip tip = tip_of(c, start);
+    if (is_inside(m, tip.now.at)) add_tip(t, m, tip);
+  }
+  return true;
+}
+
+bool tips_new(const deck *k, const char *name, mesh *m, tips **out, diagnostics *d) {
+  tips *t = must_calloc(1, sizeof *t);
+  bool good = true, any = false;
+  t->options = &k->tips;
+  t->half_size = k->tips.half_size * m->spacing[0];
+  for (int n = 0; n < k->crack_count; n++)
+    if (strcmp(k->cracks[n].mesh, name) == 0) {
+      good = add_crack(t, &k->cracks[n], m, d) && good;
+      any = true;
+    }
+  if (any) {
+    for (int a = 0; a < 2; a++)
+      t->kept[a] = must_calloc((size_t)mesh_node_count(m), sizeof(double));
+    *out = t;
+  } else {
+    free(t);
+  }
+  return good;
+}
+
+void tips_free(tips *t) {
+  if (!t) return;
+  free(t->items);
+  free(t->points);
+  free(t->kept[0]);
+  free(t->kept[1]);
+  free(t);
+}
+
+void tips_take(tips *t, const plane_stiffness *law, double density, double time_step) {
+  const deck_tips *o = t->options;
+  t->medium = crack_medium_of(law->D[0][0], law->D[0][1], law->D[2][2], density);
+  t->check_steps = o->check_every > 0 ? llround(o->check_every / time_step) : o->check_steps;
+  if (t->check_steps < 1) t->check_steps = 1;
+}
+
+/* --- a look ----------------------------------------------------------------------------------- */
+
+static double tips_speed(const tips *t, const mesh_tip *p) {
+  return pl_max(p->now.speed, 0.01 * t->medium.c_s);
+}
+
+static bool is_time(const tips *t) {
+  return t->count > 0 && t->step > 0 && t->step % t->check_steps == 0;
+}
+
+void tips_before(tips *t, const body *w, const node_stencil *k) {
+  if (!is_time(t)) return;
+  for (int d = 0; d < 2; d++)
+    for (int n = 0; n < mesh_node_count(k->of); n++)
+      t->kept[d][n] = w->velocity[d][node_layout_at(&k->layout, n)];
+}
+
+/* The body's fields at a point, at the instant before the step that has just moved the nodes. */
+static tip_point fields_at(const tips *t, const body *w, const node_stencil *k, const double at[2],
+                           double area, int cell) {
+  tip_point p = {.at = {at[0], at[1]}, .area = area};
+  point_shape s;
+  shape_functions(k->of, cell, at, &s);
+  for (int q = 0; q < s.count; q++) {
+    const long site = node_layout_at(&k->layout, s.node[q]);
+    for (int d = 0; d < 2; d++) {
+      const double after = w->velocity[d][site], before = t->kept[d][s.node[q]];
+      const double u = w->displacement[d][site] - w->time_step * after, v = 0.5 * (before + after);
+      p.gradient[d][0] += s.nx[q] * u;
+      p.gradient[d][1] += s.ny[q] * u;
+      p.velocity[d] += s.n[q] * v;
+      p.velocity_gradient[d][0] += s.nx[q] * v;
+      p.velocity_gradient[d][1] += s.ny[q] * v;
+      p.acceleration[d] += s.n[q] * (after - before) / w->time_step;
+    }
+  }
+  const double e[3] = {p.gradient[0][0], p.gradient[1][1], p.gradient[0][1] + p.gradient[1][0]};
+  const plane_stiffness *law = &k->laws[k->law_of_cell ? k->law_of_cell[cell] : 0];
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++)
+      p.stress[a] += law->D[a][b] * e[b];
+  return p;
+}
+
+static void note(tips *t, int count, tip_point p) {
+  if (count == t->room) {
+    t->room = t->room ? 2 * t->room : 1024;
+    t->points = must_realloc(t->points, (size_t)t->room * sizeof *t->points);
+  }
+  t->points[count] = p;
+}
+
+/* The mesh's points inside the box. */
+static int points_of_mesh(tips *t, const body *w, const node_stencil *k, const tip_box *b) {
+  const mesh *m = k->of;
+  double lower[2], upper[2], slope[2];
+  int first[2], last[2], count = 0;
+  tip_box_extent(b, lower, upper);
+  for (int a = 0; a < 2; a++) {
+    first[a] = (int)floor((lower[a] - m->corner[a]) / m->spacing[a]);
+    last[a] = (int)floor((upper[a] - m->corner[a]) / m->spacing[a]);
+    if (first[a] < 0) first[a] = 0;
+    if (last[a] > m->nodes[a] - 2) last[a] = m->nodes[a] - 2;
+  }
+  for (int j = first[1]; j <= last[1]; j++)
+    for (int i = first[0]; i <= last[0]; i++) {
+      const int cell = mesh_cell_at(m, i, j);
+      for (int n = k->points->first[cell]; n < k->points->first[cell + 1]; n++) {
+        const double *at = k->points->at[n];
+        if (tip_box_weight(b, at, slope) == 0) continue;
+        note(t, count++, fields_at(t, w, k, at, k->points->area[n], cell));
+      }
+    }
+  return count;
+}
+
+/* Own points of the box: cells of 2 x 2 in each quadrant. Those outside the mesh are left out. */
+static int points_of_box(tips *t, const body *w, const node_stencil *k, const tip_box *b) {
+  const int cells = t->options->points;
+  const double c = cos(b->angle), s = sin(b->angle), gauss = 1 / sqrt(3.0);
+  int count = 0;
+  for (int quadrant = 0; quadrant < 4; quadrant++)
+    for (int n = 0; n < 4 * cells * cells; n++) {
+      const double side[2] = {quadrant % 2 ? -b->behind : b->ahead,
+                              quadrant / 2 ? -b->across : b->across};
+      const int i = n % (2 * cells), j = n / (2 * cells);
+      const double x = side[0] * (i / 2 + 0.5 * (1 + (i % 2 ? gauss : -gauss))) / cells,
+                   y = side[1] * (j / 2 + 0.5 * (1 + (j % 2 ? gauss : -gauss))) / cells;
+      const double at[2] = {b->at[0] + c * x - s * y, b->at[1] + s * x + c * y};
+      const int cell = mesh_cell_of(k->of, at);
+      if (cell < 0 || k->of->cell[cell] == CELL_ABSENT) continue;
+      const double area = fabs(side[0] * side[1]) / (4.0 * cells * cells);
+      note(t, count++, fields_at(t, w, k, at, area, cell));
+    }
+  return count;
+}
+
+static void look_at(tips *t, mesh_tip *p, const body *w, const node_stencil *k) {
+  const box_weight weight = t->options->integral == TIPS_PYRAMID ? WEIGHT_PYRAMID : WEIGHT_PLATEAU;
+  const tip_box b =
+      tip_box_of(p->now.at, p->now.angle, t->half_size, p->now.last, !p->now.grown, weight);
+  const int count =
+      t->options->points > 0 ? points_of_box(t, w, k, &b) : points_of_mesh(t, w, k, &b);
+  tip_intensity(&t->medium, &b, t->points, count, p->now.speed, p->now.K);
+}
+
+void tips_after(tips *t, const body *w, const node_stencil *k) {
+  if (is_time(t))
+    for (int n = 0; n < t->count; n++)
+      if (!t->items[n].now.done) look_at(t, &t->items[n], w, k);
+  t->step++;
+}
+
+/* --- series ----------------------------------------------------------------------------------- */
+
+#define X(name, unit, words, value) name,
+const char *const tip_series_names[TIP_SERIES_COUNT] = {TIP_SERIES(X)};
+#undef X
+#define X(name, unit, words, value) unit,
+const char *const tip_series_units[TIP_SERIES_COUNT] = {TIP_SERIES(X)};
+#undef X
+#define X(name, unit, words, value) words,
+const char *const tip_series_words[TIP_SERIES_COUNT] = {TIP_SERIES(X)};
+#undef X
+
+void tip_series_values(const tips *t, const mesh_tip *p, double *values) {
+  int k = 0;
+#define X(name, unit, words, value) values[k++] = value;
+  TIP_SERIES(X)
+#undef X
+}
+
+/* Whether the crack's other end is a tip, too. */
+static bool has_two(const tips *t, const deck_crack *c) {
+  int count = 0;
+  for (int n = 0; n < t->count; n++)
+    count += t->items[n].of == c;
+  return count == 2;
+}
+
+const char *tip_folder(const tips *t, int tip, char *text, size_t size) {
+  const mesh_tip *p = &t->items[tip];
+  const bool start = p->at_start && has_two(t, p->of);
+  snprintf(text, size, "%s%s", p->of->name, start ? "/start" : "");
+  return text;
+}

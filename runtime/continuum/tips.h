@@ -1,0 +1,89 @@
+/* The tips of a mesh's cracks: their stress intensities at every look, and how they grow.
+
+   A look at the state t_n finds K_I and K_II of each tip (interaction_integral.h) from the body's
+   fields there: displacements, the mean of the velocities before and after, and what they differ by
+   over the step. Looks are at steps n = L, 2L, ...; between two of them growing tips advance `updates`
+   times. What the stiffness loses as a crack advances, with the displacements held, is energy that
+   the crack has released (ledger).
+
+   An end of a crack inside the mesh is a tip; one on its border is not. */
+#ifndef PERILAT_RUNTIME_TIPS_H
+#define PERILAT_RUNTIME_TIPS_H
+
+#include "dsl/base/diagnostics.h"
+#include "runtime/body/body.h"
+#include "runtime/continuum/node_stencil.h"
+#include "runtime/crack/interaction_integral.h"
+#include "runtime/deck/deck.h"
+
+/* What is known of a tip at the last look. */
+typedef struct tip_state {
+  double at[2];        /* m */
+  double angle;        /* rad, from x: of the last leg */
+  double last;         /* m: length of the last leg */
+  double length;       /* m: of the crack's line up to here, from its other end */
+  double K[2];         /* Pa m^(1/2) */
+  double speed;        /* m/s */
+  int64_t segments;    /* legs that have grown */
+  int64_t grown, done; /* it has grown; it grows no more */
+} tip_state;
+
+typedef struct mesh_tip {
+  const deck_crack *of;
+  bool at_start; /* of the crack's first point */
+  int number;    /* among the mesh's live tips */
+  tip_state now;
+} mesh_tip;
+
+typedef struct tips {
+  mesh_tip *items;
+  int count;
+  crack_medium medium;
+  const deck_tips *options;
+  double half_size;          /* m */
+  int64_t check_steps, step; /* steps between looks; steps done */
+  double *kept[2];           /* [nodes] m/s: velocities before the step of a look */
+  tip_point *points;         /* room for those of a box */
+  int room;
+} tips;
+
+/* The tips of the cracks of the mesh called `name`, which has these cracks already. NULL without
+   cracks; none without tips. False after a diagnostic. */
+bool tips_new(const deck *k, const char *name, mesh *m, tips **out, diagnostics *d);
+void tips_free(tips *t);
+/* The law at the tips, once it is known, and the step. */
+void tips_take(tips *t, const plane_stiffness *law, double density, double time_step);
+
+/* Before a step moves the nodes: what a look will need. */
+void tips_before(tips *t, const body *w, const node_stencil *k);
+/* When the step n -> n+1 has moved them: a look at t_n, if it is time for one. */
+void tips_after(tips *t, const body *w, const node_stencil *k);
+
+/* Series of a tip: their names, units, words and values. X(name, unit, words, value of tip `p`) */
+#define TIP_SERIES(X)                                                                              \
+  X("K_I", "Pa*m^(1/2)", "stress intensity factor of mode I", p->now.K[0])                         \
+  X("K_II", "Pa*m^(1/2)", "stress intensity factor of mode II", p->now.K[1])                       \
+  X("K_eq", "Pa*m^(1/2)", "stress intensity of the largest hoop stress",                           \
+    hoop_intensity(p->now.K, hoop_angle(p->now.K)))                                                \
+  X("kink", "1", "direction of the largest hoop stress, from the crack's own",                     \
+    hoop_angle(p->now.K))                                                                          \
+  X("energy_release", "N/m", "energy release rate",                                                \
+    tip_energy_release(&t->medium, tips_speed(t, p), p->now.K))                                    \
+  X("angle", "1", "direction of the last leg, from x", p->now.angle)                               \
+  X("length", "m", "length of the crack", p->now.length)                                           \
+  X("speed", "m/s", "speed of the tip", p->now.speed)                                              \
+  X("x", "m", "place of the tip along x", p->now.at[0])                                            \
+  X("y", "m", "place of the tip along y", p->now.at[1])                                            \
+  X("segments", "1", "legs that have grown", (double)p->now.segments)
+#define X(name, unit, words, value) +1
+enum { TIP_SERIES_COUNT = 0 TIP_SERIES(X) };
+#undef X
+extern const char *const tip_series_names[TIP_SERIES_COUNT];
+extern const char *const tip_series_units[TIP_SERIES_COUNT];
+extern const char *const tip_series_words[TIP_SERIES_COUNT];
+/* values[TIP_SERIES_COUNT] of a tip. */
+void tip_series_values(const tips *t, const mesh_tip *p, double *values);
+/* "notch", or "notch/start" of the first point of a crack with two tips. */
+const char *tip_folder(const tips *t, int tip, char *text, size_t size);
+
+#endif
