@@ -54,11 +54,11 @@
 
 /* What a law loses: to states and damage; to rate terms. */
 enum pl_loss { PL_LOST_TO_STATES = 0, PL_LOST_TO_RATES = 1, PL_LOSSES = 2 };
-enum pl_law_kind { PL_CENTRAL = 0, PL_MICROPOLAR = 1, PL_STATE = 2, PL_CONTINUUM = 3 };
+enum pl_law_kind { PL_CENTRAL = 0, PL_MICROPOLAR = 1, PL_STATE = 2, PL_CONTINUUM = 3, PL_CRACK = 4 };
 enum pl_field_kind { PL_FIELD_STATE = 0, PL_FIELD_DAMAGE = 1, PL_FIELD_OUTPUT = 2 };
 /* Where a field lives: one value a bond; one a particle; one for each neighbour of a particle; one a
    point of a continuum. */
-enum pl_place { PL_ON_BOND = 0, PL_ON_PARTICLE = 1, PL_ON_NEIGHBOUR = 2, PL_ON_POINT = 3 };
+enum pl_place { PL_ON_BOND = 0, PL_ON_PARTICLE = 1, PL_ON_NEIGHBOUR = 2, PL_ON_POINT = 3, PL_ON_TIP = 4 };
 
 /* Where a particle's neighbours stand: on rows at offsets that are the same along a row; on lists
    each has its own. */
@@ -316,6 +316,34 @@ typedef struct pl_points {
 typedef void (*pl_point_function)(const struct pl_law *law, const double *uniforms,
                                   const pl_points *points);
 
+/* Tips of cracks. */
+enum pl_tip_input {
+  PL_TIP_K_I,
+  PL_TIP_K_II,               /* Pa m^(1/2) */
+  PL_TIP_ENERGY_RELEASE,     /* N/m */
+  PL_TIP_ANGLE,              /* rad, from x: of the last leg */
+  PL_TIP_SPEED,              /* m/s */
+  PL_TIP_LENGTH,             /* m */
+  PL_TIP_RAYLEIGH_SPEED,     /* m/s */
+  PL_TIP_SHEAR_SPEED,
+  PL_TIP_DILATATIONAL_SPEED,
+  PL_TIP_INPUTS
+};
+enum pl_tip_result { PL_TIP_GROW /* 1, else 0 */, PL_TIP_TOWARD /* rad */, PL_TIP_RUN /* m/s */, PL_TIP_RESULTS };
+typedef struct pl_tips {
+  uint32_t size;
+  long count;                     /* a multiple of PL_LANES */
+  const double *const *in;        /* [PL_TIP_INPUTS][count] */
+  const double *const *old_field; /* [field_count][count] SI */
+  double *const *new_field;       /* [field_count][count] written; other memory than old_field */
+  double *const *out;             /* [PL_TIP_RESULTS][count] written; toward: from the crack's own
+                                     direction */
+  double *const *observed;        /* [output_count][count] written: the law's outputs */
+  double time, time_step;         /* s; of looks at the tip */
+} pl_tips;
+typedef void (*pl_tip_function)(const struct pl_law *law, const double *uniforms,
+                                const pl_tips *tips);
+
 /* Force planes. Central 2D: Fx, Fy on i (on j the opposite). Micropolar 2D: Fx, Fy, and the end
    moments M_i, M_j of the bond (on the particles the opposite); where it twists, the moment T on
    end j. */
@@ -415,6 +443,9 @@ typedef struct pl_law {
   pl_point_function point_tangent; /* tangent; changes nothing */
   /* The stress is the same linear function of the strain alone at all times, 0 without strain. */
   int linear;
+
+  /* Laws of cracks (kind PL_CRACK) have this alone. */
+  pl_tip_function tip_look;
 } pl_law;
 
 /* The one symbol that a compiled kernel exports. */

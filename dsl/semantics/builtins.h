@@ -15,6 +15,7 @@ enum {
   IN_STATE = 4,
   IN_SLIP = 8,
   IN_CONTINUUM = 16,
+  IN_CRACK = 32,
   IN_BOND = IN_CENTRAL | IN_MICROPOLAR | IN_SLIP,
   IN_LATTICE = IN_CENTRAL | IN_MICROPOLAR | IN_STATE,
   IN_ANY = 15
@@ -77,7 +78,25 @@ enum { MOVES, FIXED };
   X(STRAIN_RATE, "strain_rate", "1/s", TENSOR, POINT, IN_CONTINUUM, MOVES,                         \
     "x = trace(strain_rate)/10 [1/s]", "time derivative of the strain")                            \
   X(CELL_SIZE, "h", "m", SCALAR, POINT, IN_CONTINUUM, FIXED, "x = h/1 [mm]",                       \
-    "size of the cell that the point stands for: in the plane the root of its area")
+    "size of the cell that the point stands for: in the plane the root of its area")               \
+  X(K_I, "K_I", "Pa*m^(1/2)", SCALAR, TIP, IN_CRACK, MOVES, "x = K_I/K_Ic",                        \
+    "stress intensity factor of mode I: opening")                                                  \
+  X(K_II, "K_II", "Pa*m^(1/2)", SCALAR, TIP, IN_CRACK, MOVES, "x = K_II/K_Ic",                     \
+    "stress intensity factor of mode II: sliding")                                                 \
+  X(ENERGY_RELEASE, "energy_release", "N/m", SCALAR, TIP, IN_CRACK, MOVES,                         \
+    "x = energy_release/80 [N/m]", "energy release rate of the tip as it runs")                    \
+  X(ANGLE_NOW, "angle_now", "1", SCALAR, TIP, IN_CRACK, MOVES, "x = cos(angle_now)",               \
+    "direction of the crack's last leg, from x")                                                   \
+  X(SPEED_NOW, "speed_now", "m/s", SCALAR, TIP, IN_CRACK, MOVES, "x = speed_now/rayleigh_speed",   \
+    "speed of the tip; 0 where it does not run")                                                   \
+  X(CRACK_LENGTH, "length", "m", SCALAR, TIP, IN_CRACK, MOVES, "x = length/1 [mm]",                \
+    "length of the crack")                                                                         \
+  X(RAYLEIGH_SPEED, "rayleigh_speed", "m/s", SCALAR, TIP, IN_CRACK, FIXED,                         \
+    "x = speed_now/rayleigh_speed", "speed of waves along a surface")                              \
+  X(SHEAR_SPEED, "shear_speed", "m/s", SCALAR, TIP, IN_CRACK, FIXED,                               \
+    "x = speed_now/shear_speed", "speed of shear waves")                                           \
+  X(DILATATIONAL_SPEED, "dilatational_speed", "m/s", SCALAR, TIP, IN_CRACK, FIXED,                 \
+    "x = speed_now/dilatational_speed", "speed of dilatational waves")
 
 /* X(code, name, least arguments, most arguments, check of the arguments (calls.c), value, formula,
      a line of a law that calls it, meaning)

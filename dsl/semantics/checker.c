@@ -11,11 +11,13 @@ bool is_single(const checker *ck) {
 
 placement natural_place(const checker *ck) {
   if (ck->tree->law == LAW_CONTINUUM) return ON_POINT;
+  if (ck->tree->law == LAW_CRACK) return ON_TIP;
   return is_single(ck) ? ON_BOND : ON_PARTICLE;
 }
 
 const char *law_word(const checker *ck) {
   if (ck->tree->law == LAW_CONTINUUM) return "continuum";
+  if (ck->tree->law == LAW_CRACK) return "crack";
   return is_single(ck) ? "bond" : "state";
 }
 

@@ -207,9 +207,11 @@ static void declare_definition(checker *ck, stmt *s) {
   }
 }
 
-static const char *const result_names[RESULT_COUNT] = {"N", "V", "M_i", "M_j", "T", "W", "sigma"};
+static const char *const result_names[RESULT_COUNT] = {"N", "V", "M_i", "M_j", "T", "W", "sigma",
+                                                       "grow", "toward", "speed"};
 static const stmt_kind result_kinds[RESULT_COUNT] = {
-    STMT_FORCE, STMT_FORCE, STMT_MOMENT, STMT_MOMENT, STMT_MOMENT, STMT_ENERGY, STMT_STRESS};
+    STMT_FORCE, STMT_FORCE, STMT_MOMENT, STMT_MOMENT, STMT_MOMENT, STMT_ENERGY, STMT_STRESS,
+    STMT_GROW, STMT_TOWARD, STMT_SPEED};
 
 static void report_result_name(checker *ck, const stmt *s) {
   const char *kind = stmt_kind_name(s->kind);
@@ -300,6 +302,31 @@ static void declare_bond_result(checker *ck, stmt *s) {
   ck->law->results[which] = &e->symbol;
 }
 
+/* `grow`, `toward` and `speed` are no names that others could read. */
+static void declare_tip_result(checker *ck, stmt *s) {
+  int which = RESULT_GROW;
+  while (result_kinds[which] != s->kind)
+    which++;
+  if (ck->tree->law != LAW_CRACK) {
+    complain(ck, DIAG_LAW_KIND, s->name_where, "a %s law has no `%s`", law_word(ck), s->name);
+    diag_hint(ck->d, "it belongs to what a tip does: between `crack` and `end crack`");
+    return;
+  }
+  if (is_given_twice(ck, s, which)) return;
+  entry *e = arena_alloc(ck->memory, sizeof(entry));
+  *e = (entry){.symbol = {.kind = SYMBOL_RESULT,
+                          .name = s->name,
+                          .where = s->name_where,
+                          .declared = s,
+                          .rule = s,
+                          .index = which},
+               .key = s->name,
+               .declared_at = ck->now,
+               .rule_at = -1};
+  s->symbol = &e->symbol;
+  ck->law->results[which] = &e->symbol;
+}
+
 static void report_kind_of_result(checker *ck, const stmt *s) {
   complain(ck, DIAG_LAW_KIND, s->name_where, "a %s law has no %s",
            law_word(ck), stmt_kind_name(s->kind));
@@ -315,6 +342,13 @@ static void declare_result(checker *ck, stmt *s) {
   if (!s->name) return;
   if (ck->tree->law == LAW_CONTINUUM) {
     declare_continuum_result(ck, s);
+    return;
+  }
+  if (ck->tree->law == LAW_CRACK) {
+    complain(ck, DIAG_LAW_KIND, s->name_where, "a law of cracks gives no %s",
+             stmt_kind_name(s->kind));
+    diag_hint(ck->d, "it says `grow when ...`, `toward ...` and `speed ...`");
+    ck->result_refused = true;
     return;
   }
   bool of_family = s->kind == STMT_FORCE_STATE || s->kind == STMT_STRESS || s->kind == STMT_STRAIN;
@@ -388,6 +422,11 @@ static void declare_one(checker *ck, stmt *s) {
   case STMT_CONSTANT:
   case STMT_YIELD:
     declare_ruled(ck, s);
+    break;
+  case STMT_GROW:
+  case STMT_TOWARD:
+  case STMT_SPEED:
+    declare_tip_result(ck, s);
     break;
   case STMT_NONCONSERVATIVE:
     declare_nonconservative(ck, s);

@@ -60,6 +60,9 @@ typedef enum law_result {
   RESULT_T,
   RESULT_W,
   RESULT_SIGMA,
+  RESULT_GROW, /* of a tip */
+  RESULT_TOWARD,
+  RESULT_SPEED,
   RESULT_COUNT
 } law_result;
 

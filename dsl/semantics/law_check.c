@@ -157,7 +157,8 @@ static const struct {
     [RESULT_N] = {"N", SHAPE_SCALAR},      [RESULT_V] = {"N", SHAPE_BENDING},
     [RESULT_M_I] = {"N*m", SHAPE_BENDING}, [RESULT_M_J] = {"N*m", SHAPE_BENDING},
     [RESULT_T] = {"N*m", SHAPE_SCALAR},    [RESULT_W] = {"J", SHAPE_SCALAR},
-    [RESULT_SIGMA] = {"Pa", SHAPE_TENSOR}};
+    [RESULT_SIGMA] = {"Pa", SHAPE_TENSOR}, [RESULT_GROW] = {"1", SHAPE_LOGICAL},
+    [RESULT_TOWARD] = {"1", SHAPE_SCALAR}, [RESULT_SPEED] = {"m/s", SHAPE_SCALAR}};
 
 /* The energy of a continuum is one per volume. */
 static const char *unit_of_result(const checker *ck, int which) {
@@ -175,6 +176,17 @@ static void check_result(checker *ck, stmt *s) {
     v.dim = dim;
     v.shape = results[which].shape;
   }
+  set_type(s, v);
+}
+
+static void check_tip_result(checker *ck, stmt *s) {
+  if (!s->symbol) return;
+  if (s->kind != STMT_GROW) {
+    check_result(ck, s);
+    return;
+  }
+  value v = check_guard(ck, s->value);
+  v.shape = SHAPE_LOGICAL;
   set_type(s, v);
 }
 
@@ -261,6 +273,11 @@ static void check_statement(checker *ck, stmt *s) {
   case STMT_MOMENT:
   case STMT_ENERGY:
     check_result(ck, s);
+    break;
+  case STMT_GROW:
+  case STMT_TOWARD:
+  case STMT_SPEED:
+    check_tip_result(ck, s);
     break;
   case STMT_FORCE_STATE:
     check_force_state(ck, s);
@@ -377,6 +394,12 @@ static void report_missing(checker *ck, const char *what, const char *name) {
   }
 }
 
+static void report_missing_of_tip(checker *ck, const char *line) {
+  complain(ck, DIAG_LAW_KIND, ck->tree->law_where, "this law of cracks has no line `%.*s`",
+           (int)strcspn(line, " "), line);
+  diag_hint(ck->d, "say what the tip does, such as `%s`", line);
+}
+
 static void check_results_given(checker *ck) {
   const symbol *const *r = ck->law->results;
   if (r[RESULT_V] && (r[RESULT_M_I] || r[RESULT_M_J])) {
@@ -388,6 +411,12 @@ static void check_results_given(checker *ck) {
   if (ck->result_refused) return;
   if (ck->tree->law == LAW_CONTINUUM) {
     if (!r[RESULT_W] && !r[RESULT_SIGMA]) report_missing(ck, "stress sigma", "sigma");
+    return;
+  }
+  if (ck->tree->law == LAW_CRACK) {
+    if (!r[RESULT_GROW]) report_missing_of_tip(ck, "grow when K_I >= K_Ic");
+    if (!r[RESULT_TOWARD]) report_missing_of_tip(ck, "toward theta");
+    if (!r[RESULT_SPEED]) report_missing_of_tip(ck, "speed v_0");
     return;
   }
   const bool slip = ck->tree->law == LAW_SLIP_BOND;

@@ -56,7 +56,7 @@ entry *names_add(checker *ck, name_space space, const char *key, symbol what) {
 static bool is_free_here(const checker *ck, const builtin_quantity_info *q) {
   const int here = 1 << ck->tree->law;
   if (q->kinds & here) return false;
-  return q->kinds == IN_SLIP || ((q->kinds ^ here) & IN_CONTINUUM);
+  return q->kinds == IN_SLIP || ((q->kinds ^ here) & (IN_CONTINUUM | IN_CRACK));
 }
 
 static void add_builtins(checker *ck) {
@@ -132,6 +132,7 @@ static const char *law_that_has(int kinds) {
                         : kinds & IN_STATE    ? LAW_STATE
                         : kinds & IN_SLIP     ? LAW_SLIP_BOND
                         : kinds & IN_CONTINUUM ? LAW_CONTINUUM
+                        : kinds & IN_CRACK     ? LAW_CRACK
                                               : LAW_CENTRAL_BOND;
   return law_kind_name(kind);
 }
@@ -141,7 +142,8 @@ static void report_other_kind(checker *ck, const expr *e, const builtin_quantity
                                      [LAW_MICROPOLAR_BOND] = "a micropolar law",
                                      [LAW_STATE] = "a state law",
                                      [LAW_SLIP_BOND] = "a law of slip",
-                                     [LAW_CONTINUUM] = "a law of a continuum"};
+                                     [LAW_CONTINUUM] = "a law of a continuum",
+                                     [LAW_CRACK] = "a law of cracks"};
   complain(ck, DIAG_LAW_KIND, e->name_where, "%s does not have `%s` (%s)", laws[ck->tree->law],
            e->name, q->meaning);
   diag_hint(ck->d, "a law that begins with `law %s` has it", law_that_has(q->kinds));

@@ -35,6 +35,7 @@ static value check_family_name(checker *ck, expr *e, value v) {
   case ON_NOTHING:
   case ON_BODY:
   case ON_POINT:
+  case ON_TIP:
     if (e->indexed) return refuse(ck, e, "`%s` is the same for every neighbour", "write `%s`");
     break;
   case ON_PARTICLE:

@@ -56,8 +56,18 @@ void line_model(parsing *p, word name) {
   p->model->doc = p->lex.doc;
 }
 
+/* `end crack` closes what a tip does; the model goes on to its own end. */
+static void end_crack(parsing *p, span where) {
+  if (!p->law_seen || p->model->law != LAW_CRACK)
+    complain(p, where, "no `crack` has begun here", "write `crack` above, before what its tips do");
+}
+
 void line_end(parsing *p, word of, word name, span where) {
   if (refuse_in_include(p, where) || !inside_model(p, where)) return;
+  if (of.text && strcmp(of.text, "crack") == 0 && !name.text) {
+    end_crack(p, where);
+    return;
+  }
   p->ended = true;
   if (!of.text || strcmp(of.text, "model") != 0) {
     complain(p, where, "only a model ends here", "write `end model`");
@@ -66,6 +76,19 @@ void line_end(parsing *p, word of, word name, span where) {
                 p->model->name, name.text);
     diag_note(p->messages, p->model->name_where, "it begins here");
   }
+}
+
+void line_crack(parsing *p, span where) {
+  if (refuse_in_include(p, p->lex.first_where) || !inside_model(p, where)) return;
+  if (p->law_seen) {
+    if (!first_complaint(p)) return;
+    diag_report(p->messages, DIAG_SYNTAX, where, "the kind of law is given twice");
+    diag_note(p->messages, p->model->law_where, "it is given here already");
+    return;
+  }
+  p->law_seen = true;
+  p->model->law_where = where;
+  p->model->law = LAW_CRACK;
 }
 
 static bool find_law(const char *first, const char *second, law_kind *kind) {
@@ -77,7 +100,7 @@ static bool find_law(const char *first, const char *second, law_kind *kind) {
   const size_t length = strlen(first);
   for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
     const char *name = law_kind_name(kinds[i]);
-    if (strncmp(name, first, length) != 0) continue;
+    if (kinds[i] == LAW_CRACK || strncmp(name, first, length) != 0) continue;
     if (second ? name[length] != ' ' || strcmp(name + length + 1, second) != 0 : name[length])
       continue;
     *kind = kinds[i];

@@ -7,6 +7,8 @@
 void line_model(parsing *p, word name);
 void line_end(parsing *p, word of, word name, span where);
 void line_law(parsing *p, word first, word second, span where);
+/* `crack` in place of the kind of law; it ends with `end crack`. */
+void line_crack(parsing *p, span where);
 void line_settings(parsing *p, const words *list, span where);
 /* True where the statement includes a text, which is then to be read. */
 bool line_statement(parsing *p, stmt *s, word text, span where);

@@ -53,7 +53,7 @@ static const word no_word;
 
 %token NEWLINE
 %token MODEL END LAW FOR PARAMETER CONSTANT OPTION STATE DAMAGE FUNCTION FORCE MOMENT ENERGY STRESS
-%token STRAIN YIELD FLOW OUTPUT NONCONSERVATIVE INCLUDE
+%token STRAIN YIELD FLOW OUTPUT NONCONSERVATIVE INCLUDE CRACK GROW TOWARD SPEED
 %token EXPRESSION /* begins one that stands by itself: no text has it */
 %token WHEN OTHERWISE JUMP IN AND OR NOT BY ALONG RETURNED ON
 %token EQ NE LE GE POW
@@ -84,6 +84,7 @@ line:
 | END NAME NAME NEWLINE             { line_end(p, $2, $3, span_join(@1, @3)); }
 | LAW NAME NEWLINE                  { line_law(p, $2, no_word, @2); }
 | LAW NAME NAME NEWLINE             { line_law(p, $2, $3, span_join(@2, @3)); }
+| CRACK NEWLINE                     { line_crack(p, @1); }
 | FOR names NEWLINE                 { line_settings(p, $2, @2); }
 | declaration text NEWLINE          { line_statement(p, $1, $2, span_join(@1, @2)); }
 | only_text STRING NEWLINE          { if (line_statement(p, $1, $2, span_join(@1, @2)))
@@ -131,6 +132,9 @@ rule:
 | STRESS NAME '=' body              { $$ = build_stmt(p, STMT_STRESS, $2, no_word, $4, @$); }
 | STRAIN NAME '=' body              { $$ = build_stmt(p, STMT_STRAIN, $2, no_word, $4, @$); }
 | YIELD NAME '=' body               { $$ = build_stmt(p, STMT_YIELD, $2, no_word, $4, @$); }
+| GROW WHEN expression              { $$ = build_tip_stmt(p, STMT_GROW, @1, $3, @$); }
+| TOWARD body                       { $$ = build_tip_stmt(p, STMT_TOWARD, @1, $2, @$); }
+| SPEED body                        { $$ = build_tip_stmt(p, STMT_SPEED, @1, $2, @$); }
 | OUTPUT NAME index '=' body        { $$ = build_stmt(p, STMT_OUTPUT, $2, $3, $5, @$); }
 ;
 

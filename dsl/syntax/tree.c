@@ -20,7 +20,7 @@ static const char *binary_op_text(binary_op op) {
 }
 
 const char *placement_name(placement p) {
-  static const char *const names[] = {"nothing", "body",     "point",
+  static const char *const names[] = {"nothing", "body",     "point", "tip",
                                       "particle", "bond", "neighbour"};
   return names[p];
 }

@@ -70,6 +70,7 @@ typedef enum placement {
   ON_NOTHING,
   ON_BODY,
   ON_POINT, /* of a continuum */
+  ON_TIP,   /* of a crack */
   ON_PARTICLE,
   ON_BOND,
   ON_NEIGHBOUR
@@ -135,7 +136,8 @@ typedef enum stmt_kind {
       X(DAMAGE, "damage") X(FUNCTION, "function") X(FORCE, "force") X(FORCE_STATE, "force state")  \
           X(MOMENT, "moment") X(ENERGY, "energy") X(STRESS, "stress") X(STRAIN, "strain")          \
               X(YIELD, "yield") X(FLOW, "flow") X(OUTPUT, "output")                                \
-                  X(NONCONSERVATIVE, "nonconservative") X(INCLUDE, "include")
+                  X(NONCONSERVATIVE, "nonconservative") X(INCLUDE, "include")        \
+                      X(GROW, "grow") X(TOWARD, "toward") X(SPEED, "speed")
 #define X(code, text) STMT_##code,
   TREE_STATEMENTS(X)
 #undef X
@@ -182,7 +184,8 @@ struct stmt {
   X(LAW_MICROPOLAR_BOND, "micropolar bond")                                                        \
   X(LAW_STATE, "state")                                                                            \
   X(LAW_SLIP_BOND, "slip bond")                                                                    \
-  X(LAW_CONTINUUM, "continuum")
+  X(LAW_CONTINUUM, "continuum")                                                                    \
+  X(LAW_CRACK, "crack")
 
 typedef enum law_kind {
 #define X(code, words) code,

@@ -151,6 +151,11 @@ stmt *build_stmt(parsing *p, stmt_kind kind, word name, word index, expr *value,
   return s;
 }
 
+stmt *build_tip_stmt(parsing *p, stmt_kind kind, span name_where, expr *value, span where) {
+  const word name = {.text = stmt_kind_name(kind), .where = name_where}, none = {.text = NULL};
+  return build_stmt(p, kind, name, none, value, where);
+}
+
 void build_words_of(stmt *s, const words *list) {
   s->words = list->items;
   s->word_where = list->where;
@@ -164,7 +169,8 @@ void build_placement(parsing *p, stmt *s, word on) {
   } places[] = {{"bond", ON_BOND},
                 {"particle", ON_PARTICLE},
                 {"neighbour", ON_NEIGHBOUR},
-                {"point", ON_POINT}};
+                {"point", ON_POINT},
+                {"tip", ON_TIP}};
   if (!on.text) return;
   s->place_where = on.where;
   for (size_t i = 0; i < sizeof places / sizeof places[0]; i++)
@@ -172,7 +178,7 @@ void build_placement(parsing *p, stmt *s, word on) {
   if (s->place != ON_NOTHING || !first_complaint(p)) return;
   diag_report(p->messages, DIAG_SYNTAX, on.where, "a %s cannot live on `%s`",
               stmt_kind_name(s->kind), on.text);
-  diag_hint(p->messages, "write `on bond`, `on particle`, `on neighbour` or `on point`");
+  diag_hint(p->messages, "write `on bond`, `on particle`, `on neighbour`, `on point` or `on tip`");
 }
 
 void build_force_state(parsing *p, word state, stmt *s, word direction) {

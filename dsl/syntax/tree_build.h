@@ -19,6 +19,8 @@ bounds build_bounds(parsing *p, bool lower_open, expr *lower, expr *upper, bool 
 /* index.text is NULL for a name without [j]. */
 stmt *build_stmt(parsing *p, stmt_kind kind, word name, word index, expr *value, span where);
 void build_placement(parsing *p, stmt *s, word on);
+/* What a law of cracks gives: `grow`, `toward`, `speed`, which are their names, too. */
+stmt *build_tip_stmt(parsing *p, stmt_kind kind, span name_where, expr *value, span where);
 void build_words_of(stmt *s, const words *list);
 void build_force_state(parsing *p, word state, stmt *s, word direction);
 

@@ -12,7 +12,8 @@
   X(CONSTANT, "constant") X(OPTION, "option") X(STATE, "state") X(DAMAGE, "damage")                \
   X(FUNCTION, "function") X(FORCE, "force") X(MOMENT, "moment") X(ENERGY, "energy")                \
   X(STRESS, "stress") X(STRAIN, "strain") X(YIELD, "yield") X(FLOW, "flow") X(OUTPUT, "output")    \
-  X(NONCONSERVATIVE, "nonconservative") X(INCLUDE, "include")
+  X(NONCONSERVATIVE, "nonconservative") X(INCLUDE, "include") X(CRACK, "crack") X(GROW, "grow")   \
+  X(TOWARD, "toward") X(SPEED, "speed")
 
 /* Words that are never names. X(token, text) */
 #define RESERVED_WORDS(X)                                                                          \

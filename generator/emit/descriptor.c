@@ -38,6 +38,7 @@ static void write_varying(c_text *out, const kernel_plan *p) {
 
 static const char *place_of_field(const symbol *s) {
   return s->place == ON_POINT    ? "PL_ON_POINT"
+         : s->place == ON_TIP      ? "PL_ON_TIP"
          : s->place <= ON_PARTICLE ? "PL_ON_PARTICLE"
          : s->place == ON_BOND   ? "PL_ON_BOND"
                                  : "PL_ON_NEIGHBOUR";
@@ -147,6 +148,10 @@ void descriptor_entry(const kernel_plan *p, c_text *out) {
     POINT_PROGRAMS(X)
 #undef X
     c_text_add(out, "    .linear = %d,\n", p->linear);
+  } else if (p->form == FORM_TIPS) {
+#define X(task, member) c_text_add(out, "    .%s = %s,\n", #member, #member);
+    TIP_PROGRAMS(X)
+#undef X
   } else if (p->form != FORM_STRIPS) {
     write_programs(out, p);
   } else {

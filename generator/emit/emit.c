@@ -7,8 +7,7 @@
 
 static void write_prelude(emitter *e) {
   say(e, SAY_PRELUDE,
-      spell(e, e->plan->form == FORM_STRIPS || e->plan->form == FORM_POINTS ? SAY_STRIP_OPTIONS
-                                                                          : SAY_FAMILY_OPTIONS));
+      spell(e, plan_is_of_families(e->plan) ? SAY_FAMILY_OPTIONS : SAY_STRIP_OPTIONS));
   c_text_add(e->out, "%s\n%s\n", prelude_kernel_h, prelude_elementary_h);
   say(e, SAY_PRELUDE_END);
 }

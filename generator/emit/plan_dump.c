@@ -206,7 +206,8 @@ void plan_dump(const kernel_plan *p, FILE *out) {
       [PL_CENTRAL] = "central bond",
       [PL_MICROPOLAR] = "micropolar bond",
       [PL_STATE] = "family",
-      [PL_CONTINUUM] = "continuum"};
+      [PL_CONTINUUM] = "continuum",
+      [PL_CRACK] = "crack"};
   fprintf(out, "kernel of %s: %s, %d dimensions, %d degrees of freedom, ", p->law->tree->name,
           kinds[plan_kind(p)], p->dimensions, p->dof);
   if (p->form == FORM_POINTS)

@@ -19,6 +19,8 @@ static const char *array_of_input(emitter *e, ir_node n) {
   switch (ir_input_source(e->graph, n)) {
   case IR_FROM_POINT:
     return array_of_point(e, index);
+  case IR_FROM_TIP:
+    return spell(e, SAY_TIP_INPUT, numeral(e, index));
   case IR_FROM_FIELD:
     return spell(e, SAY_POINT_OLD_FIELD, numeral(e, index));
   default:
@@ -53,7 +55,7 @@ static const char *array_of_root(emitter *e, const segment_root *r) {
 
 static void write_program(emitter *e, const segment *a, const char *name) {
   expression_open_segment(e, &of_points, a);
-  kernel_function_begin(&e->parts, e->out, "PL_PASS", name, spell(e, SAY_OVER_POINTS));
+  kernel_function_begin(&e->parts, e->out, "PL_PASS", name, spell(e, e->plan->form == FORM_TIPS ? SAY_OVER_TIPS : SAY_OVER_POINTS));
   say(e, SAY_POINTS_HEAD);
   expression_declare(e);
   for (int k = 0; k < a->root_count; k++)
@@ -71,6 +73,12 @@ static void write_program(emitter *e, const segment *a, const char *name) {
 }
 
 void point_loops(emitter *e) {
+  if (e->plan->form == FORM_TIPS) {
+#define X(task, member) write_program(e, plan_segment(e->plan, task), #member);
+    TIP_PROGRAMS(X)
+#undef X
+    return;
+  }
 #define X(task, member) write_program(e, plan_segment(e->plan, task), #member);
   POINT_PROGRAMS(X)
 #undef X

@@ -4,7 +4,7 @@
 
 #include "generator/target/expression.h"
 
-/* All programs of a plan of points. */
+/* All programs of a plan of points, or of tips, which the text calls points, too. */
 void point_loops(emitter *e);
 
 #endif

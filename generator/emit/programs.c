@@ -122,7 +122,7 @@ void programs_functions(emitter *e) {
     write_strips(e);
     return;
   }
-  if (e->plan->form == FORM_POINTS) {
+  if (e->plan->form == FORM_POINTS || e->plan->form == FORM_TIPS) {
     point_loops(e);
     return;
   }

@@ -66,6 +66,15 @@ STRIP_PROGRAMS(X)
 POINT_PROGRAMS(X)
 #undef X
 
+#define X(task, member)                                                                            \
+  static void run_##member(const pl_law *kernel, const double *uniforms, const pl_tips *s) {       \
+    worker *w = borrow(kernel);                                                                    \
+    interpreted_tips(w->run, task, uniforms, s);                                                   \
+    give_back(w);                                                                                  \
+  }
+TIP_PROGRAMS(X)
+#undef X
+
 static void run_states(const pl_law *kernel, const double *uniforms, const pl_states *s) {
   worker *w = borrow(kernel);
   interpreted_states(w->run, PROGRAM_STATES, uniforms, s);
@@ -156,6 +165,7 @@ static int field_kind(const symbol *s) {
 
 static int field_place(const symbol *s) {
   if (s->place == ON_POINT) return PL_ON_POINT;
+  if (s->place == ON_TIP) return PL_ON_TIP;
   if (s->place <= ON_PARTICLE) return PL_ON_PARTICLE;
   return s->place == ON_BOND ? PL_ON_BOND : PL_ON_NEIGHBOUR;
 }
@@ -270,6 +280,8 @@ static void describe(interpreted *p) {
     describe_strips(p);
   else if (plan->form == FORM_POINTS)
     describe_points(p);
+  else if (plan->form == FORM_TIPS)
+    p->law.tip_look = run_tip_look;
   else
     describe_families(p);
 }

@@ -154,6 +154,26 @@ void interpreted_points(runner *r, program_task task, const double *uniforms, co
   }
 }
 
+void interpreted_tips(runner *r, program_task task, const double *uniforms, const pl_tips *s) {
+  const segment *a = plan_segment(r->plan, task);
+  runner_take_uniforms(r, uniforms);
+  for (long first = 0; first < s->count; first += LANES) {
+    const int now = lanes_left(s->count, first);
+    for (int k = 0; k < TIP_INPUTS; k++)
+      r->at[IR_FROM_TIP][k] = s->in[k] + first;
+    for (int k = 0; k < r->plan->law->fields.count; k++)
+      r->at[IR_FROM_FIELD][k] = s->old_field[k] + first;
+    evaluate(r, task, now);
+    for (int k = 0; k < a->root_count; k++) {
+      const segment_root *root = &a->roots[k];
+      double *to = root->target == TO_OUT     ? s->out[root->index]
+                   : root->target == TO_FIELD ? s->new_field[root->index]
+                                              : s->observed[root->index];
+      memcpy(to + first, r->result[k], (size_t)now * sizeof(double));
+    }
+  }
+}
+
 /* --- values of a bond class, bounds ----------------------------------------------------------- */
 
 void interpreted_prepare(runner *r, const double *parameters, const pl_bond_class *bonds,

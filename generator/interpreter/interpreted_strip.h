@@ -9,6 +9,7 @@
 void interpreted_strip(runner *r, program_task task, const double *uniforms, const pl_strip *s);
 void interpreted_states(runner *r, program_task task, const double *uniforms, const pl_states *s);
 void interpreted_points(runner *r, program_task task, const double *uniforms, const pl_points *s);
+void interpreted_tips(runner *r, program_task task, const double *uniforms, const pl_tips *s);
 void interpreted_prepare(runner *r, const double *parameters, const pl_bond_class *bonds,
                          double *uniforms);
 void interpreted_bounds(runner *r, const double *parameters, double *lower, double *upper);

@@ -84,6 +84,8 @@ static int input_count(const kernel_plan *p, ir_source from, const needs *most) 
     return 2 * p->links.of_bonds;
   case IR_FROM_POINT:
     return POINT_INPUTS;
+  case IR_FROM_TIP:
+    return TIP_INPUTS;
   case IR_FROM_SLOT:
     return most->slots;
   case IR_FROM_PLANE:

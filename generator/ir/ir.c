@@ -583,6 +583,7 @@ static const char *const source_names[IR_SOURCE_COUNT] = {
     [IR_FROM_NEW_FIELD] = "new field",
     [IR_FROM_SLOT] = "slot",
     [IR_FROM_PLANE] = "plane",
+    [IR_FROM_TIP] = "tip",
     [IR_FROM_POINT] = "point",
 };
 

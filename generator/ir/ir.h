@@ -40,6 +40,7 @@ typedef enum ir_source {
   IR_FROM_NEW_FIELD, /* toward the neighbour, from an earlier pass of the step; index: field */
   IR_FROM_SLOT,      /* index: value of the particle within a pass */
   IR_FROM_PLANE,     /* index: value toward each neighbour within a pass */
+  IR_FROM_TIP,       /* index: tip_input of point_inputs.h: what the tip of a crack has */
   IR_FROM_POINT,     /* index: point_input of point_inputs.h: what a point of a continuum has */
   IR_SOURCE_COUNT
 } ir_source;

@@ -190,7 +190,7 @@ static void lower_rule(lowering *c, const stmt *rule) {
   bool field = s && (s->kind == SYMBOL_STATE || s->kind == SYMBOL_DAMAGE);
   if (field && rule == s->rule)
     lower_field_rule(c, rule);
-  else if (!field && s && rule->value && rule->kind != STMT_PARAMETER &&
+  else if (!field && s && rule->value && rule->kind < STMT_GROW && rule->kind != STMT_PARAMETER &&
            rule->kind != STMT_FUNCTION && rule->kind != STMT_OPTION && !lower_binding_of(c, s)) {
     components v = lower_value(c, rule->value);
     lower_name_value(c, v, s->name, rule->where);
@@ -333,6 +333,18 @@ static void lower_stress(lowering *c, lowered_law *out) {
   }
 }
 
+static void lower_tip(lowering *c, lowered_law *out) {
+  static const char *const names[LOWERED_TIP] = {"grow", "toward", "speed"};
+  for (int k = 0; k < LOWERED_TIP; k++) {
+    const symbol *given = c->law->results[RESULT_GROW + k];
+    out->tip[k] = lower_expr(c, given->rule->value);
+    if (k == 0) /* a truth value as a number */
+      out->tip[k] =
+          ir_select(c->graph, out->tip[k], ir_constant(c->graph, 1), ir_constant(c->graph, 0));
+    lower_name_node(c->graph, out->tip[k], names[k], given->rule->where);
+  }
+}
+
 static void lower_results(lowering *c, lowered_law *out) {
   const symbol_list *outputs = &c->law->outputs;
   out->W = result_node(c, RESULT_W);
@@ -340,6 +352,8 @@ static void lower_results(lowering *c, lowered_law *out) {
     lower_force_state(c, out);
   else if (c->law->tree->law == LAW_CONTINUUM)
     lower_stress(c, out);
+  else if (c->law->tree->law == LAW_CRACK)
+    lower_tip(c, out);
   else
     lower_bond_results(c, out);
   for (int k = 0; k < outputs->count; k++) {
@@ -440,6 +454,8 @@ bool lower_law_varying(const law *l, ir *g, lower_mode mode, const law_variation
     out->M_i[k] = out->M_j[k] = IR_NONE;
   for (int k = 0; k < LOWERED_STRESSES; k++)
     out->sigma[k] = IR_NONE;
+  for (int k = 0; k < LOWERED_TIP; k++)
+    out->tip[k] = IR_NONE;
   c.text.rules = arena_alloc(memory, field_bytes);
   c.new_value = must_alloc(field_bytes);
   c.rule = must_alloc(field_bytes);

@@ -11,6 +11,8 @@ int lowered_forces(lowered_law *p, ir_node **forces) {
   all[count++] = &p->F;
   for (int k = 0; k < LOWERED_STRESSES; k++)
     all[count++] = &p->sigma[k];
+  for (int k = 0; k < LOWERED_TIP; k++)
+    all[count++] = &p->tip[k];
   for (int k = 0; k < count; k++)
     if (*all[k] != IR_NONE) forces[given++] = all[k];
   return given;

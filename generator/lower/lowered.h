@@ -48,7 +48,8 @@ typedef struct lowered_text {
 } lowered_text;
 
 enum { BENDING_AXES = 3, LOWERED_STRESSES = 6 };
-enum { LOWERED_FORCES = 2 * BENDING_AXES + 3 + LOWERED_STRESSES };
+enum { LOWERED_TIP = 3 }; /* grow (1 or 0), toward (rad), speed (m/s) */
+enum { LOWERED_FORCES = 2 * BENDING_AXES + 3 + LOWERED_STRESSES + LOWERED_TIP };
 
 /* What a law does not give is IR_NONE. */
 typedef struct lowered_law {
@@ -58,6 +59,7 @@ typedef struct lowered_law {
   ir_node T; /* twisting moment on end j, on end i the opposite; in space */
   ir_node F; /* force state in N (the bond force is the mean of both sides), or IR_NONE */
   ir_node sigma[LOWERED_STRESSES]; /* of a continuum: xx, yy, zz, xy, yz, xz; Pa */
+  ir_node tip[LOWERED_TIP];        /* of a crack */
   bool along_reference; /* it acts along the reference bond */
   ir_node W;            /* the law's own `energy`, or IR_NONE */
   ir_node *fields;      /* [law->fields.count] new values (LOWER_FROZEN: the inputs themselves) */

@@ -19,3 +19,10 @@ ir_node lower_point_strain(ir *g, const law *l, int k, bool rate) {
   if (lower_dimensions(l) == 2 && (k == TENSOR_YZ || k == TENSOR_XZ)) return ir_constant(g, 0);
   return point_input_node(g, (rate ? POINT_STRAIN_RATE : POINT_STRAIN) + k);
 }
+
+_Static_assert(QUANTITY_DILATATIONAL_SPEED - QUANTITY_K_I + 1 == TIP_INPUTS,
+               "quantities of tips stand in the order of their inputs");
+
+ir_node lower_tip_quantity(ir *g, builtin_quantity q) {
+  return ir_input(g, IR_FROM_TIP, (int)(q - QUANTITY_K_I), builtin_quantities[q].name, ON_TIP);
+}

@@ -1,7 +1,9 @@
-/* What a law of a continuum is told about its point, as inputs of its graph. */
+/* What a law of a continuum is told about its point, and one of cracks about its tip, as inputs of
+   its graph. */
 #ifndef PERILAT_GENERATOR_POINT_INPUTS_H
 #define PERILAT_GENERATOR_POINT_INPUTS_H
 
+#include "dsl/semantics/builtins.h"
 #include "dsl/semantics/law.h"
 #include "generator/ir/ir.h"
 
@@ -14,6 +16,22 @@ enum {
   POINT_CELL_SIZE = 2 * POINT_STRAINS,
   POINT_INPUTS
 };
+
+/* What a law of cracks is told of its tip, in the order of pl_tips. */
+enum {
+  TIP_K_I,
+  TIP_K_II,
+  TIP_ENERGY_RELEASE,
+  TIP_ANGLE,
+  TIP_SPEED,
+  TIP_LENGTH,
+  TIP_RAYLEIGH_SPEED,
+  TIP_SHEAR_SPEED,
+  TIP_DILATATIONAL_SPEED,
+  TIP_INPUTS
+};
+/* Of a quantity that laws of cracks have. */
+ir_node lower_tip_quantity(ir *g, builtin_quantity q);
 
 /* Component k of the order above that is number `at` of what a kernel reads: in the plane xx, yy,
    xy. */

@@ -79,9 +79,16 @@ static kernel_plan *plan_kernel_of_points(const law *l, const law_variation *v, 
   return finish(plan, plan_points(plan, d), d);
 }
 
+static kernel_plan *plan_kernel_of_tips(const law *l, diagnostics *d) {
+  kernel_plan *plan = plan_begin(l, FORM_TIPS);
+  plan->dimensions = plan->dof = 2;
+  return finish(plan, plan_tips(plan, d), d);
+}
+
 kernel_plan *plan_kernel_varying(const law *l, const law_variation *v, diagnostics *d) {
   if (l->tree->law == LAW_STATE) return plan_kernel_of_families(l, v, d);
   if (l->tree->law == LAW_CONTINUUM) return plan_kernel_of_points(l, v, d);
+  if (l->tree->law == LAW_CRACK) return plan_kernel_of_tips(l, d);
   bool micropolar = law_kind_turns(l->tree->law);
   bool twists = micropolar && l->setting == SETTING_SPACE;
   kernel_plan *plan = plan_begin(twists ? law_twisting(l) : l, FORM_STRIPS);

@@ -21,6 +21,9 @@
   X(PROGRAM_OBSERVE, point_observe)                                                                \
   X(PROGRAM_TANGENT, point_tangent)
 
+/* The program over tips. */
+#define TIP_PROGRAMS(X) X(PROGRAM_STEP, tip_look)
+
 typedef enum program_task {
   PROGRAM_STEP, /* forces and new fields */
   /* The same, and the energies that are lost; of families the latter: passes that follow those of a
@@ -59,7 +62,8 @@ typedef enum kernel_form {
   /* One loop over the particles, neighbour by neighbour in its body: law->neighbours of them */
   FORM_UNROLLED,
   FORM_PAIRS, /* loops over bonds that add to both ends (SHARE_PAIRS) */
-  FORM_POINTS /* loops over points of a continuum */
+  FORM_POINTS, /* loops over points of a continuum */
+  FORM_TIPS /* loops over tips of cracks */
 } kernel_form;
 
 typedef struct kernel_plan {
@@ -88,15 +92,16 @@ typedef struct kernel_plan {
   arena *memory;
 } kernel_plan;
 
-/* PL_CONTINUUM over points; PL_CENTRAL, PL_MICROPOLAR over strips; else PL_STATE, of families. */
+/* PL_CONTINUUM over points; PL_CRACK over tips; PL_CENTRAL, PL_MICROPOLAR over strips; else PL_STATE, of families. */
 static inline int plan_kind(const kernel_plan *p) {
   if (p->form == FORM_POINTS) return PL_CONTINUUM;
+  if (p->form == FORM_TIPS) return PL_CRACK;
   if (p->form != FORM_STRIPS) return PL_STATE;
   return law_kind_turns(p->law->tree->law) ? PL_MICROPOLAR : PL_CENTRAL;
 }
 
 static inline bool plan_is_of_families(const kernel_plan *p) {
-  return p->form != FORM_STRIPS && p->form != FORM_POINTS;
+  return p->form != FORM_STRIPS && p->form != FORM_POINTS && p->form != FORM_TIPS;
 }
 
 /* The segment of a program that has but one. */

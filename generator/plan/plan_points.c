@@ -356,3 +356,17 @@ bool plan_points(kernel_plan *plan, diagnostics *d) {
 #undef X
   return true;
 }
+
+bool plan_tips(kernel_plan *plan, diagnostics *d) {
+  planner p = {.plan = plan, .graph = plan->graph, .z = IR_NONE, .z_rate = IR_NONE};
+  if (!lower_law(plan->law, plan->graph, LOWER_STEP, plan->memory, &p.step, d)) return false;
+  segment *a = plan_single(plan, PROGRAM_STEP, "tip_look", OVER_POINTS);
+  for (int k = 0; k < LOWERED_TIP; k++)
+    want(&p, a, p.step.tip[k], TO_OUT, k);
+  for (int k = 0; k < plan->law->fields.count; k++)
+    want(&p, a, p.step.fields[k], TO_FIELD, k);
+  for (int k = 0; k < plan->law->outputs.count; k++)
+    want(&p, a, p.step.outputs[k], TO_OBSERVED, k);
+  plan->stores = true;
+  return true;
+}

@@ -16,5 +16,7 @@
 
 /* Fills in a plan of points. False after a diagnostic. */
 bool plan_points(kernel_plan *plan, diagnostics *d);
+/* The same of tips of cracks: what they do, new fields, outputs. */
+bool plan_tips(kernel_plan *plan, diagnostics *d);
 
 #endif

@@ -88,6 +88,9 @@
   X(POINT_STRESS, "points->stress[$1]")                                                            \
   X(POINT_TANGENT, "points->tangent[$1]")                                                          \
   X(POINT_OBSERVED, "points->observed[$1]")                                                        \
+  X(OVER_TIPS, "const pl_tips *points")                                                            \
+  X(TIP_INPUT, "points->in[$1]")                                                                   \
+  X(TIP_OUT, "points->out[$1]")                                                                    \
   X(POINT_LOST, "points->lost[$1]")                                                                \
                                                                                                    \
   /* --- strips of bonds --- */                                                                    \
