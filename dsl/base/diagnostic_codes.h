@@ -31,6 +31,7 @@ X(DAMAGE_RANGE, "damage-range", SEVERITY_WARNING)
 /* physics: what a law does, found by driving it on the interpreter */
 X(EXCHANGE, "exchange", SEVERITY_ERROR)
 X(MIRROR, "mirror", SEVERITY_ERROR)
+X(CRACK_SPEED, "crack-speed", SEVERITY_ERROR)
 X(REST_FORCE, "rest-force", SEVERITY_ERROR)
 X(STORED_ENERGY, "stored-energy", SEVERITY_ERROR)
 X(CLOSED_PATH, "closed-path", SEVERITY_ERROR)

@@ -207,11 +207,11 @@ static void declare_definition(checker *ck, stmt *s) {
   }
 }
 
-static const char *const result_names[RESULT_COUNT] = {"N", "V", "M_i", "M_j", "T", "W", "sigma",
-                                                       "grow", "toward", "speed"};
+static const char *const result_names[RESULT_COUNT] = {"N", "V",     "M_i",  "M_j",    "T",
+                                                       "W", "sigma", "grow", "toward", "speed"};
 static const stmt_kind result_kinds[RESULT_COUNT] = {
-    STMT_FORCE, STMT_FORCE, STMT_MOMENT, STMT_MOMENT, STMT_MOMENT, STMT_ENERGY, STMT_STRESS,
-    STMT_GROW, STMT_TOWARD, STMT_SPEED};
+    STMT_FORCE,  STMT_FORCE,  STMT_MOMENT, STMT_MOMENT, STMT_MOMENT,
+    STMT_ENERGY, STMT_STRESS, STMT_GROW,   STMT_TOWARD, STMT_SPEED};
 
 static void report_result_name(checker *ck, const stmt *s) {
   const char *kind = stmt_kind_name(s->kind);
@@ -237,14 +237,14 @@ static bool is_given_twice(checker *ck, const stmt *s, int which) {
 /* `stress sigma` and `energy W` are what a continuum gives; stresses and strains of other names are
    only names. */
 static void declare_continuum_result(checker *ck, stmt *s) {
-  const bool energy = s->kind == STMT_ENERGY, tensor = s->kind == STMT_STRESS ||
-                                                       s->kind == STMT_STRAIN;
+  const bool energy = s->kind == STMT_ENERGY,
+             tensor = s->kind == STMT_STRESS || s->kind == STMT_STRAIN;
   const int which = energy ? RESULT_W : RESULT_SIGMA;
   const bool given = result_kinds[which] == s->kind && strcmp(result_names[which], s->name) == 0;
   if (!given && !tensor) {
     complain(ck, DIAG_LAW_KIND, s->name_where,
-             energy ? "the energy of a continuum law is called `W`"
-                    : "a continuum law has no %s", stmt_kind_name(s->kind));
+             energy ? "the energy of a continuum law is called `W`" : "a continuum law has no %s",
+             stmt_kind_name(s->kind));
     if (!energy) diag_hint(ck->d, "a continuum law gives `stress sigma = ...` or `energy W = ...`");
     ck->result_refused = true;
     return;
@@ -328,8 +328,8 @@ static void declare_tip_result(checker *ck, stmt *s) {
 }
 
 static void report_kind_of_result(checker *ck, const stmt *s) {
-  complain(ck, DIAG_LAW_KIND, s->name_where, "a %s law has no %s",
-           law_word(ck), stmt_kind_name(s->kind));
+  complain(ck, DIAG_LAW_KIND, s->name_where, "a %s law has no %s", law_word(ck),
+           stmt_kind_name(s->kind));
   if (!is_single(ck))
     diag_hint(ck->d, "a state law gives `force state F[j] = ...`");
   else if (s->kind == STMT_FORCE_STATE)

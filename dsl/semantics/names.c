@@ -128,12 +128,12 @@ void names_suggest(checker *ck, name_space space, const char *name) {
 /* --- reading ---------------------------------------------------------------------------------- */
 
 static const char *law_that_has(int kinds) {
-  const law_kind kind = kinds & IN_MICROPOLAR ? LAW_MICROPOLAR_BOND
-                        : kinds & IN_STATE    ? LAW_STATE
-                        : kinds & IN_SLIP     ? LAW_SLIP_BOND
+  const law_kind kind = kinds & IN_MICROPOLAR  ? LAW_MICROPOLAR_BOND
+                        : kinds & IN_STATE     ? LAW_STATE
+                        : kinds & IN_SLIP      ? LAW_SLIP_BOND
                         : kinds & IN_CONTINUUM ? LAW_CONTINUUM
                         : kinds & IN_CRACK     ? LAW_CRACK
-                                              : LAW_CENTRAL_BOND;
+                                               : LAW_CENTRAL_BOND;
   return law_kind_name(kind);
 }
 

@@ -15,6 +15,7 @@
 #include "generator/check/physics_points.h"
 #include "generator/check/physics_states.h"
 #include "generator/check/physics_tangent.h"
+#include "generator/check/physics_tips.h"
 #include "runtime/base/clock.h"
 
 /* --- the checks ------------------------------------------------------------------------------- */
@@ -219,6 +220,7 @@ bool physics_check(const law *l, const physics_options *o, diagnostics *d, physi
   report = report ? report : &unwanted;
   *report = (physics_report){0};
   (l->tree->law == LAW_CONTINUUM ? physics_check_points
+   : l->tree->law == LAW_CRACK   ? physics_check_tips
    : l->tree->law == LAW_STATE   ? check_law_of_families
                                  : check_law_of_bonds)(l, o ? o : &usual, d, report);
   report->seconds = monotonic_seconds() - begun;

@@ -46,16 +46,20 @@ static const scope of_points = {
 /* --- results ---------------------------------------------------------------------------------- */
 
 static const char *array_of_root(emitter *e, const segment_root *r) {
-  static const word members[] = {
-      [TO_FORCE] = SAY_POINT_STRESS,          [TO_FIELD] = SAY_POINT_NEW_FIELD,
-      [TO_DISSIPATED_STATE] = SAY_POINT_LOST, [TO_DISSIPATED_RATE] = SAY_POINT_LOST,
-      [TO_OBSERVED] = SAY_POINT_OBSERVED,     [TO_TANGENT] = SAY_POINT_TANGENT};
+  static const word members[] = {[TO_FORCE] = SAY_POINT_STRESS,
+                                 [TO_FIELD] = SAY_POINT_NEW_FIELD,
+                                 [TO_DISSIPATED_STATE] = SAY_POINT_LOST,
+                                 [TO_DISSIPATED_RATE] = SAY_POINT_LOST,
+                                 [TO_OBSERVED] = SAY_POINT_OBSERVED,
+                                 [TO_TANGENT] = SAY_POINT_TANGENT,
+                                 [TO_OUT] = SAY_TIP_OUT};
   return spell(e, members[r->target], numeral(e, r->index));
 }
 
 static void write_program(emitter *e, const segment *a, const char *name) {
   expression_open_segment(e, &of_points, a);
-  kernel_function_begin(&e->parts, e->out, "PL_PASS", name, spell(e, e->plan->form == FORM_TIPS ? SAY_OVER_TIPS : SAY_OVER_POINTS));
+  kernel_function_begin(&e->parts, e->out, "PL_PASS", name,
+                        spell(e, e->plan->form == FORM_TIPS ? SAY_OVER_TIPS : SAY_OVER_POINTS));
   say(e, SAY_POINTS_HEAD);
   expression_declare(e);
   for (int k = 0; k < a->root_count; k++)

@@ -148,8 +148,8 @@ void interpreted_points(runner *r, program_task task, const double *uniforms, co
     for (int k = 0; k < a->root_count; k++) {
       double *to = array_of_root(&a->roots[k], s) + first;
       for (int lane = 0; lane < now; lane++)
-        to[lane] = segment_is_loss(&a->roots[k]) ? to[lane] + r->result[k][lane]
-                                                 : r->result[k][lane];
+        to[lane] =
+            segment_is_loss(&a->roots[k]) ? to[lane] + r->result[k][lane] : r->result[k][lane];
     }
   }
 }

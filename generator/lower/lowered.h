@@ -60,10 +60,10 @@ typedef struct lowered_law {
   ir_node F; /* force state in N (the bond force is the mean of both sides), or IR_NONE */
   ir_node sigma[LOWERED_STRESSES]; /* of a continuum: xx, yy, zz, xy, yz, xz; Pa */
   ir_node tip[LOWERED_TIP];        /* of a crack */
-  bool along_reference; /* it acts along the reference bond */
-  ir_node W;            /* the law's own `energy`, or IR_NONE */
-  ir_node *fields;      /* [law->fields.count] new values (LOWER_FROZEN: the inputs themselves) */
-  ir_node *outputs;     /* [law->outputs.count] */
+  bool along_reference;            /* it acts along the reference bond */
+  ir_node W;                       /* the law's own `energy`, or IR_NONE */
+  ir_node *fields;  /* [law->fields.count] new values (LOWER_FROZEN: the inputs themselves) */
+  ir_node *outputs; /* [law->outputs.count] */
   lowered_text text;
 } lowered_law;
 

@@ -91,6 +91,10 @@ static int load_laws(run *r) {
     if (!failed) failed = check_physics(r, k);
     status = failed > status ? failed : status;
   }
+  for (int k = 0; k < r->deck->crack_count; k++) {
+    const int failed = load_crack_law(r, k);
+    status = failed > status ? failed : status;
+  }
   for (int k = 0; k < r->deck->material_count; k++)
     if (deck_find_lattice(r->deck, r->deck->materials[k].lattice) < 0)
       check_law_alone(r, &r->deck->materials[k]);
@@ -121,8 +125,9 @@ static bool has_lattices(run *r) {
 static int set_up(run *r) {
   if (!load_deck(r)) return INPUT_WRONG;
   const size_t lattices = (size_t)r->deck->lattice_count + 1,
-               laws = (size_t)r->deck->interaction_count + 1;
-  r->models = must_calloc((size_t)r->deck->material_count + 1, sizeof *r->models);
+               cracks = (size_t)r->deck->crack_count,
+               laws = (size_t)r->deck->interaction_count + cracks + 1;
+  r->models = must_calloc((size_t)r->deck->material_count + cracks + 1, sizeof *r->models);
   r->laws = must_calloc(laws, sizeof *r->laws);
   r->built_in = must_calloc(laws, sizeof *r->built_in);
   r->model_of = must_calloc(laws, sizeof *r->model_of);
@@ -151,7 +156,7 @@ static void tell_all(const run *r) {
 static void let_go(run *r) {
   if (r->result) result_close(r->result);
   if (r->simulation) simulation_free(r->simulation);
-  for (int k = 0; r->laws && k < r->deck->interaction_count; k++)
+  for (int k = 0; r->laws && k < r->deck->interaction_count + r->deck->crack_count; k++)
     free_parameters(&r->laws[k]);
   for (int k = 0; k < r->open_models; k++)
     model_close(&r->models[k]);

@@ -195,6 +195,46 @@ int load_law(run *r, int interaction) {
   return take_parameters(r, m, &values, interaction) ? 0 : INPUT_WRONG;
 }
 
+static bool is_of_cracks(run *r, const deck_crack *c, const model *opened) {
+  if (opened->law->tree->law == LAW_CRACK) return true;
+  diag_report(&r->said, DIAG_CONFLICT, deck_where(&c->item, "model"), "`%s` is no law of cracks",
+              opened->law->tree->name);
+  diag_hint(&r->said, "take one that has `crack ... end crack`, such as `lefm`");
+  return false;
+}
+
+int load_crack_law(run *r, int crack) {
+  const deck_crack *c = &r->deck->cracks[crack];
+  simulation_law *out = &r->laws[r->deck->interaction_count + crack];
+  char error[4 * ERROR_LENGTH];
+  const char *note;
+  if (!c->model) return 0;
+  if (r->options->laws) {
+    diag_report(&r->said, DIAG_NOT_SUPPORTED, deck_where(&c->item, "model"),
+                "a stand-alone solver has no laws of cracks");
+    diag_hint(&r->said, "use `perilat run`");
+    return INPUT_WRONG;
+  }
+  model *opened = &r->models[r->open_models];
+  const bool good = material_law_open(&c->material, NULL, r->options->deck_path, opened, &r->said);
+  r->open_models += opened->memory != NULL;
+  if (!good || !is_of_cracks(r, c, opened)) return INPUT_WRONG;
+  out->law = model_kernel(opened, r->options->interpret || r->options->check_only, &note, error,
+                          sizeof error);
+  if (!out->law) {
+    say_error("%s", error);
+    return RUN_FAILED;
+  }
+  out->parameters = parameters_of(r, &opened->values, out->law);
+  if (!out->parameters) return INPUT_WRONG;
+  const deck_lattice none = lattice_default("plane_stress", 1, 1);
+  if (r->options->no_physics ||
+      run_law_obeys(opened, &none, out->parameters, deck_where(&c->item, "model"), &opened->said,
+                    &r->said))
+    return 0;
+  return INPUT_WRONG;
+}
+
 bool check_law_alone(run *r, const deck_material *m) {
   char *path = r->options->laws ? NULL : model_find(m->model, r->options->deck_path);
   if (!path) return false;

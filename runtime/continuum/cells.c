@@ -207,8 +207,8 @@ static void turn(sweep *w) {
     exchange(&e->before[d], &e->resisting[d]);
     exchange(&e->added_before[d], &e->added[d]);
   }
-  e->begun = true;
-  if (e->of->tips) tips_after(e->of->tips, w->body, &e->of->stencil);
+  e->begun = 1;
+  if (e->of->tips) tips_after(e->of->tips, w->body, &e->of->mesh, &e->of->stencil);
 }
 
 static void observe_rows(sweep *w, int block) {
@@ -228,6 +228,7 @@ static void observe_rows(sweep *w, int block) {
           0.5 * lane_dot(count, NULL, e->resisting[d] + start, w->body->displacement[d] + start);
     const double taken = taken_by_row(w, r);
     seen->rate = e->row_rate[r] + taken;
+    seen->state = r == 0 && e->of->tips ? e->of->tips->released : 0;
     seen->free += 0.5 * taken;
   }
 }
@@ -258,8 +259,8 @@ static void free_own(sweep *w) {
   free(w->engine.own);
 }
 
-sweep *cells_sweep(cells *c, const double *parameters, double time_step, int threads,
-                   body_ledger ledger) {
+sweep *cells_sweep(cells *c, const deck *k, const double *parameters, const tip_law *cracks,
+                   double time_step, int threads, body_ledger ledger) {
   body *of = body_new(c->nodes, c->law->dof, time_step, threads, BODY_SHARE_ROWS);
   of->ledger = ledger != BODY_NO_LEDGER;
   of->forces = true;
@@ -274,7 +275,8 @@ sweep *cells_sweep(cells *c, const double *parameters, double time_step, int thr
     e->driving[d] = body_doubles(of, c->nodes->size);
   }
   e->row_rate = body_doubles(of, c->nodes->row_count);
-  if (c->tips) tips_take(c->tips, &c->stiffness, material_density(c->law, parameters), time_step);
+  if (c->tips)
+    tips_take(c->tips, k, &c->stiffness, material_density(c->law, parameters), cracks, time_step);
   w->engine = (sweep_engine){.step_stages = 2,
                              .force_stages = 2,
                              .observe_stages = 2,
@@ -287,4 +289,19 @@ sweep *cells_sweep(cells *c, const double *parameters, double time_step, int thr
                              .free = free_own,
                              .own = e};
   return w;
+}
+
+cells_memory cells_remembered(const sweep *w) {
+  cells_engine *e = own(w);
+  const size_t plane = (size_t)w->lattice->size * sizeof(double);
+  return (cells_memory){
+      CELLS_PLANES,
+      {e->before[0], e->before[1], e->added_before[0], e->added_before[1], e->row_rate, &e->begun},
+      {plane, plane, plane, plane, (size_t)w->lattice->row_count * sizeof(double),
+       sizeof e->begun}};
+}
+
+void cells_restored(sweep *w) {
+  cells *c = own(w)->of;
+  if (c->tips) tips_replay(c->tips, &c->mesh, &c->stencil);
 }

@@ -39,8 +39,19 @@ void cells_free(cells *c);
 void cells_take_law(cells *c, const pl_law *law, const double *parameters);
 /* The longest stable step; held[2 n + d]: freedoms that do not move by themselves. */
 void cells_step_limit(const cells *c, const unsigned char *held, step_limit *limit);
-/* At rest; to be freed by sweep_free, before the cells. */
-sweep *cells_sweep(cells *c, const double *parameters, double time_step, int threads,
-                   body_ledger ledger);
+/* At rest; to be freed by sweep_free, before the cells. cracks[k->crack_count]: the laws of the deck's
+   cracks. */
+sweep *cells_sweep(cells *c, const deck *k, const double *parameters, const tip_law *cracks,
+                   double time_step, int threads, body_ledger ledger);
+
+/* What the engine remembers from step to step, for checkpoints; and after one was read. */
+enum { CELLS_PLANES = 6 };
+typedef struct cells_memory {
+  int count;
+  void *planes[CELLS_PLANES];
+  size_t bytes[CELLS_PLANES];
+} cells_memory;
+cells_memory cells_remembered(const sweep *w);
+void cells_restored(sweep *w);
 
 #endif

@@ -125,6 +125,15 @@ bool tips_new(const deck *k, const char *name, mesh *m, tips **out, diagnostics 
   if (any) {
     for (int a = 0; a < 2; a++)
       t->kept[a] = must_calloc((size_t)mesh_node_count(m), sizeof(double));
+    t->segment = k->tips.segment * m->spacing[0];
+    for (int a = 0; a < 2; a++) {
+      const bool given = k->tips.size[a] > 0;
+      t->lower[a] = given ? k->tips.corner[a] : m->corner[a];
+      t->upper[a] = given ? t->lower[a] + k->tips.size[a] : mesh_at(m, a, m->nodes[a] - 1);
+    }
+    t->pieces.items = must_calloc(TIPS_MOST_PIECES, sizeof *t->pieces.items);
+    t->pieces.tip = must_calloc(TIPS_MOST_PIECES, sizeof *t->pieces.tip);
+    t->pieces.leg = must_calloc(TIPS_MOST_PIECES, 1);
     *out = t;
   } else {
     free(t);
@@ -134,6 +143,15 @@ bool tips_new(const deck *k, const char *name, mesh *m, tips **out, diagnostics 
 
 void tips_free(tips *t) {
   if (!t) return;
+  for (int n = 0; n < t->count; n++) {
+    free(t->items[n].uniforms);
+    free(t->items[n].field);
+    free(t->items[n].new_field);
+    free(t->items[n].observed);
+  }
+  free(t->pieces.items);
+  free(t->pieces.tip);
+  free(t->pieces.leg);
   free(t->items);
   free(t->points);
   free(t->kept[0]);
@@ -141,11 +159,36 @@ void tips_free(tips *t) {
   free(t);
 }
 
-void tips_take(tips *t, const plane_stiffness *law, double density, double time_step) {
+static double *lanes(int count) {
+  return must_calloc((size_t)count * PL_LANES + 1, sizeof(double));
+}
+
+/* Each tip has the law's states for itself. */
+static void give_law(mesh_tip *p, const tip_law *l) {
+  const pl_bond_class none = {.size = sizeof none};
+  const pl_law *law = l->law;
+  if (!law || !p->of->grows) return;
+  p->law = law;
+  p->uniforms = must_calloc((size_t)law->uniform_count + 1, sizeof(double));
+  p->field = lanes(law->field_count);
+  p->new_field = lanes(law->field_count);
+  p->observed = lanes(law->output_count);
+  law->prepare(law, l->parameters, &none, p->uniforms);
+  for (int f = 0; f < law->field_count; f++)
+    for (int lane = 0; lane < PL_LANES; lane++)
+      p->field[f * PL_LANES + lane] = law->fields[f].initial;
+}
+
+void tips_take(tips *t, const deck *k, const plane_stiffness *law, double density,
+               const tip_law *cracks, double time_step) {
   const deck_tips *o = t->options;
   t->medium = crack_medium_of(law->D[0][0], law->D[0][1], law->D[2][2], density);
   t->check_steps = o->check_every > 0 ? llround(o->check_every / time_step) : o->check_steps;
   if (t->check_steps < 1) t->check_steps = 1;
+  t->update_steps = t->check_steps / o->updates;
+  if (t->update_steps < 1) t->update_steps = 1;
+  for (int n = 0; n < t->count; n++)
+    give_law(&t->items[n], &cracks[t->items[n].of - k->cracks]);
 }
 
 /* --- a look ----------------------------------------------------------------------------------- */
@@ -254,11 +297,202 @@ static void look_at(tips *t, mesh_tip *p, const body *w, const node_stencil *k) 
   tip_intensity(&t->medium, &b, t->points, count, p->now.speed, p->now.K);
 }
 
-void tips_after(tips *t, const body *w, const node_stencil *k) {
+/* --- growth ----------------------------------------------------------------------------------- */
+
+/* What the law says of a tip: [PL_TIP_RESULTS]. */
+static void ask_law(const tips *t, mesh_tip *p, double *said) {
+  const double values[PL_TIP_INPUTS] = {
+      p->now.K[0],   p->now.K[1],   tip_energy_release(&t->medium, tips_speed(t, p), p->now.K),
+      p->now.angle,  p->now.speed,  p->now.length,
+      t->medium.c_R, t->medium.c_s, t->medium.c_d};
+  double in[PL_TIP_INPUTS][PL_LANES], out[PL_TIP_RESULTS][PL_LANES];
+  const double *from[PL_TIP_INPUTS];
+  double *to[PL_TIP_RESULTS];
+  const int fields = p->law->field_count, outputs = p->law->output_count;
+  double **field = must_calloc((size_t)(2 * fields + outputs) + 1, sizeof *field);
+  for (int k = 0; k < PL_TIP_INPUTS; k++) {
+    for (int lane = 0; lane < PL_LANES; lane++)
+      in[k][lane] = values[k];
+    from[k] = in[k];
+  }
+  for (int k = 0; k < PL_TIP_RESULTS; k++)
+    to[k] = out[k];
+  for (int f = 0; f < fields; f++) {
+    field[f] = p->field + f * PL_LANES;
+    field[fields + f] = p->new_field + f * PL_LANES;
+  }
+  for (int k = 0; k < outputs; k++)
+    field[2 * fields + k] = p->observed + k * PL_LANES;
+  const pl_tips asked = {.size = sizeof asked,
+                         .count = PL_LANES,
+                         .in = from,
+                         .old_field = (const double *const *)field,
+                         .new_field = field + fields,
+                         .out = to,
+                         .observed = field + 2 * fields};
+  p->law->tip_look(p->law, p->uniforms, &asked);
+  memcpy(p->field, p->new_field, (size_t)fields * PL_LANES * sizeof(double));
+  for (int k = 0; k < PL_TIP_RESULTS; k++)
+    said[k] = out[k][0];
+  free(field);
+}
+
+/* A grown tip near the edge of the mesh keeps its direction: the box around it is cut. */
+static bool is_near_edge(const tips *t, const mesh_tip *p, const mesh *m) {
+  bool near = false;
+  for (int a = 0; a < 2; a++)
+    near = near || p->now.at[a] - m->corner[a] < t->half_size ||
+           mesh_at(m, a, m->nodes[a] - 1) - p->now.at[a] < t->half_size;
+  return near && p->now.grown;
+}
+
+/* Arrest, or growth at the law's speed; a new leg where the crack may turn. */
+static void decide(tips *t, mesh_tip *p, const mesh *m) {
+  double said[PL_TIP_RESULTS];
+  ask_law(t, p, said);
+  if (!(said[PL_TIP_GROW] > 0)) {
+    p->now.speed = 0;
+    return;
+  }
+  const bool may_turn = p->now.segments == 0 || p->now.last >= t->segment;
+  p->now.speed = said[PL_TIP_RUN];
+  if (!may_turn || is_near_edge(t, p, m)) return;
+  p->now.angle += said[PL_TIP_TOWARD];
+  p->now.last = 0;
+  p->now.segments++;
+}
+
+/* Part of a -> b until it meets c -> d; 1: it does not. */
+static double until_met(const double a[2], const double b[2], const crack_piece *other) {
+  const double u[2] = {b[0] - a[0], b[1] - a[1]},
+               v[2] = {other->b[0] - other->a[0], other->b[1] - other->a[1]},
+               w[2] = {other->a[0] - a[0], other->a[1] - a[1]};
+  const double cross = u[0] * v[1] - u[1] * v[0];
+  if (cross == 0) return 1;
+  const double along = (w[0] * v[1] - w[1] * v[0]) / cross,
+               there = (w[0] * u[1] - w[1] * u[0]) / cross;
+  return along > 1e-9 && along < 1 && there >= 0 && there <= 1 ? along : 1;
+}
+
+static double until_left(const double a[2], const double b[2], const double lower[2],
+                         const double upper[2]) {
+  double part = 1;
+  for (int k = 0; k < 2; k++) {
+    if (b[k] < lower[k]) part = pl_min(part, (lower[k] - a[k]) / (b[k] - a[k]));
+    if (b[k] > upper[k]) part = pl_min(part, (upper[k] - a[k]) / (b[k] - a[k]));
+  }
+  return pl_max(part, 0);
+}
+
+static void finish(tips *t, mesh_tip *p, const char *why) {
+  p->now.done = 1;
+  p->now.speed = 0;
+  snprintf(t->said, sizeof t->said, "the tip of `%s` at (%.6g, %.6g) mm %s", p->of->name,
+           1e3 * p->now.at[0], 1e3 * p->now.at[1], why);
+}
+
+static void keep_piece(tips *t, const mesh_tip *p, const double a[2], const double b[2]) {
+  tip_pieces *all = &t->pieces;
+  crack_piece *piece = &all->items[all->count];
+  memcpy(piece->a, a, sizeof piece->a);
+  memcpy(piece->b, b, sizeof piece->b);
+  all->tip[all->count] = p->number;
+  all->leg[all->count++] = p->now.last == 0;
+}
+
+/* By its way over the time between two advances; shorter where something ends it. */
+static void advance(tips *t, mesh_tip *p, double way, mesh *m, node_stencil *k) {
+  const double *a = p->now.at,
+               b[2] = {a[0] + way * cos(p->now.angle), a[1] + way * sin(p->now.angle)};
+  double part = until_left(a, b, t->lower, t->upper);
+  const char *why = part < 1 ? "has left where cracks grow" : NULL;
+  for (int n = 0; n < m->cracks.count; n++) {
+    const double met = until_met(a, b, &m->cracks.pieces[n]);
+    if (met >= part) continue;
+    part = met;
+    why = "has met another crack";
+  }
+  const double to[2] = {a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])},
+               from[2] = {a[0], a[1]};
+  const int cell = mesh_cell_of(m, to);
+  if (cell >= 0 && m->cell[cell] == CELL_ELEMENT) {
+    finish(t, p, "has come to the finite elements, which do not see it");
+    return;
+  }
+  if (t->pieces.count == TIPS_MOST_PIECES) {
+    finish(t, p, "has grown by more pieces than can be kept");
+    return;
+  }
+  if (part * way > 0) {
+    keep_piece(t, p, from, to);
+    node_stencil_grow(k, m, from, to, p->number);
+    p->now.last += part * way;
+    p->now.length += part * way;
+    memcpy(p->now.at, to, sizeof to);
+    p->now.grown = 1;
+  }
+  if (why) finish(t, p, why);
+}
+
+/* u K u/2 of the places at hand. */
+static double stored(const body *w, const node_stencil *k, double *const product[2]) {
+  double sum = 0;
+  node_stencil_multiply(k, (const double *const *)w->displacement, product, 0, k->layout.nodes[1]);
+  for (int d = 0; d < 2; d++)
+    for (long q = 0; q < k->layout.size; q++)
+      sum += 0.5 * product[d][q] * w->displacement[d][q];
+  return sum;
+}
+
+static bool some_grows(const tips *t) {
+  for (int n = 0; n < t->count; n++)
+    if (t->items[n].now.speed > 0 && !t->items[n].now.done) return true;
+  return false;
+}
+
+static void grow(tips *t, const body *w, mesh *m, node_stencil *k) {
+  pool *memory = pool_new();
+  double *const product[2] = {pool_doubles(memory, k->layout.size),
+                              pool_doubles(memory, k->layout.size)};
+  const double before = stored(w, k, product);
+  for (int n = 0; n < t->count; n++) {
+    mesh_tip *p = &t->items[n];
+    if (p->now.speed > 0 && !p->now.done)
+      advance(t, p, p->now.speed * w->time_step * (double)t->update_steps, m, k);
+  }
+  t->released += before - stored(w, k, product);
+  pool_free(memory);
+}
+
+void tips_after(tips *t, const body *w, mesh *m, node_stencil *k) {
   if (is_time(t))
-    for (int n = 0; n < t->count; n++)
-      if (!t->items[n].now.done) look_at(t, &t->items[n], w, k);
+    for (int n = 0; n < t->count; n++) {
+      mesh_tip *p = &t->items[n];
+      if (p->now.done) continue;
+      look_at(t, p, w, k);
+      if (p->law) decide(t, p, m);
+    }
+  if (t->step > 0 && t->step % t->update_steps == 0 && some_grows(t)) grow(t, w, m, k);
   t->step++;
+}
+
+void tips_replay(tips *t, mesh *m, node_stencil *k) {
+  if (t->pieces.count < 0 || t->pieces.count > TIPS_MOST_PIECES) t->pieces.count = 0;
+  for (int64_t n = 0; n < t->pieces.count; n++)
+    if (t->pieces.tip[n] >= 0 && t->pieces.tip[n] < t->count)
+      node_stencil_grow(k, m, t->pieces.items[n].a, t->pieces.items[n].b, t->pieces.tip[n]);
+}
+
+int tip_path(const tips *t, int tip, double (*at)[2], int most) {
+  int count = 0;
+  for (int64_t n = 0; n < t->pieces.count; n++) {
+    if (t->pieces.tip[n] != tip) continue;
+    const crack_piece *p = &t->pieces.items[n];
+    if (count == 0 && most > 0) memcpy(at[count++], p->a, sizeof p->a);
+    if (count > 1 && !t->pieces.leg[n]) count--;
+    if (count < most) memcpy(at[count++], p->b, sizeof p->b);
+  }
+  return count;
 }
 
 /* --- series ----------------------------------------------------------------------------------- */

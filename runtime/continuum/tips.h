@@ -28,22 +28,44 @@ typedef struct tip_state {
   int64_t grown, done; /* it has grown; it grows no more */
 } tip_state;
 
+/* The law of a crack, with its parameters; NULL: it does not grow. */
+typedef struct tip_law {
+  const pl_law *law;
+  const double *parameters;
+} tip_law;
+
 typedef struct mesh_tip {
   const deck_crack *of;
-  bool at_start; /* of the crack's first point */
-  int number;    /* among the mesh's live tips */
+  bool at_start;                                   /* of the crack's first point */
+  int number;                                      /* among the mesh's live tips */
+  const pl_law *law;                               /* NULL: it does not grow */
+  double *uniforms, *field, *new_field, *observed; /* of the law, each value PL_LANES times */
   tip_state now;
 } mesh_tip;
+
+/* What has grown, piece by piece. */
+enum { TIPS_MOST_PIECES = 20000 };
+typedef struct tip_pieces {
+  int64_t count;
+  crack_piece *items; /* [TIPS_MOST_PIECES] */
+  int32_t *tip;       /* [TIPS_MOST_PIECES] whose */
+  unsigned char *leg; /* [TIPS_MOST_PIECES] 1: a leg begins with it */
+} tip_pieces;
 
 typedef struct tips {
   mesh_tip *items;
   int count;
   crack_medium medium;
   const deck_tips *options;
-  double half_size;          /* m */
-  int64_t check_steps, step; /* steps between looks; steps done */
-  double *kept[2];           /* [nodes] m/s: velocities before the step of a look */
-  tip_point *points;         /* room for those of a box */
+  double half_size;                        /* m */
+  int64_t check_steps, update_steps, step; /* between looks and advances; done */
+  double segment;                          /* m: least length of a leg */
+  double lower[2], upper[2];               /* m: where cracks grow */
+  double released;                         /* J: by growth, since the start */
+  tip_pieces pieces;                       /* grown, in order */
+  char said[512];                          /* what the user is to know: a tip is finished */
+  double *kept[2];                         /* [nodes] m/s: velocities before the step of a look */
+  tip_point *points;                       /* room for those of a box */
   int room;
 } tips;
 
@@ -51,13 +73,20 @@ typedef struct tips {
    cracks; none without tips. False after a diagnostic. */
 bool tips_new(const deck *k, const char *name, mesh *m, tips **out, diagnostics *d);
 void tips_free(tips *t);
-/* The law at the tips, once it is known, and the step. */
-void tips_take(tips *t, const plane_stiffness *law, double density, double time_step);
+/* The law around the tips, once it is known, those of the deck's cracks, and the step. */
+void tips_take(tips *t, const deck *k, const plane_stiffness *law, double density,
+               const tip_law *cracks, double time_step);
 
 /* Before a step moves the nodes: what a look will need. */
 void tips_before(tips *t, const body *w, const node_stencil *k);
-/* When the step n -> n+1 has moved them: a look at t_n, if it is time for one. */
-void tips_after(tips *t, const body *w, const node_stencil *k);
+/* When the step n -> n+1 has moved them: a look at t_n, if it is time for one, and growth; `m` and
+   `k` are the mesh and its stiffness, which growth changes. */
+void tips_after(tips *t, const body *w, mesh *m, node_stencil *k);
+/* After `pieces` was read from a checkpoint: the mesh and its stiffness as they were then. */
+void tips_replay(tips *t, mesh *m, node_stencil *k);
+/* Pieces of a tip so far: points of its path, in order; *at begins with where the tip was at the
+   start. Returns how many points. */
+int tip_path(const tips *t, int tip, double (*at)[2], int most);
 
 /* Series of a tip: their names, units, words and values. X(name, unit, words, value of tip `p`) */
 #define TIP_SERIES(X)                                                                              \

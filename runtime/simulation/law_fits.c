@@ -95,7 +95,8 @@ bool law_fits_lattice(const pl_law *law, const deck *k, int lattice, const rows 
                       diagnostics *d) {
   const deck_lattice *l = &k->lattices[lattice];
   const bool same = law->dimensions == w->dimensions;
-  if ((law->kind == PL_CONTINUUM) != deck_lattice_is_mesh(l)) return kind_differs(law, k, lattice, d);
+  if ((law->kind == PL_CONTINUUM) != deck_lattice_is_mesh(l))
+    return kind_differs(law, k, lattice, d);
   if (same && law->kind == PL_CONTINUUM) return true;
   if (same && (law->kind == PL_STATE || w->list)) return topology_serves(law, l, w, d);
   if (same && bravais_is_hexagon(l)) return true;

@@ -9,9 +9,9 @@
 #include "runtime/analysis/material.h"
 #include "runtime/analysis/stability.h"
 #include "runtime/deck/lattice_kind.h"
-#include "runtime/interaction/interaction.h"
 #include "runtime/filling/lattice.h"
 #include "runtime/filling/linked.h"
+#include "runtime/interaction/interaction.h"
 #include "runtime/simulation/law_fits.h"
 #include "runtime/simulation/step_choice.h"
 
@@ -263,7 +263,8 @@ static void open_state(run_body *b, const deck *k, double step) {
                                                   : BODY_LEDGER;
   const int threads = choose_threads(b, k);
   if (b->cells) {
-    b->state = l->state = cells_sweep(b->cells, l->parameters, step, threads, energies);
+    b->state = l->state =
+        cells_sweep(b->cells, k, l->parameters, b->cracks, step, threads, energies);
     return;
   }
   if (b->law_count == 1 && !run_body_is_link(b)) {

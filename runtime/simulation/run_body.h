@@ -6,8 +6,8 @@
 #define PERILAT_RUNTIME_RUN_BODY_H
 
 #include "dsl/base/diagnostics.h"
-#include "runtime/continuum/cells.h"
 #include "runtime/analysis/step_limit.h"
+#include "runtime/continuum/cells.h"
 #include "runtime/interaction/damage.h"
 #include "runtime/interaction/sweep.h"
 #include "runtime/lattice/law_parts.h"
@@ -42,8 +42,9 @@ typedef struct run_body {
   sweep *state;      /* what moves the body: that of its law, or all of them together */
   body *body;        /* of the state */
   loads *loads;
-  cells *cells;     /* of a mesh; else NULL */
-  step_limit limit; /* of this body alone; `step` is that of the run */
+  cells *cells;          /* of a mesh; else NULL */
+  const tip_law *cracks; /* [cracks of the deck] their laws */
+  step_limit limit;      /* of this body alone; `step` is that of the run */
   ledger ledger;
   ledger_laws energies;
   load_look look;         /* of the state observed last */

@@ -183,6 +183,11 @@ static void take_laws(simulation *s, const simulation_law *laws) {
   const deck *k = s->deck;
   s->law_count = k->interaction_count;
   s->laws = must_calloc((size_t)s->law_count + 1, sizeof *s->laws);
+  s->cracks = must_calloc((size_t)k->crack_count + 1, sizeof *s->cracks);
+  for (int n = 0; n < k->crack_count; n++)
+    s->cracks[n] = (tip_law){laws[s->law_count + n].law, laws[s->law_count + n].parameters};
+  for (int b = 0; b < s->body_count; b++)
+    s->bodies[b].cracks = s->cracks;
   for (int n = 0; n < s->law_count; n++) {
     run_body *of = &s->bodies[k->interactions[n].lattice];
     s->laws[n] = (run_law){.from = &k->interactions[n],
@@ -226,6 +231,7 @@ void simulation_free(simulation *s) {
   free(s->dampings);
   free(s->omegas);
   free(s->bodies);
+  free(s->cracks);
   free(s->laws);
   free(s);
 }

@@ -28,7 +28,8 @@ typedef struct simulation simulation;
 struct profile;
 struct sweep;
 
-/* What the front end hands over for each interaction of the deck, in its order. NULL where a law or
+/* What the front end hands over for each interaction of the deck, in its order, and then for each of
+   its cracks (without a law: all 0). NULL where a law or
    its parameters are wrong: then the deck is checked as far as it does not depend on them. */
 typedef struct simulation_law {
   const pl_law *law;

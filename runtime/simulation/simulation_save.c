@@ -28,6 +28,26 @@ static void add_fields(part_list *l, const sweep *w) {
   add_part(l, "dissipated_rate", w->dissipated_rate, site);
 }
 
+/* Of a mesh: the forces of the step before, and what has grown of its cracks. */
+static void add_cells(part_list *l, cells_memory *m, tips *t) {
+  for (int k = 0; k < m->count; k++)
+    add_part(l, "forces of cells", m->planes[k], m->bytes[k]);
+  if (!t) return;
+  add_part(l, "steps of tips", &t->step, sizeof t->step);
+  add_part(l, "released", &t->released, sizeof t->released);
+  add_part(l, "pieces", &t->pieces.count, sizeof t->pieces.count);
+  add_part(l, "pieces", t->pieces.items, TIPS_MOST_PIECES * sizeof *t->pieces.items);
+  add_part(l, "pieces", t->pieces.tip, TIPS_MOST_PIECES * sizeof *t->pieces.tip);
+  add_part(l, "pieces", t->pieces.leg, TIPS_MOST_PIECES);
+  for (int k = 0; k < t->count; k++) {
+    mesh_tip *p = &t->items[k];
+    add_part(l, "tip", &p->now, sizeof p->now);
+    if (p->law && p->law->field_count > 0)
+      add_part(l, "states of a tip", p->field,
+               (size_t)p->law->field_count * PL_LANES * sizeof(double));
+  }
+}
+
 static void add_state(part_list *l, const run_body *of) {
   const sweep *w = of->state;
   const size_t site = (size_t)of->lattice_rows->size * sizeof(double),
@@ -47,6 +67,9 @@ static void add_state(part_list *l, const run_body *of) {
   add_part(l, "dissipated_mass", w->body->row_mass, row);
   add_part(l, "internal", w->body->row_internal, row);
   add_part(l, "decay", &w->body->decay, sizeof(double));
+  if (!of->cells) return;
+  cells_memory m = cells_remembered(of->state);
+  add_cells(l, &m, of->cells->tips);
 }
 
 static void add_loads(part_list *l, loads *of) {
@@ -202,6 +225,7 @@ bool simulation_restore(simulation *s, const char *path, const char *fingerprint
   for (int b = 0; b < s->body_count; b++) {
     if (good) put_places_back(s->bodies[b].loads, &own[b]);
     if (good) sweep_fields_set(s->bodies[b].state);
+    if (good && s->bodies[b].cells) cells_restored(s->bodies[b].state);
     free(own[b].constraints);
     free(own[b].forces);
   }

@@ -25,7 +25,8 @@ struct simulation {
   run_link *links; /* [link_count] between bodies */
   int link_count;
   run_contacts contacts;
-  run_law *laws; /* [law_count] the deck's interactions, those of one body after the other */
+  tip_law *cracks; /* [cracks of the deck] */
+  run_law *laws;   /* [law_count] the deck's interactions, those of one body after the other */
   int law_count;
   team *team; /* of the threads */
   int blocks; /* of a round of the team; each has a block of some bodies */
