@@ -123,8 +123,12 @@ bool tips_new(const deck *k, const char *name, mesh *m, tips **out, diagnostics 
       any = true;
     }
   if (any) {
-    for (int a = 0; a < 2; a++)
+    for (int a = 0; a < 2; a++) {
       t->kept[a] = must_calloc((size_t)mesh_node_count(m), sizeof(double));
+      t->velocity[a] = must_calloc((size_t)mesh_node_count(m), sizeof(double));
+      t->acceleration[a] = must_calloc((size_t)mesh_node_count(m), sizeof(double));
+    }
+    t->loaded = must_calloc((size_t)mesh_node_count(m), 1);
     t->segment = k->tips.segment * m->spacing[0];
     for (int a = 0; a < 2; a++) {
       const bool given = k->tips.size[a] > 0;
@@ -154,8 +158,12 @@ void tips_free(tips *t) {
   free(t->pieces.leg);
   free(t->items);
   free(t->points);
-  free(t->kept[0]);
-  free(t->kept[1]);
+  for (int a = 0; a < 2; a++) {
+    free(t->kept[a]);
+    free(t->velocity[a]);
+    free(t->acceleration[a]);
+  }
+  free(t->loaded);
   free(t);
 }
 
@@ -197,18 +205,36 @@ static double tips_speed(const tips *t, const mesh_tip *p) {
   return pl_max(p->now.speed, 0.01 * t->medium.c_s);
 }
 
-static bool is_time(const tips *t) {
-  return t->count > 0 && t->step > 0 && t->step % t->check_steps == 0;
+static bool is_time(const tips *t, int64_t step) {
+  return t->count > 0 && step % t->check_steps == 0;
 }
 
 void tips_before(tips *t, const body *w, const node_stencil *k) {
-  if (!is_time(t)) return;
+  if (!is_time(t, t->step + 1)) return;
   for (int d = 0; d < 2; d++)
     for (int n = 0; n < mesh_node_count(k->of); n++)
       t->kept[d][n] = w->velocity[d][node_layout_at(&k->layout, n)];
 }
 
-/* The body's fields at a point, at the instant before the step that has just moved the nodes. */
+/* Velocities and accelerations of the nodes at the present instant; their places are there. */
+static void find_motion(tips *t, const body *w, const node_stencil *k) {
+  pool *memory = pool_new();
+  double *const force[2] = {pool_doubles(memory, k->layout.size),
+                            pool_doubles(memory, k->layout.size)};
+  node_stencil_multiply(k, (const double *const *)w->displacement, force, 0, k->layout.nodes[1]);
+  for (int d = 0; d < 2; d++)
+    for (int n = 0; n < mesh_node_count(k->of); n++) {
+      const long site = node_layout_at(&k->layout, n);
+      const double before = w->velocity[d][site];
+      const double a = t->loaded[n] ? (before - t->kept[d][n]) / w->time_step
+                                    : -force[d][site] / body_mass(w, d, site);
+      t->acceleration[d][n] = a;
+      t->velocity[d][n] = before + 0.5 * w->time_step * a;
+    }
+  pool_free(memory);
+}
+
+/* The body's fields at a point. */
 static tip_point fields_at(const tips *t, const body *w, const node_stencil *k, const double at[2],
                            double area, int cell) {
   tip_point p = {.at = {at[0], at[1]}, .area = area};
@@ -217,14 +243,13 @@ static tip_point fields_at(const tips *t, const body *w, const node_stencil *k, 
   for (int q = 0; q < s.count; q++) {
     const long site = node_layout_at(&k->layout, s.node[q]);
     for (int d = 0; d < 2; d++) {
-      const double after = w->velocity[d][site], before = t->kept[d][s.node[q]];
-      const double u = w->displacement[d][site] - w->time_step * after, v = 0.5 * (before + after);
+      const double u = w->displacement[d][site], v = t->velocity[d][s.node[q]];
       p.gradient[d][0] += s.nx[q] * u;
       p.gradient[d][1] += s.ny[q] * u;
       p.velocity[d] += s.n[q] * v;
       p.velocity_gradient[d][0] += s.nx[q] * v;
       p.velocity_gradient[d][1] += s.ny[q] * v;
-      p.acceleration[d] += s.n[q] * (after - before) / w->time_step;
+      p.acceleration[d] += s.n[q] * t->acceleration[d][s.node[q]];
     }
   }
   const double e[3] = {p.gradient[0][0], p.gradient[1][1], p.gradient[0][1] + p.gradient[1][0]};
@@ -464,16 +489,20 @@ static void grow(tips *t, const body *w, mesh *m, node_stencil *k) {
   pool_free(memory);
 }
 
+static void look(tips *t, const body *w, const mesh *m, const node_stencil *k) {
+  find_motion(t, w, k);
+  for (int n = 0; n < t->count; n++) {
+    mesh_tip *p = &t->items[n];
+    if (p->now.done) continue;
+    look_at(t, p, w, k);
+    if (p->law) decide(t, p, m);
+  }
+}
+
 void tips_after(tips *t, const body *w, mesh *m, node_stencil *k) {
-  if (is_time(t))
-    for (int n = 0; n < t->count; n++) {
-      mesh_tip *p = &t->items[n];
-      if (p->now.done) continue;
-      look_at(t, p, w, k);
-      if (p->law) decide(t, p, m);
-    }
-  if (t->step > 0 && t->step % t->update_steps == 0 && some_grows(t)) grow(t, w, m, k);
   t->step++;
+  if (is_time(t, t->step)) look(t, w, m, k);
+  if (t->step % t->update_steps == 0 && some_grows(t)) grow(t, w, m, k);
 }
 
 void tips_replay(tips *t, mesh *m, node_stencil *k) {

@@ -1,10 +1,11 @@
 /* The tips of a mesh's cracks: their stress intensities at every look, and how they grow.
 
    A look at the state t_n finds K_I and K_II of each tip (interaction_integral.h) from the body's
-   fields there: displacements, the mean of the velocities before and after, and what they differ by
-   over the step. Looks are at steps n = L, 2L, ...; between two of them growing tips advance `updates`
-   times. What the stiffness loses as a crack advances, with the displacements held, is energy that
-   the crack has released (ledger).
+   fields there: displacements, velocities v_n = v_(n-1/2) + dt/2 a_n, accelerations a_n by the forces
+   of the present places; of nodes that loads or supports act on by the last two velocities. Looks are
+   at steps n = L, 2L, ...; between two of them growing tips advance `updates` times. What the
+   stiffness loses as a crack advances, with the displacements held, is energy that the crack has
+   released (ledger).
 
    An end of a crack inside the mesh is a tip; one on its border is not. */
 #ifndef PERILAT_RUNTIME_TIPS_H
@@ -64,7 +65,9 @@ typedef struct tips {
   double released;                         /* J: by growth, since the start */
   tip_pieces pieces;                       /* grown, in order */
   char said[512];                          /* what the user is to know: a tip is finished */
-  double *kept[2];                         /* [nodes] m/s: velocities before the step of a look */
+  /* [nodes] of the state that is looked at: m/s, m/s^2; velocities before the last step */
+  double *velocity[2], *acceleration[2], *kept[2];
+  unsigned char *loaded; /* [nodes] loads or supports act on it */
   tip_point *points;                       /* room for those of a box */
   int room;
 } tips;
@@ -79,8 +82,8 @@ void tips_take(tips *t, const deck *k, const plane_stiffness *law, double densit
 
 /* Before a step moves the nodes: what a look will need. */
 void tips_before(tips *t, const body *w, const node_stencil *k);
-/* When the step n -> n+1 has moved them: a look at t_n, if it is time for one, and growth; `m` and
-   `k` are the mesh and its stiffness, which growth changes. */
+/* When the step n-1 -> n has moved them: a look at t_n, if it is time for one, and growth; `m` and `k`
+   are the mesh and its stiffness, which growth changes. */
 void tips_after(tips *t, const body *w, mesh *m, node_stencil *k);
 /* After `pieces` was read from a checkpoint: the mesh and its stiffness as they were then. */
 void tips_replay(tips *t, mesh *m, node_stencil *k);

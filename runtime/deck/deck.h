@@ -240,8 +240,12 @@ typedef struct deck_force { /* on the region, shared equally by its particles */
   const char *region;
   int component;       /* a rotation: moment in N*m */
   bool per_length;     /* by the particles' parts of their row */
-  time_function force; /* N; per length N/m */
+  time_function force; /* N; per length N/m; of a traction Pa */
+  /* of a traction: the mesh (else NULL), and the ends of the line that it acts on */
+  const char *mesh;
+  double from[3], to[3]; /* m */
 } deck_force;
+typedef deck_force deck_traction;
 
 typedef struct deck_end_moment { /* horizontal forces, linear in y over the region, without
                                     resultant; N*m */
@@ -443,6 +447,7 @@ typedef struct deck_file { /* a table that a load was read from */
   LIST(support)                                                                                    \
   LIST(drive)                                                                                      \
   LIST(force)                                                                                      \
+  MORE(traction)                                                                                   \
   LIST(end_moment)                                                                                 \
   LIST(protect)                                                                                    \
   LIST(damping)                                                                                    \

@@ -244,6 +244,59 @@ DECK_LIST(force, .identity = "region", .check = check_force,
           .doc = "Force on a region, shared equally by its particles, or by length along a row of "
                  "them. Give `total`, `moment` or `per_length`.");
 
+/* --- traction --------------------------------------------------------------------------------- */
+
+static const deck_key_info traction_keys[] = {
+    {.name = "mesh",
+     .type = DECK_NAME,
+     .required = true,
+     DECK_AT(traction, mesh),
+     .doc = "name of the mesh"},
+    {.name = "from",
+     .type = DECK_PLACE,
+     .unit = "m",
+     .required = true,
+     DECK_AT(traction, from),
+     .doc = "one end of the straight line that is loaded: an edge of the mesh, a part of it, or a "
+            "line inside"},
+    {.name = "to",
+     .type = DECK_PLACE,
+     .unit = "m",
+     .required = true,
+     DECK_AT(traction, to),
+     .doc = "its other end"},
+    {.name = "component",
+     .type = DECK_CHOICE,
+     .choices = "x|y",
+     .required = true,
+     DECK_AT(traction, component),
+     .doc = "direction of the load"},
+    {.name = "stress",
+     .type = DECK_LATER,
+     .unit = "Pa",
+     DECK_NOT_KEPT,
+     .doc = "full force per area of the line and the thickness"},
+    DECK_TIME_KEYS,
+};
+
+static const deck_load_kind traction_kind = {"stress", "Pa", false, &deck_formula_of_all};
+
+static void check_traction(deck_reader *r, const namelist_group *from, void *into) {
+  deck_traction *item = into;
+  deck_mesh_known(r, &item->item, item->mesh);
+  deck_check_places(r, from, &deck_group_traction, 2);
+  if (deck_load_kind_of(r->memory, from, &traction_kind, 1, r->d) < 0) return;
+  if (item->from[0] == item->to[0] && item->from[1] == item->to[1])
+    diag_report(r->d, DIAG_BAD_VALUE, deck_where(&item->item, "to"),
+                "the line that is loaded ends where it begins");
+  if (!deck_load_read(r->memory, from, &traction_kind, &item->force, r->d)) return;
+  deck_warn_late(r, &item->item, "start", item->force.start);
+}
+
+DECK_MORE(traction, force, .identity = "mesh", .check = check_traction,
+          .doc = "Force per area on a straight line of a mesh. Nodes bear the integral of their "
+                 "functions over it.");
+
 /* --- end moment ------------------------------------------------------------------------------- */
 
 static const deck_key_info end_moment_keys[] = {

@@ -135,7 +135,8 @@ static void check_formulas(const loads *l, diagnostics *d) {
     check_formula(l, &k->drives[i].motion, &k->drives[i].item, k->drives[i].region,
                   moves_at_once && k->drives[i].is_displacement, d);
   for (int i = 0; i < k->force_count; i++)
-    check_formula(l, &k->forces[i].force, &k->forces[i].item, k->forces[i].region, false, d);
+    if (!k->forces[i].mesh)
+      check_formula(l, &k->forces[i].force, &k->forces[i].item, k->forces[i].region, false, d);
   for (int i = 0; i < k->end_moment_count; i++)
     check_formula(l, &k->end_moments[i].moment, &k->end_moments[i].item, k->end_moments[i].region,
                   false, d);
@@ -166,7 +167,7 @@ static bool find_shares(const loads *l, int lattice, const deck_force *f, const 
 static void add_forces(loads *l, int lattice, const motions *m) {
   for (int i = 0; i < l->deck->force_count; i++) {
     const deck_force *f = &l->deck->forces[i];
-    const region_sites *at = region_of(l, f->region);
+    const region_sites *at = f->mesh ? NULL : region_of(l, f->region);
     if (!at || !has_component(m, f->component, deck_where(&f->item, "component"))) continue;
     double *share = must_alloc(((size_t)at->count + 1) * sizeof *share);
     if (find_shares(l, lattice, f, at, share, m->said))
@@ -250,6 +251,10 @@ static void find_holders(loads *l, const motions *m) {
 }
 
 /* --- links ------------------------------------------------------------------------------------ */
+
+void loads_add_share(loads *l, int32_t particle, int component, int force, double share) {
+  add_force(l, particle, component, force, share);
+}
 
 void loads_add_link(loads *l, int64_t site, int component, int link, double share,
                     const double *force) {

@@ -69,6 +69,10 @@ void loads_free(loads *l);
    on how many particles. */
 double loads_shares_of(const loads *l, int force, long *particles);
 
+/* A share of the deck's force of that number that is found elsewhere, as of a traction: m^2; the last
+   one is to be followed by loads_links_added. */
+void loads_add_share(loads *l, int32_t particle, int component, int force, double share);
+
 /* A share of a force of the run's link of that number, which stands at `force` (N, N m) when it is
    known; the last one is to be followed by loads_links_added. */
 void loads_add_link(loads *l, int64_t site, int component, int link, double share,

@@ -8,6 +8,7 @@
 #include "dsl/base/arena.h"
 #include "runtime/analysis/material.h"
 #include "runtime/analysis/stability.h"
+#include "runtime/continuum/line_load.h"
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/filling/lattice.h"
 #include "runtime/filling/linked.h"
@@ -221,6 +222,40 @@ static bool open_materials(run_body *b, const deck *k, rows *const *built, diagn
   return planes && mass && find_limit(b, k, d);
 }
 
+static void unit_traction(void *context, const double at[2], double traction[2]) {
+  (void)context;
+  (void)at;
+  traction[0] = 1;
+  traction[1] = 0;
+}
+
+/* What each node bears of a unit stress on the line: m^2. False where the line misses the mesh. */
+static bool add_traction(run_body *b, const deck *k, int number, diagnostics *d) {
+  const deck_traction *f = &k->forces[number];
+  const long nodes = b->lattice_rows->particle_count;
+  double *share[2] = {must_calloc((size_t)nodes, sizeof(double)),
+                      must_calloc((size_t)nodes, sizeof(double))};
+  const double loaded = line_load(&b->cells->mesh, f->from, f->to, unit_traction, NULL, share);
+  for (long n = 0; n < nodes; n++)
+    if (share[0][n] != 0)
+      loads_add_share(b->loads, (int32_t)n, f->component, number, share[0][n]);
+  free(share[0]);
+  free(share[1]);
+  if (loaded > 0) return true;
+  diag_report(d, DIAG_EMPTY_REGION, deck_where(&f->item, "from"),
+              "the line that is loaded lies outside the mesh `%s`", b->name);
+  return false;
+}
+
+static bool add_tractions(run_body *b, const deck *k, diagnostics *d) {
+  bool good = true;
+  for (int n = 0; n < k->force_count && b->loads; n++)
+    if (k->forces[n].mesh && strcmp(k->forces[n].mesh, b->name) == 0)
+      good = add_traction(b, k, n, d) && good;
+  if (b->loads) loads_links_added(b->loads);
+  return good;
+}
+
 bool run_body_open(run_body *b, const deck *k, rows **built, diagnostics *d) {
   enum { ANY_DOF = PL_MAX_DOF };
   b->name = k->lattices[b->lattice].name;
@@ -234,7 +269,7 @@ bool run_body_open(run_body *b, const deck *k, rows **built, diagnostics *d) {
   if (!b->fits) return false;
   if (deck_lattice_is_mesh(&k->lattices[b->lattice])) {
     b->cells = cells_new(k, b->lattice, b->lattice_rows, d);
-    if (!b->cells) return false;
+    if (!b->cells || !add_tractions(b, k, d)) return false;
   }
   for (int n = 0; n < b->law_count; n++)
     law_fits_protection(b->laws[n].law, k, b->lattice, d);
@@ -283,12 +318,22 @@ static void open_state(run_body *b, const deck *k, double step) {
   free(laws);
 }
 
+/* Nodes on which loads or supports act, which forces of cells alone do not accelerate. */
+static void mark_loaded(run_body *b) {
+  tips *t = b->cells ? b->cells->tips : NULL;
+  for (long n = 0; t && n < b->loads->constraint_count; n++)
+    t->loaded[b->lattice_rows->site_particle[b->loads->constraints[n].site]] = 1;
+  for (long n = 0; t && n < b->loads->force_count; n++)
+    t->loaded[b->lattice_rows->site_particle[b->loads->forces[n].site]] = 1;
+}
+
 bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d) {
   b->limit.step = step;
   for (int n = 0; n < b->law_count; n++) {
     b->laws[n].bonds = rows_bonds(b->laws[n].rows);
     ledger_add_law(&b->energies, b->laws[n].law, k->output.losses);
   }
+  mark_loaded(b);
   open_state(b, k, step);
   b->body = b->state->body;
   loads_point_masses(b->loads, b->body);
