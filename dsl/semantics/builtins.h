@@ -38,8 +38,8 @@ enum { MOVES, FIXED };
     "rotation of end j less the chord's")                                                          \
   X(TWIST, "twist", "1", SCALAR, BOND, IN_MICROPOLAR, MOVES, "x = twist/s",                        \
     "rotation of end j about the bond less that of end i; 0 in the plane")                         \
-  X(LENGTH, "length", "m", SCALAR, BOND, IN_LATTICE, MOVES, "x = length/s - 1",                    \
-    "present length of the bond")                                                                  \
+  X(LENGTH, "length", "m", SCALAR, BOND, IN_LATTICE | IN_CRACK, MOVES, "x = length/s - 1",         \
+    "present length of the bond; of a crack how long it is")                                       \
   X(S, "s", "m", SCALAR, BOND, IN_ANY, FIXED, "x = 2*s", "reference length of the bond")           \
   X(SPACING, "spacing", "m", SCALAR, BODY, IN_ANY, FIXED, "x = s/spacing",                         \
     "distance of nearest sites of the lattice")                                                    \
@@ -89,8 +89,6 @@ enum { MOVES, FIXED };
     "direction of the crack's last leg, from x")                                                   \
   X(SPEED_NOW, "speed_now", "m/s", SCALAR, TIP, IN_CRACK, MOVES, "x = speed_now/rayleigh_speed",   \
     "speed of the tip; 0 where it does not run")                                                   \
-  X(CRACK_LENGTH, "length", "m", SCALAR, TIP, IN_CRACK, MOVES, "x = length/1 [mm]",                \
-    "length of the crack")                                                                         \
   X(RAYLEIGH_SPEED, "rayleigh_speed", "m/s", SCALAR, TIP, IN_CRACK, FIXED,                         \
     "x = speed_now/rayleigh_speed", "speed of waves along a surface")                              \
   X(SHEAR_SPEED, "shear_speed", "m/s", SCALAR, TIP, IN_CRACK, FIXED,                               \

@@ -146,6 +146,17 @@ static bool read_input(driving *r) {
   return false;
 }
 
+/* Bonds and particles are driven; points and tips are not as yet. */
+static bool can_be_driven(driving *r) {
+  if (r->law->kind != PL_CONTINUUM && r->law->kind != PL_CRACK) return true;
+  diag_report(&r->said, DIAG_NOT_SUPPORTED, r->in->material.item.where,
+              "`perilat drive` drives bonds and particles; `%s` is a law of %s", r->law->name,
+              r->law->kind == PL_CRACK ? "cracks" : "a continuum");
+  diag_hint(&r->said, r->law->kind == PL_CRACK ? "see it at work in `perilat run` with a &crack"
+                                               : "a &mesh of one cell shows its point");
+  return false;
+}
+
 static bool is_of_families(const driving *r) {
   return r->law->kind == PL_STATE;
 }
@@ -394,7 +405,7 @@ static int prepare(driving *r) {
   if (!r->in->material.model) return 0;
   int status = open_law(r);
   if (status) return status;
-  if (!has_section(r) || !suits_law(r) || !set_values(r) || !spares_inputs(r)) return INPUT_WRONG;
+  if (!can_be_driven(r) || !has_section(r) || !suits_law(r) || !set_values(r) || !spares_inputs(r)) return INPUT_WRONG;
   if (is_of_families(r))
     drive_family_columns(r->in, r->model.law, r->law, &r->columns);
   else

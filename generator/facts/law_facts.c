@@ -9,7 +9,8 @@ const char *law_kind_text(const law *l) {
 }
 
 bool law_facts_has_implied(const law_facts *f) {
-  return !f->missing && f->model.law->tree->law != LAW_SLIP_BOND;
+  const law_kind kind = f->model.law->tree->law;
+  return !f->missing && kind != LAW_SLIP_BOND && kind != LAW_CONTINUUM && kind != LAW_CRACK;
 }
 
 bool law_facts_of_families(const law_facts *f) {

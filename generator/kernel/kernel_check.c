@@ -10,6 +10,7 @@
 #include "generator/ir/random_values.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/kernel_check_families.h"
+#include "generator/kernel/kernel_check_points.h"
 #include "generator/kernel/kernel_check_strips.h"
 
 enum { BATCH = 1024, STATES_PER_BOND = 4 };
@@ -166,7 +167,11 @@ kernel_check kernel_check_run(const kernel_plan *p, const pl_law *kernel,
     l.parameters = parameters[k];
     check_prepare(&l, parameters[k], &c.outputs);
     check_bounds(&l, parameters[k], &c.outputs);
-    if (kernel->kind == PL_STATE)
+    if (kernel->kind == PL_CONTINUUM || kernel->kind == PL_CRACK) {
+      const double *const each[2] = {uniforms[0], uniforms[1]};
+      kernel_check_points(l.law, each, states / sets, &seed, &c.outputs);
+      c.points += states / sets;
+    } else if (kernel->kind == PL_STATE)
       check_families(&c, &l, states / sets, &seed);
     else
       check_bonds(&c, p->law, &l, states / sets, guards, &seed);
@@ -208,7 +213,9 @@ void kernel_check_report(const kernel_check *c, const char *name) {
     return;
   }
   printf("kernel check: %s and its interpreter give the same bits (", name);
-  if (c->passes)
+  if (c->points)
+    printf("%ld random points or tips", c->points);
+  else if (c->passes)
     printf("%ld random bonds of families in each of %d passes", c->bonds, c->passes);
   else
     printf("%ld random states, %ld random bonds in each of 6 strip functions", c->states, c->bonds);

@@ -13,6 +13,7 @@ typedef struct kernel_check {
   long states,
       bonds;  /* random states (laws of bonds); random bonds, as many through each of the six strip
                 functions, or through each pass */
+  long points; /* random points of a continuum, or tips */
   int passes; /* of all programs (laws of families) */
   comparison outputs;      /* of all functions of the kernel */
   int guards, guards_both; /* conditions of the law, and those seen both true and false */

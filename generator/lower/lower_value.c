@@ -30,7 +30,7 @@ static components lower_tensor_of_point(const lowering *c, bool rate) {
 static components lower_quantity_name(lowering *c, builtin_quantity q) {
   if (q == QUANTITY_STRAIN || q == QUANTITY_STRAIN_RATE)
     return lower_tensor_of_point(c, q == QUANTITY_STRAIN_RATE);
-  if (builtin_quantities[q].kinds == IN_CRACK) return scalar(lower_tip_quantity(c->graph, q));
+  if (c->law->tree->law == LAW_CRACK) return scalar(lower_tip_quantity(c->graph, q));
   if (q == QUANTITY_CELL_SIZE) return scalar(point_input_node(c->graph, POINT_CELL_SIZE));
   if (q == QUANTITY_V) return scalar(lower_volume(c->graph, c->law));
   if (q == QUANTITY_RESOLVED) return scalar(lower_resolved(c->graph, c->law));

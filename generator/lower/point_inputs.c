@@ -20,9 +20,30 @@ ir_node lower_point_strain(ir *g, const law *l, int k, bool rate) {
   return point_input_node(g, (rate ? POINT_STRAIN_RATE : POINT_STRAIN) + k);
 }
 
-_Static_assert(QUANTITY_DILATATIONAL_SPEED - QUANTITY_K_I + 1 == TIP_INPUTS,
-               "quantities of tips stand in the order of their inputs");
+/* Which input each of the quantities is that laws of cracks have. */
+static int tip_input_of(builtin_quantity q) {
+  switch (q) {
+  case QUANTITY_K_I:
+    return TIP_K_I;
+  case QUANTITY_K_II:
+    return TIP_K_II;
+  case QUANTITY_ENERGY_RELEASE:
+    return TIP_ENERGY_RELEASE;
+  case QUANTITY_ANGLE_NOW:
+    return TIP_ANGLE;
+  case QUANTITY_SPEED_NOW:
+    return TIP_SPEED;
+  case QUANTITY_RAYLEIGH_SPEED:
+    return TIP_RAYLEIGH_SPEED;
+  case QUANTITY_SHEAR_SPEED:
+    return TIP_SHEAR_SPEED;
+  case QUANTITY_DILATATIONAL_SPEED:
+    return TIP_DILATATIONAL_SPEED;
+  default:
+    return TIP_LENGTH;
+  }
+}
 
 ir_node lower_tip_quantity(ir *g, builtin_quantity q) {
-  return ir_input(g, IR_FROM_TIP, (int)(q - QUANTITY_K_I), builtin_quantities[q].name, ON_TIP);
+  return ir_input(g, IR_FROM_TIP, tip_input_of(q), builtin_quantities[q].name, ON_TIP);
 }

@@ -83,6 +83,15 @@ static ir_node follows(planner *p, ir_node sigma_zz, ir_node strain) {
   return ir_neg(g, ir_div(g, by, slope));
 }
 
+static ir_node at_rest(planner *p, ir_node n) {
+  ir_node rates[MOST_STRAINS + 1], out;
+  memcpy(rates, p->rate, (size_t)p->strains * sizeof *rates);
+  rates[p->strains] = p->z_rate;
+  rewrite_zero(p->graph, &n, 1, rates, p->strains + 1, &out);
+  return out;
+}
+
+/* As z follows the strains of the plane at rest. */
 static ir_node rate_along_z(planner *p, ir_node sigma_zz) {
   ir *g = p->graph;
   ir_node sum = ir_constant(g, 0);
@@ -116,10 +125,11 @@ static bool settle_plane(planner *p, diagnostics *d) {
   for (int k = 0; k < 2; k++) {
     ir_node z = zero, z_rate = zero;
     if (is_free) {
-      const ir_node sigma_zz = both[k]->sigma[TENSOR_ZZ];
+      ir_node sigma_zz = both[k]->sigma[TENSOR_ZZ];
+      z_rate = rate_along_z(p, at_rest(p, sigma_zz));
+      ir_substitute(g, &sigma_zz, 1, &p->z_rate, &z_rate, 1, &sigma_zz);
       z = strain_without_stress(p, sigma_zz, d);
       if (z == IR_NONE) return false;
-      z_rate = rate_along_z(p, sigma_zz);
       ir_substitute(g, &z_rate, 1, &p->z, &z, 1, &z_rate);
     }
     if (k == 0) {

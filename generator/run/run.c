@@ -124,8 +124,7 @@ static bool has_lattices(run *r) {
    wrong elsewhere. */
 static int set_up(run *r) {
   if (!load_deck(r)) return INPUT_WRONG;
-  const size_t lattices = (size_t)r->deck->lattice_count + 1,
-               cracks = (size_t)r->deck->crack_count,
+  const size_t lattices = (size_t)r->deck->lattice_count + 1, cracks = (size_t)r->deck->crack_count,
                laws = (size_t)r->deck->interaction_count + cracks + 1;
   r->models = must_calloc((size_t)r->deck->material_count + cracks + 1, sizeof *r->models);
   r->laws = must_calloc(laws, sizeof *r->laws);
@@ -303,6 +302,15 @@ static bool check_kernels(const run *r) {
       continue;
     }
     const rows *w = simulation_law_rows(r->simulation, k);
+    const pl_bond_class none = {.size = sizeof none};
+    const double *values = l->parameters;
+    if (l->law->kind == PL_CONTINUUM) {
+      kernel_check c =
+          kernel_check_run(r->model_of[k]->plan, l->law, &values, 1, &none, 1, STATES, 1);
+      kernel_check_report(&c, l->law->name);
+      good = good && kernel_check_agrees(&c);
+      continue;
+    }
     const int classes = l->law->kind == PL_STATE ? 2 * w->directions : 1;
     pl_bond_class bonds[ROWS_MAX_NEIGHBOURS];
     for (int n = 0; n < classes; n++)

@@ -295,7 +295,7 @@ static int points_of_mesh(tips *t, const body *w, const node_stencil *k, const t
 /* Own points of the box: cells of 2 x 2 in each quadrant. Those outside the mesh are left out. */
 static int points_of_box(tips *t, const body *w, const node_stencil *k, const tip_box *b) {
   const int cells = t->options->points;
-  const double c = cos(b->angle), s = sin(b->angle), gauss = 1 / sqrt(3.0);
+  const double c = pl_cos(b->angle), s = pl_sin(b->angle), gauss = 1 / sqrt(3.0);
   int count = 0;
   for (int quadrant = 0; quadrant < 4; quadrant++)
     for (int n = 0; n < 4 * cells * cells; n++) {
@@ -428,7 +428,7 @@ static void keep_piece(tips *t, const mesh_tip *p, const double a[2], const doub
 /* By its way over the time between two advances; shorter where something ends it. */
 static void advance(tips *t, mesh_tip *p, double way, mesh *m, node_stencil *k) {
   const double *a = p->now.at,
-               b[2] = {a[0] + way * cos(p->now.angle), a[1] + way * sin(p->now.angle)};
+               b[2] = {a[0] + way * pl_cos(p->now.angle), a[1] + way * pl_sin(p->now.angle)};
   double part = until_left(a, b, t->lower, t->upper);
   const char *why = part < 1 ? "has left where cracks grow" : NULL;
   for (int n = 0; n < m->cracks.count; n++) {

@@ -68,7 +68,7 @@ typedef struct tips {
   /* [nodes] of the state that is looked at: m/s, m/s^2; velocities before the last step */
   double *velocity[2], *acceleration[2], *kept[2];
   unsigned char *loaded; /* [nodes] loads or supports act on it */
-  tip_point *points;                       /* room for those of a box */
+  tip_point *points;     /* room for those of a box */
   int room;
 } tips;
 

@@ -23,7 +23,8 @@ tip_box tip_box_of(const double at[2], double angle, double half_size, double la
 
 /* From the body's axes to those of the crack. */
 static void to_crack(const tip_box *b, const double at[2], double local[2]) {
-  const double c = cos(b->angle), s = sin(b->angle), d[2] = {at[0] - b->at[0], at[1] - b->at[1]};
+  const double c = pl_cos(b->angle), s = pl_sin(b->angle),
+               d[2] = {at[0] - b->at[0], at[1] - b->at[1]};
   local[0] = c * d[0] + s * d[1];
   local[1] = -s * d[0] + c * d[1];
 }
@@ -57,7 +58,7 @@ double tip_box_weight(const tip_box *b, const double at[2], double gradient[2]) 
 }
 
 void tip_box_extent(const tip_box *b, double lower[2], double upper[2]) {
-  const double c = cos(b->angle), s = sin(b->angle);
+  const double c = pl_cos(b->angle), s = pl_sin(b->angle);
   for (int a = 0; a < 2; a++) {
     const double along = a ? s : c, across = fabs(a ? c : s) * b->across;
     const double back = -b->behind * along, front = b->ahead * along;
@@ -86,7 +87,7 @@ static void turn_gradient(double c, double s, const double g[2][2], double out[2
 
 /* The point in the axes of the crack. */
 static tip_point turned(const tip_box *b, const tip_point *p) {
-  const double c = cos(b->angle), s = sin(b->angle);
+  const double c = pl_cos(b->angle), s = pl_sin(b->angle);
   const double stress[2][2] = {{p->stress[0], p->stress[2]}, {p->stress[2], p->stress[1]}};
   double local[2][2];
   tip_point t = {.area = p->area};

@@ -1,7 +1,8 @@
 #include "runtime/crack/tip_fields.h"
 
-#include <complex.h>
 #include <math.h>
+
+#include "dsl/base/elementary.h"
 
 typedef struct tip_motion {
   double a_d, a_s, D; /* of a speed */
@@ -26,25 +27,57 @@ static component component_of(const tip_motion *t, int mode, int i) {
   return i == 0 ? (component){2 * t->a_s, -t->a_s * s, 1} : (component){2 * t->a_s * t->a_d, -s, 0};
 }
 
-static double part(const component *c, double complex d, double complex s) {
-  const double complex sum = c->p * d + c->q * s;
-  return c->imaginary ? cimag(sum) : creal(sum);
+/* By hand: libraries differ in the last bits of complex roots. */
+typedef struct complex_number {
+  double re, im;
+} complex_number;
+
+static complex_number times(complex_number a, complex_number b) {
+  return (complex_number){a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+}
+
+/* Principal root. */
+static complex_number root(double re, double im) {
+  const double size = pl_hypot(re, im);
+  const double large = sqrt(0.5 * (size + fabs(re)));
+  if (large == 0) return (complex_number){0, 0};
+  const double small = 0.5 * fabs(im) / large, sign = signbit(im) ? -1 : 1;
+  return re >= 0 ? (complex_number){large, sign * small} : (complex_number){small, sign * large};
+}
+
+/* S = sqrt(x + i a y) with its first and second derivative by x. */
+typedef struct tip_root {
+  complex_number value, slope, second;
+} tip_root;
+
+static tip_root root_of(double x, double a_y) {
+  const complex_number s = root(x, a_y);
+  const double square = s.re * s.re + s.im * s.im;
+  const complex_number inverse = {s.re / square, -s.im / square};
+  const complex_number cube = times(inverse, times(inverse, inverse));
+  return (tip_root){s, {0.5 * inverse.re, 0.5 * inverse.im}, {-0.25 * cube.re, -0.25 * cube.im}};
+}
+
+static double part(const component *c, complex_number d, complex_number s) {
+  return c->imaginary ? c->p * d.im + c->q * s.im : c->p * d.re + c->q * s.re;
+}
+
+/* i a z. */
+static complex_number turned(double a, complex_number z) {
+  return (complex_number){-a * z.im, a * z.re};
 }
 
 tip_field tip_field_at(const crack_medium *m, int mode, double v, double x, double y) {
   const tip_motion t = motion_of(m, v);
-  const double complex i = CMPLX(0, 1);
-  const double complex d = csqrt(CMPLX(x, t.a_d * y)), s = csqrt(CMPLX(x, t.a_s * y));
-  const double complex d1 = 0.5 / d, s1 = 0.5 / s;                           /* by x */
-  const double complex d11 = -0.25 / (d * d * d), s11 = -0.25 / (s * s * s); /* twice */
+  const tip_root d = root_of(x, t.a_d * y), s = root_of(x, t.a_s * y);
   const double C = 2 / (m->mu * t.D * sqrt(2 * M_PI));
   tip_field f;
   for (int k = 0; k < 2; k++) {
     const component c = component_of(&t, mode, k);
-    f.u[k] = C * part(&c, d, s);
-    f.gradient[k][0] = C * part(&c, d1, s1);
-    f.gradient[k][1] = C * part(&c, i * t.a_d * d1, i * t.a_s * s1);
-    const double second = C * part(&c, d11, s11);
+    f.u[k] = C * part(&c, d.value, s.value);
+    f.gradient[k][0] = C * part(&c, d.slope, s.slope);
+    f.gradient[k][1] = C * part(&c, turned(t.a_d, d.slope), turned(t.a_s, s.slope));
+    const double second = C * part(&c, d.second, s.second);
     f.velocity[k] = -v * f.gradient[k][0];
     f.velocity_slope[k] = -v * second;
     f.acceleration[k] = v * v * second;

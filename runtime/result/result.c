@@ -146,19 +146,21 @@ static bool write_verdict(hid_t set, const result_series *s) {
                         (!s->unchecked || h5_attribute_text(set, "unchecked", s->unchecked)));
 }
 
-/* "energy/kinetic", "plate/kinetic": in a folder. */
-static bool make_folder(hid_t file, const result_series *s) {
+/* "energy/kinetic", "plate/kinetic", "notch/start/K_I": in folders. */
+static bool make_folders(hid_t file, const result_series *s) {
   char name[512];
-  const char *slash = strchr(s->name, '/');
-  if (!slash) return true;
-  snprintf(name, sizeof name, "/history/%.*s", (int)(slash - s->name), s->name);
-  return h5_make_group(file, name);
+  bool good = true;
+  for (const char *slash = strchr(s->name, '/'); slash && good; slash = strchr(slash + 1, '/')) {
+    snprintf(name, sizeof name, "/history/%.*s", (int)(slash - s->name), s->name);
+    good = h5_make_group(file, name);
+  }
+  return good;
 }
 
 static bool write_series(hid_t file, h5_scale *times, long count, const result_series *s) {
   char name[512];
   const hsize_t n[1] = {(hsize_t)count};
-  if (!make_folder(file, s)) return false;
+  if (!make_folders(file, s)) return false;
   snprintf(name, sizeof name, "/history/%s", s->name);
   if (!h5_write_doubles(file, name, s->values, 1, n, s->unit)) return false;
   const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);

@@ -8,8 +8,8 @@ shift 2
 # Exact, or rounded once as IEEE 754 asks.
 exact="sqrt fabs copysign floor ceil trunc rint nearbyint round lrint llrint lround llround fma fmod remainder nextafter ldexp frexp
 scalbn modf __muldc3"
-# Elastic constants that are printed, the stable step, which is rounded, and uncertainties of fits.
-lapack="dpotrf_ dpotri_ dgesv_ dstev_ zheev_ dgesvd_"
+# Elastic constants that are printed, the stable step, which is rounded, uncertainties of fits, and static solutions.
+lapack="dpotrf_ dpotri_ dgesv_ dstev_ zheev_ dgesvd_ dpbtrf_ dpbtrs_"
 
 library=$("$compiler" -print-file-name=libm.so.6)
 [ -f "$library" ] || { echo "there is no libm.so.6 to read the names of functions from"; exit 77; }

@@ -149,7 +149,11 @@ static const char *const around[] = {
     "model m\n  law state\n  parameter EA = 2 [MN]\n  force state F[j] = EA*stretch[j]\n",
     "end model\n",
     "model m\n  law slip bond\n  parameter k = 2 [MN/m]\n",
-    "  force N = k*slip\n  force V = k*gap\nend model\n"};
+    "  force N = k*slip\n  force V = k*gap\nend model\n",
+    "model m\n  law continuum\n  parameter E = 2 [GPa]\n",
+    "  stress sigma = hooke(strain, E, 0.2)\nend model\n",
+    "model m\n  crack\n  parameter K_Ic = 1 [MPa*m^(1/2)]\n",
+    "  grow when K_I > K_Ic\n  toward 0\n  speed 0.5*rayleigh_speed\n  end crack\nend model\n"};
 enum { KINDS_OF_LAWS = sizeof around / sizeof *around / 2 };
 
 static bool line_is_right(const char *name, const char *line, int kind) {

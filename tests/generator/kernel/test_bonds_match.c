@@ -38,7 +38,8 @@ static void assert_clean_and_vectorised(model *m) {
 static int check_law_of_bonds(const char *path, const law_choice *choice) {
   model m;
   const bool of_bonds =
-      model_open(&m, path, choice, choice ? 1 : 0) && m.law->tree->law != LAW_STATE;
+      model_open(&m, path, choice, choice ? 1 : 0) && m.law->tree->law != LAW_STATE &&
+      m.law->tree->law != LAW_CONTINUUM && m.law->tree->law != LAW_CRACK;
   model_close(&m);
   if (!of_bonds) return 0;
   const pl_law *kernel = open_kernel(&m, path, choice);

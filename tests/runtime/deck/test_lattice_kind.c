@@ -36,10 +36,11 @@ static void every_kind_is_one_of_sites_or_of_none(void **state) {
     const deck_lattice l = {.kind = lattice_kinds[k].name, .spacing = 1};
     assert_ptr_equal(lattice_kind_find(lattice_kinds[k].name), &lattice_kinds[k]);
     assert_true((strstr(LATTICE_KIND_CHOICES, l.kind) == NULL) ==
-                (deck_lattice_is_bar(&l) || deck_lattice_is_link(&l)));
+                (deck_lattice_is_bar(&l) || deck_lattice_is_link(&l) || deck_lattice_is_mesh(&l)));
     assert_true(deck_lattice_is_irregular(&l) == (lattice_kinds[k].dimensions == 0));
-    assert_true((strstr(LATTICE_KINDS_OF_SITES, l.kind) != NULL) == !deck_lattice_is_irregular(&l));
-    sites += !deck_lattice_is_irregular(&l);
+    const bool has_sites = !deck_lattice_is_irregular(&l) && !deck_lattice_is_mesh(&l);
+    assert_true((strstr(LATTICE_KINDS_OF_SITES, l.kind) != NULL) == has_sites);
+    sites += has_sites;
   }
   assert_int_equal(sites, sizeof known / sizeof *known);
   for (size_t k = 0; k < sizeof known / sizeof *known; k++) {
