@@ -1,0 +1,216 @@
+/* Meshes from decks and how they run: nodes, zones, cracks that are refused, energies, a known
+   frequency, threads, resuming. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "hooke_law.h"
+#include "runtime/continuum/cells.h"
+#include "runtime/continuum/mesh_build.h"
+#include "runtime/continuum/tips.h"
+#include "runtime/deck/group_mesh.h"
+#include "runtime/filling/mesh_rows.h"
+#include "runtime/mesh/node_layout.h"
+#include "runtime/simulation/simulation_save.h"
+#include "tests/runtime/small_run.h"
+
+#define MESH                                                                                       \
+  "&simulation end_time = '0.1 ms' step_safety = 0.5 /\n"                                          \
+  "&mesh name = 'plate' corner = '10 mm', 0 size = '200 mm', '100 mm' nodes = 21, 11 "             \
+  "thickness = '20 mm' method = 'element_free' support = 2.6 /\n"                                  \
+  "&zone mesh = 'plate' method = 'finite_elements' shape = 'rectangle' corner = '10 mm', 0 "       \
+  "size = '30 mm', '100 mm' /\n"                                                                   \
+  "&material mesh = 'plate' model = 'hooke' /\n"                                                   \
+  "&region name = 'left' shape = 'segment' from = '10 mm', 0 to = '10 mm', '100 mm' /\n"
+#define HELD "&support region = 'left' fix = 'x', 'y' /\n"
+#define PULL                                                                                       \
+  "&traction mesh = 'plate' from = '210 mm', 0 to = '210 mm', '100 mm' component = 'x' stress = "  \
+  "'1 MPa' /\n"
+
+static bool says(small_run *r, const char *text) {
+  for (int k = 0; k < r->said.count; k++)
+    if (strstr(r->said.items[k].message, text)) return true;
+  small_print(r);
+  return false;
+}
+
+static void nodes_are_particles_in_rows(void **state) {
+  (void)state;
+  small_run r;
+  small_open(&r, &hooke_law, MESH HELD);
+  if (!r.simulation) small_print(&r);
+  assert_non_null(r.simulation);
+  const rows *w = simulation_rows(r.simulation, 0);
+  double at[3], volume = 0;
+  assert_int_equal(w->particle_count, 231);
+  rows_place(w, w->particle_site[21 + 3], at);
+  assert_true(fabs(at[0] - 0.04) < 1e-15 && fabs(at[1] - 0.01) < 1e-15);
+  const node_layout l = node_layout_of((int[2]){21, 11}, 2.6);
+  assert_int_equal(l.reach, 5);
+  assert_int_equal(node_layout_at(&l, 24), w->particle_site[24]);
+  for (long p = 0; p < w->particle_count; p++)
+    volume += w->site_mass[w->particle_site[p]] / 2400;
+  assert_true(fabs(volume - 0.2 * 0.1 * 0.02) < 1e-15);
+  small_close(&r);
+}
+
+static void zones_flag_nodes(void **state) {
+  (void)state;
+  small_run r;
+  mesh m;
+  small_read(&r, MESH);
+  assert_true(mesh_build(r.deck, 0, &m, &r.said));
+  int elements = 0;
+  for (int n = 0; n < mesh_node_count(&m); n++)
+    elements += !m.element_free[n];
+  assert_int_equal(elements, 4 * 11);
+  assert_int_equal(m.cell[mesh_cell_at(&m, 2, 5)], CELL_ELEMENT);
+  assert_int_equal(m.cell[mesh_cell_at(&m, 3, 5)], CELL_INTERFACE);
+  assert_int_equal(m.cell[mesh_cell_at(&m, 4, 5)], CELL_ELEMENT_FREE);
+  mesh_close(&m);
+  small_close(&r);
+}
+
+static void wrong(const char *text, const char *message) {
+  small_run r;
+  small_open(&r, &hooke_law, text);
+  assert_null(r.simulation);
+  assert_true(says(&r, message));
+  small_close(&r);
+}
+
+static void what_cannot_be_is_refused(void **state) {
+  (void)state;
+  wrong(MESH HELD "&zone mesh = 'plate' method = 'finite_elements' shape = 'disc' centre = 9, 9 "
+                  "radius = '1 mm' /\n",
+        "the zone holds no node");
+  wrong(MESH HELD "&crack name = 'c' mesh = 'plate' points = 0.02, 0.05, 0.1, 0.052 /\n",
+        "the crack is in a finite element");
+  wrong(MESH HELD "&crack name = 'c' mesh = 'plate' points = 0.1, 0.05, 0.1, 0.2 /\n",
+        "the crack leaves the mesh");
+  wrong(MESH HELD "&traction mesh = 'plate' from = 1, 1 to = 1, 2 component = 'x' stress = 1 /\n",
+        "lies outside the mesh");
+  wrong(MESH HELD "&crack name = 'c' mesh = 'plate' points = 0.1, 0.05, 0.1 /\n",
+        "a point has two coordinates");
+}
+
+static void a_crack_along_nodes_is_warned_of(void **state) {
+  (void)state;
+  small_run r;
+  small_open(&r, &hooke_law,
+             MESH HELD "&crack name = 'c' mesh = 'plate' points = 0.21, 0.05, 0.15, 0.05 /\n");
+  assert_non_null(r.simulation);
+  assert_true(says(&r, "runs along a row of nodes"));
+  small_close(&r);
+}
+
+/* A bar pulled at once swings about its static length with the period 4 L/c; all energy is kept. */
+static void a_pulled_bar_swings(void **state) {
+  (void)state;
+  small_run r;
+  small_open(&r, &hooke_law,
+             "&simulation end_time = '0.3 ms' step_safety = 0.7 /\n"
+             "&mesh name = 'plate' size = 0.2, '20 mm' nodes = 41, 5 thickness = '20 mm' "
+             "method = 'finite_elements' /\n"
+             "&material mesh = 'plate' model = 'hooke' nu = 1e-6 /\n"
+             "&region name = 'left' shape = 'segment' from = 0, 0 to = 0, '20 mm' /\n"
+             "&region name = 'right' shape = 'segment' from = 0.2, 0 to = 0.2, '20 mm' /\n"
+             "&support region = 'left' fix = 'x', 'y' /\n"
+             "&traction mesh = 'plate' from = 0.2, 0 to = 0.2, '20 mm' component = 'x' "
+             "stress = '3 MPa' /\n"
+             "&monitor name = 'u' kind = 'displacement' region = 'right' component = 'x' /\n"
+             "&output sample = '2 us' /\n");
+  assert_non_null(r.simulation);
+  assert_int_equal(small_go(&r), STEP_END);
+  const double *time, *u = small_values(&r, "u"), c = sqrt(30e9 / 2400);
+  const long count = simulation_history(r.simulation, &time);
+  double most = 0, when = 0;
+  for (long k = 0; k < count; k++)
+    if (u[k] > most) {
+      most = u[k];
+      when = time[k];
+    }
+  assert_true(fabs(most - 2 * 3e6 * 0.2 / 30e9) < 0.04 * most);
+  assert_true(fabs(when - 2 * 0.2 / c) < 0.03 * when);
+  assert_true(fabs(small_last(&r, "energy/imbalance")) < 1e-9 * small_last(&r, "energy/external"));
+  small_close(&r);
+}
+
+/* What beta_1 takes is in the ledger. */
+static void numerical_damping_is_counted(void **state) {
+  (void)state;
+  small_run r;
+  small_open(&r, &hooke_law, MESH HELD PULL "&newmark beta_1 = 0.9 /\n");
+  assert_non_null(r.simulation);
+  assert_int_equal(small_go(&r), STEP_END);
+  assert_true(small_last(&r, "energy/dissipated_damping") > 0);
+  assert_true(fabs(small_last(&r, "energy/imbalance")) < 1e-9 * small_last(&r, "energy/external"));
+  small_close(&r);
+}
+
+#define CRACKED                                                                                    \
+  MESH HELD PULL "&newmark beta_1 = 0.9 /\n&tips half_size = 2 check_steps = 3 /\n"                \
+                 "&crack name = 'c' mesh = 'plate' points = 0.1234, 0.1, 0.1234, 0.053 /\n"
+
+static double last_K(const char *threads) {
+  char text[4096];
+  small_run r;
+  snprintf(text, sizeof text, CRACKED "%s", "");
+  char *at = strstr(text, "step_safety");
+  memmove(at + strlen(threads), at, strlen(at) + 1);
+  memcpy(at, threads, strlen(threads));
+  small_open(&r, &hooke_law, text);
+  assert_non_null(r.simulation);
+  small_go(&r);
+  const double K = small_last(&r, "c/K_I");
+  small_close(&r);
+  return K;
+}
+
+static void threads_change_no_bit(void **state) {
+  (void)state;
+  const double one = last_K("threads = 1 ");
+  assert_true(one > 0);
+  assert_true(last_K("threads = 2 ") == one);
+  assert_true(last_K("threads = 3 ") == one);
+}
+
+static void a_resumed_run_is_the_same(void **state) {
+  (void)state;
+  char path[] = "/tmp/perilat_cells_XXXXXX", error[512];
+  const int file = mkstemp(path);
+  assert_true(file >= 0);
+  close(file);
+  small_run r, s;
+  frame_mark frames = {0};
+  small_open(&r, &hooke_law, CRACKED);
+  small_open(&s, &hooke_law, CRACKED);
+  simulation_advance(r.simulation, 40, NULL);
+  assert_true(simulation_save(r.simulation, path, "print", &frames, error, sizeof error));
+  assert_true(simulation_restore(s.simulation, path, "print", &frames, error, sizeof error));
+  small_go(&r);
+  small_go(&s);
+  assert_true(small_last(&r, "c/K_I") == small_last(&s, "c/K_I"));
+  assert_true(small_last(&r, "energy/stored") == small_last(&s, "energy/stored"));
+  assert_true(small_last(&r, "energy/dissipated_damping") ==
+              small_last(&s, "energy/dissipated_damping"));
+  unlink(path);
+  small_close(&r);
+  small_close(&s);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(nodes_are_particles_in_rows),
+                                     cmocka_unit_test(zones_flag_nodes),
+                                     cmocka_unit_test(what_cannot_be_is_refused),
+                                     cmocka_unit_test(a_crack_along_nodes_is_warned_of),
+                                     cmocka_unit_test(a_pulled_bar_swings),
+                                     cmocka_unit_test(numerical_damping_is_counted),
+                                     cmocka_unit_test(threads_change_no_bit),
+                                     cmocka_unit_test(a_resumed_run_is_the_same)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
