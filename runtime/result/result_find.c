@@ -32,22 +32,27 @@ static bool is_group(const result_file *f, const char *path) {
   return g >= 0;
 }
 
-result_names result_members(result_file *f, const char *group) {
-  result_names all = {0}, outer = result_list(f, group);
-  for (int k = 0; k < outer.count; k++) {
-    char path[512];
-    if (strcmp(outer.items[k], "time") == 0) continue;
-    snprintf(path, sizeof path, "%.250s/%.250s", group, outer.items[k]);
-    if (!is_group(f, path)) {
-      result_names_add(&all, "", outer.items[k]);
-      continue;
-    }
-    result_names inner = result_list(f, path);
-    for (int i = 0; i < inner.count; i++)
-      result_names_add(&all, outer.items[k], inner.items[i]);
-    result_names_free(&inner);
+/* Of groups within groups, too: "notch/start/K_I". */
+static void add_members(result_file *f, const char *group, const char *folder, int deep,
+                        result_names *all) {
+  enum { DEEPEST = 8 }; /* a damaged file may lead in circles */
+  result_names here = result_list(f, group);
+  for (int k = 0; k < here.count && deep < DEEPEST; k++) {
+    char path[512], name[512];
+    if (deep == 0 && strcmp(here.items[k], "time") == 0) continue;
+    snprintf(path, sizeof path, "%.250s/%.250s", group, here.items[k]);
+    snprintf(name, sizeof name, "%.250s%s%.250s", folder, *folder ? "/" : "", here.items[k]);
+    if (is_group(f, path))
+      add_members(f, path, name, deep + 1, all);
+    else
+      result_names_add(all, folder, here.items[k]);
   }
-  result_names_free(&outer);
+  result_names_free(&here);
+}
+
+result_names result_members(result_file *f, const char *group) {
+  result_names all = {0};
+  add_members(f, group, "", 0, &all);
   result_names_index(&all);
   return all;
 }
