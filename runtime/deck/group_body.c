@@ -294,6 +294,14 @@ static void check_can_be_filled(deck_reader *r, const deck_item *item, const dec
                 deck_shown(r->memory, lattice));
     return;
   }
+  if (deck_lattice_is_mesh(&r->k->lattices[l])) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(item, "lattice"),
+                is_body ? "`%s` is a mesh: its `corner` and `size` say where it is"
+                        : "`%s` is a mesh, which notches do not cut",
+                deck_shown(r->memory, lattice));
+    if (!is_body) diag_hint(r->d, "a &crack is a line that nodes do not act across");
+    return;
+  }
   if (suits || !deck_lattice_is_irregular(&r->k->lattices[l])) return;
   diag_report(r->d, DIAG_CONFLICT, deck_where(item, "shape"),
               shape->kind == SHAPE_POINT ? "%s means a site of a lattice, but here are none"

@@ -91,13 +91,53 @@ static bool kind_differs(const pl_law *law, const deck *k, int lattice, diagnost
   return false;
 }
 
+/* What meshes do not do as yet, and what of the deck would have to be done. */
+static bool mesh_can_have(const pl_law *law, const deck *k, int lattice, diagnostics *d) {
+  const deck_mesh *m = &k->lattices[lattice];
+  const deck_item *item = NULL;
+  const char *why = NULL;
+  if (!law->linear) {
+    diag_report(d, DIAG_NOT_SUPPORTED, law_fits_where(k, lattice),
+                "the law `%s` is not linear: a mesh runs linear laws alone so far", law->name);
+    return false;
+  }
+  for (int n = 0; n < k->material_count && !item; n++)
+    if (k->materials[n].lattice && strcmp(k->materials[n].lattice, m->name) == 0 &&
+        (k->materials[n].region || k->materials[n].between[0])) {
+      item = &k->materials[n].item;
+      why = "a material of its own in a part of it";
+    }
+  for (int n = 0; n < k->field_count && !item; n++)
+    if (k->fields[n].lattice && strcmp(k->fields[n].lattice, m->name) == 0) {
+      item = &k->fields[n].item;
+      why = "a random field";
+    }
+  if (!item && law->varying_count > 0) {
+    item = &k->materials[deck_find_material(k, m->name)].item;
+    why = "parameters that differ from place to place";
+  }
+  for (int n = 0; n < k->contact_count && !item; n++)
+    if (deck_lattice_touches(m, &k->contacts[n])) {
+      item = &k->contacts[n].item;
+      why = "contact";
+    }
+  if (!item && k->relaxation.increments > 0) {
+    item = &k->relaxation.item;
+    why = "quasi-static runs";
+  }
+  if (!item) return true;
+  diag_report(d, DIAG_NOT_SUPPORTED, item->where, "the mesh `%s` cannot have %s as yet", m->name,
+              why);
+  return false;
+}
+
 bool law_fits_lattice(const pl_law *law, const deck *k, int lattice, const rows *w,
                       diagnostics *d) {
   const deck_lattice *l = &k->lattices[lattice];
   const bool same = law->dimensions == w->dimensions;
   if ((law->kind == PL_CONTINUUM) != deck_lattice_is_mesh(l))
     return kind_differs(law, k, lattice, d);
-  if (same && law->kind == PL_CONTINUUM) return true;
+  if (same && law->kind == PL_CONTINUUM) return mesh_can_have(law, k, lattice, d);
   if (same && (law->kind == PL_STATE || w->list)) return topology_serves(law, l, w, d);
   if (same && bravais_is_hexagon(l)) return true;
   if (!same) {

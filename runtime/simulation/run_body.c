@@ -1,5 +1,6 @@
 #include "runtime/simulation/run_body.h"
 
+#include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
@@ -139,10 +140,26 @@ static unsigned char *held_freedoms(const run_body *b) {
   return held;
 }
 
+/* The fields of a tip are those of isotropic plates. */
+static bool is_isotropic(const run_body *b, const deck *k, diagnostics *d) {
+  const double(*D)[3] = b->cells->stiffness.D, scale = 1e-9 * D[0][0];
+  double off = fabs(D[0][0] - D[1][1]) + fabs(D[0][1] - D[1][0]) + fabs(D[0][2]) + fabs(D[1][2]) +
+               fabs(D[2][2] - 0.5 * (D[0][0] - D[0][1]));
+  if (off <= scale) return true;
+  diag_report(d, DIAG_CONFLICT, law_fits_where(k, b->lattice),
+              "cracks need an isotropic law: stress intensities of `%s` have no meaning",
+              b->law->name);
+  return false;
+}
+
 static bool find_limit_of_cells(run_body *b, const deck *k, diagnostics *d) {
   const run_law *l = &b->laws[0];
   unsigned char *held = held_freedoms(b);
   cells_take_law(b->cells, l->law, l->parameters);
+  if (b->cells->tips && !is_isotropic(b, k, d)) {
+    free(held);
+    return false;
+  }
   cells_step_limit(b->cells, held, &b->limit);
   free(held);
   return step_limit_check(k, law_fits_where(k, b->lattice), l->law, &b->limit, d);
@@ -222,6 +239,41 @@ static bool open_materials(run_body *b, const deck *k, rows *const *built, diagn
   return planes && mass && find_limit(b, k, d);
 }
 
+/* The value of an element-free node is a parameter, not its displacement: it cannot be held. */
+static bool moves_elements_alone(const run_body *b, const deck_item *item, int region,
+                                 diagnostics *d) {
+  const region_sites *at = region >= 0 ? &b->loads->regions[region] : NULL;
+  for (long p = 0; at && p < at->count; p++) {
+    const int32_t node = at->particles[p];
+    double at_node[2];
+    if (!b->cells->mesh.element_free[node]) continue;
+    mesh_place(&b->cells->mesh, node, at_node);
+    diag_report(
+        d, DIAG_CONFLICT, deck_where(item, "region"),
+        "the node at (%.6g, %.6g) mm is element-free: its displacement cannot be prescribed",
+        1e3 * at_node[0], 1e3 * at_node[1]);
+    diag_hint(d,
+              "make the nodes of the region finite elements: &zone mesh = '%s' method = "
+              "'finite_elements' ...",
+              b->name);
+    return false;
+  }
+  return true;
+}
+
+static bool holds_elements_alone(const run_body *b, const deck *k, diagnostics *d) {
+  bool good = true;
+  for (int n = 0; n < k->support_count && b->loads; n++)
+    good = moves_elements_alone(b, &k->supports[n].item, deck_find_region(k, k->supports[n].region),
+                                d) &&
+           good;
+  for (int n = 0; n < k->drive_count && b->loads; n++)
+    good =
+        moves_elements_alone(b, &k->drives[n].item, deck_find_region(k, k->drives[n].region), d) &&
+        good;
+  return good;
+}
+
 static void unit_traction(void *context, const double at[2], double traction[2]) {
   (void)context;
   (void)at;
@@ -237,8 +289,7 @@ static bool add_traction(run_body *b, const deck *k, int number, diagnostics *d)
                       must_calloc((size_t)nodes, sizeof(double))};
   const double loaded = line_load(&b->cells->mesh, f->from, f->to, unit_traction, NULL, share);
   for (long n = 0; n < nodes; n++)
-    if (share[0][n] != 0)
-      loads_add_share(b->loads, (int32_t)n, f->component, number, share[0][n]);
+    if (share[0][n] != 0) loads_add_share(b->loads, (int32_t)n, f->component, number, share[0][n]);
   free(share[0]);
   free(share[1]);
   if (loaded > 0) return true;
@@ -269,7 +320,7 @@ bool run_body_open(run_body *b, const deck *k, rows **built, diagnostics *d) {
   if (!b->fits) return false;
   if (deck_lattice_is_mesh(&k->lattices[b->lattice])) {
     b->cells = cells_new(k, b->lattice, b->lattice_rows, d);
-    if (!b->cells || !add_tractions(b, k, d)) return false;
+    if (!b->cells || !holds_elements_alone(b, k, d) || !add_tractions(b, k, d)) return false;
   }
   for (int n = 0; n < b->law_count; n++)
     law_fits_protection(b->laws[n].law, k, b->lattice, d);
