@@ -36,21 +36,12 @@ static int show_pages(const char *topic, FILE *out) {
 /* --- built-ins -------------------------------------------------------------------------------- */
 
 static void show_quantity(int q, FILE *out) {
-  static const char *const laws[] = {[IN_CENTRAL] = "central bond laws",
-                                     [IN_MICROPOLAR] = "micropolar bond laws",
-                                     [IN_SLIP] = "slip bond laws",
-                                     [IN_BOND] = "bond laws",
-                                     [IN_STATE] = "state laws",
-                                     [IN_CENTRAL | IN_STATE] = "central bond and state laws",
-                                     [IN_MICROPOLAR | IN_STATE] = "micropolar bond and state laws",
-                                     [IN_LATTICE] = "all laws but those of slip",
-                                     [IN_ANY] = "all laws"};
   static const char *const shapes[] = {"number", "logical value", "bending quantity", "vector",
                                        "tensor"};
   const builtin_quantity_info *b = &builtin_quantities[q];
-  fprintf(out, "%s (a quantity of lattice and motion)\n\n%s.\n", b->name, b->meaning);
-  fprintf(out, "unit %s; a %s of the %s; in %s\n\n    %s\n", b->unit, shapes[b->shape],
-          placement_name(b->place), laws[b->kinds], b->example);
+  fprintf(out, "%s (a quantity that a law may read)\n\n%s.\n", b->name, b->meaning);
+  fprintf(out, "unit %s; a %s of the %s; laws: %s\n\n    %s\n", b->unit, shapes[b->shape],
+          placement_name(b->place), builtin_laws(b->kinds), b->example);
 }
 
 static void show_function(int f, FILE *out) {

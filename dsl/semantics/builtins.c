@@ -29,6 +29,29 @@ const builtin_function_info builtin_functions[FUNCTION_COUNT] = {
 #undef X
 };
 
+const char *builtin_laws(int kinds) {
+  switch (kinds) {
+  case IN_MICROPOLAR:
+    return "micropolar";
+  case IN_STATE:
+    return "state";
+  case IN_SLIP:
+    return "slip";
+  case IN_BOND:
+    return "bonds";
+  case IN_LATTICE:
+    return "but slip";
+  case IN_LATTICE | IN_CRACK:
+    return "but slip, crack";
+  case IN_CONTINUUM:
+    return "continuum";
+  case IN_CRACK:
+    return "crack";
+  default:
+    return "lattice";
+  }
+}
+
 int builtin_quantity_find(const char *name) {
   for (int i = 0; i < QUANTITY_COUNT; i++)
     if (strcmp(builtin_quantities[i].name, name) == 0) return i;

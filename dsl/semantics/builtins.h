@@ -1,4 +1,4 @@
-/* What the language brings along: quantities of lattice and motion, functions. One table each; what
+/* What the language brings along: quantities that laws read, functions. One table each; what
    else a new function needs stands in dsl/README.md, "Modules". */
 #ifndef PERILAT_DSL_BUILTINS_H
 #define PERILAT_DSL_BUILTINS_H
@@ -198,6 +198,8 @@ typedef struct builtin_function_info {
 extern const builtin_quantity_info builtin_quantities[QUANTITY_COUNT];
 extern const builtin_function_info builtin_functions[FUNCTION_COUNT];
 
+/* The laws that may read a quantity, in a word or two. */
+const char *builtin_laws(int kinds);
 /* Index of the quantity or function called `name`, or -1. */
 int builtin_quantity_find(const char *name);
 int builtin_function_find(const char *name);

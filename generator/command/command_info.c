@@ -26,15 +26,12 @@
 /* --- --builtins ------------------------------------------------------------------------------- */
 
 static int info_builtins(void) {
-  static const char *const kinds[] = {
-      [IN_MICROPOLAR] = "micropolar", [IN_BOND] = "bonds", [IN_STATE] = "state", [IN_SLIP] = "slip",
-      [IN_LATTICE] = "but slip",      [IN_ANY] = "all"};
-  printf("Quantities that a law may read:\n  %-13s %-7s %-9s %-11s %s\n", "name", "unit", "lives",
+  printf("Quantities that a law may read:\n  %-18s %-11s %-9s %-15s %s\n", "name", "unit", "lives",
          "laws", "meaning");
   for (int q = 0; q < QUANTITY_COUNT; q++) {
     const builtin_quantity_info *b = &builtin_quantities[q];
-    printf("  %-13s %-7s %-9s %-11s %s\n", b->name, b->unit, placement_name(b->place),
-           kinds[b->kinds], b->meaning);
+    printf("  %-18s %-11s %-9s %-15s %s\n", b->name, b->unit, placement_name(b->place),
+           builtin_laws(b->kinds), b->meaning);
   }
   printf("\nFunctions:\n");
   for (int f = 0; f < FUNCTION_COUNT; f++) {

@@ -123,6 +123,26 @@ static void assert_listed(const char *page, const char *before, const char *name
   if (!strstr(page, quoted)) fail_msg("dsl/README.md does not list %s", name);
 }
 
+/* | `name`, `another` | unit | laws | meaning | */
+static void the_reference_says_what_laws_read(void **state) {
+  (void)state;
+  char *page = read_page(), quoted[80], laws[80];
+  for (int q = 0; q < QUANTITY_COUNT; q++) {
+    const builtin_quantity_info *b = &builtin_quantities[q];
+    snprintf(quoted, sizeof quoted, "`%s`", b->name);
+    snprintf(laws, sizeof laws, "| %s |", builtin_laws(b->kinds));
+    bool listed = false;
+    for (const char *line = page; line && !listed; line = strchr(line, '\n')) {
+      line += *line == '\n';
+      const char *end = line + strcspn(line, "\n"), *name = strstr(line, quoted);
+      const char *found = strstr(line, laws);
+      listed = *line == '|' && name && name < end && found && found < end;
+    }
+    if (!listed) fail_msg("dsl/README.md has no row with %s %s", quoted, laws);
+  }
+  free(page);
+}
+
 static void the_reference_lists_every_code_and_name(void **state) {
   (void)state;
   char *page = read_page();
@@ -140,6 +160,7 @@ int main(void) {
       cmocka_unit_test(laws_of_the_reference_are_right),
       cmocka_unit_test(laws_of_families_of_the_reference_hold),
       cmocka_unit_test(faults_of_the_reference_give_the_messages_shown),
+      cmocka_unit_test(the_reference_says_what_laws_read),
       cmocka_unit_test(the_reference_lists_every_code_and_name),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
