@@ -1,4 +1,5 @@
-/* perilat drive: one bond, or one particle of a law of families, along a path. */
+/* perilat drive: one bond, one particle of a law of families or one point of a continuum, along a
+   path. */
 #include "generator/command/command_drive.h"
 
 #include <math.h>
@@ -16,6 +17,7 @@
 #include "generator/drive/drive_family.h"
 #include "generator/drive/drive_grammar.h"
 #include "generator/drive/drive_path.h"
+#include "generator/drive/drive_point.h"
 #include "generator/drive/drive_table.h"
 #include "generator/drive/drive_write.h"
 #include "generator/drive/explain_bad.h"
@@ -52,6 +54,7 @@ typedef struct driving {
   drive_table columns; /* without rows, for the expectations */
   drive_expectations *expectations;
   drive_table table;
+  drive_band band; /* of points */
 } driving;
 
 static void tell(const driving *r, const diagnostics *d) {
@@ -146,25 +149,26 @@ static bool read_input(driving *r) {
   return false;
 }
 
-/* Bonds and particles are driven; points and tips are not as yet. */
+/* Tips of cracks are not driven. */
 static bool can_be_driven(driving *r) {
-  if (r->law->kind != PL_CONTINUUM && r->law->kind != PL_CRACK) return true;
+  if (r->law->kind != PL_CRACK) return true;
   diag_report(&r->said, DIAG_NOT_SUPPORTED, r->in->material.item.where,
-              "`perilat drive` drives bonds and particles; `%s` is a law of %s", r->law->name,
-              r->law->kind == PL_CRACK ? "cracks" : "a continuum");
-  diag_hint(&r->said, r->law->kind == PL_CRACK ? "see it at work in `perilat run` with a &crack"
-                                               : "a &mesh of one cell shows its point");
+              "`perilat drive` drives bonds, particles and points; `%s` is a law of cracks",
+              r->law->name);
+  diag_hint(&r->said, "see it at work in `perilat run` with a &crack");
   return false;
 }
 
-static bool is_of_families(const driving *r) {
-  return r->law->kind == PL_STATE;
+static drive_kind kind_of(const driving *r) {
+  return r->law->kind == PL_STATE       ? DRIVE_OF_FAMILIES
+         : r->law->kind == PL_CONTINUUM ? DRIVE_OF_POINTS
+                                        : DRIVE_OF_BONDS;
 }
 
 /* A bond of a chain has an area, another one a thickness. */
 static bool has_section(driving *r) {
   const bool given = r->in->bond.area > 0;
-  if (is_of_families(r) || law_reads(r->model.law, QUANTITY_AREA) == given) return true;
+  if (kind_of(r) != DRIVE_OF_BONDS || law_reads(r->model.law, QUANTITY_AREA) == given) return true;
   if (given)
     diag_report(&r->said, DIAG_CONFLICT, deck_where(&r->in->bond.item, "area"),
                 "the law `%s` does not read `area`", r->law->name);
@@ -175,23 +179,48 @@ static bool has_section(driving *r) {
   return false;
 }
 
-/* Bonds stretch and turn, particles are strained; beyond the plane in space only. */
+/* Bonds stretch and turn; particles are strained; points bear stress, too. */
+static bool is_driven_by(drive_kind of, drive_quantity q) {
+  if (of == DRIVE_OF_BONDS) return q < DRIVE_STRAIN_XX;
+  return q >= DRIVE_STRAIN_XX && (of == DRIVE_OF_POINTS || q < DRIVE_STRESS_XX);
+}
+
+static bool refuse_quantity(driving *r, const drive_piece *p, bool beyond) {
+  static const char *const laws[] = {[DRIVE_OF_BONDS] = "bonds",
+                                     [DRIVE_OF_FAMILIES] = "families",
+                                     [DRIVE_OF_POINTS] = "a continuum"};
+  static const char *const hints[] = {
+      [DRIVE_OF_BONDS] = "a bond is driven by stretch, theta_i, theta_j, twist",
+      [DRIVE_OF_FAMILIES] = "a particle is driven by strain_xx, strain_yy, strain_xy",
+      [DRIVE_OF_POINTS] = "a point is driven by strain_xx, ..., stress_xx, ..."};
+  diag_report(&r->said, DIAG_LAW_KIND, p->where,
+              beyond ? "a law of %s in the plane knows no such strain"
+                     : "a law of %s is not driven by this quantity",
+              laws[kind_of(r)]);
+  diag_hint(&r->said, "%s", hints[kind_of(r)]);
+  return false;
+}
+
+/* Beyond the plane in space only. */
 static bool suits_law(driving *r) {
   for (int k = 0; k < r->in->piece_count; k++) {
     const drive_quantity q = r->in->pieces[k].quantity;
-    const bool strain = q >= DRIVE_STRAIN_XX;
     const bool beyond = q == DRIVE_STRAIN_ZZ || q == DRIVE_STRAIN_YZ || q == DRIVE_STRAIN_XZ;
-    if (strain == is_of_families(r) && !(beyond && r->law->dimensions == 2)) continue;
-    diag_report(&r->said, DIAG_LAW_KIND, r->in->pieces[k].where,
-                strain != is_of_families(r) ? "a law of %s is not driven by this quantity"
-                                            : "a law of %s in the plane knows no such strain",
-                is_of_families(r) ? "families" : "bonds");
-    diag_hint(&r->said, is_of_families(r)
-                            ? "a particle is driven by strain_xx, strain_yy, strain_xy"
-                            : "a bond is driven by stretch, theta_i, theta_j, twist");
-    return false;
+    if (!is_driven_by(kind_of(r), q)) return refuse_quantity(r, &r->in->pieces[k], false);
+    if (kind_of(r) == DRIVE_OF_FAMILIES && beyond && r->law->dimensions == 2)
+      return refuse_quantity(r, &r->in->pieces[k], true);
   }
-  return true;
+  return kind_of(r) != DRIVE_OF_POINTS || drive_point_suits(r->in, r->law, &r->said);
+}
+
+/* A point is of the setting that the path asks for. */
+static bool take_setting(driving *r) {
+  if (r->model.law->tree->law != LAW_CONTINUUM || !r->in->point.setting) return true;
+  const law *in_setting = drive_point_setting(r->in, r->model.law, &r->said);
+  if (!in_setting) return false;
+  r->model.law = in_setting;
+  plan_free(r->model.plan);
+  return model_plan(&r->model);
 }
 
 static int open_law(driving *r) {
@@ -199,6 +228,7 @@ static int open_law(driving *r) {
   const char *note;
   bool good = material_law_open(&r->in->material, NULL, r->options->path, &r->model, &r->said);
   r->opened = r->model.memory != NULL;
+  good = good && take_setting(r);
   if (r->opened) tell(r, &r->model.said);
   if (!good) return INPUT_WRONG;
   r->law = model_kernel(&r->model, !r->options->compiled, &note, error, sizeof error);
@@ -272,7 +302,7 @@ static void report_bad(const driving *r) {
   say_error("`%s` is not a number at %.6g s, %s %.6g", t->columns[column].name,
             t->columns[DRIVE_COLUMN_TIME].values[row], t->columns[t->way].name,
             t->columns[t->way].values[row]);
-  if (t->of_families) return;
+  if (t->of != DRIVE_OF_BONDS) return;
   double *fields = must_calloc((size_t)t->fields + 1, sizeof *fields);
   for (int f = 0; f < t->fields; f++)
     fields[f] = row ? t->columns[DRIVE_COLUMN_LAW + f].values[row - 1] : r->initial[f];
@@ -292,7 +322,9 @@ static void describe(const driving *r) {
   const drive_table *t = &r->table;
   const drive_bond *b = &r->in->bond;
   const deck_lattice like = drive_lattice(r->in, r->model.law);
-  if (t->of_families)
+  if (t->of == DRIVE_OF_POINTS)
+    printf("%s at one point (%s)", r->law->name, law_setting_name(r->model.law->setting));
+  else if (t->of == DRIVE_OF_FAMILIES)
     printf("%s on one particle of a lattice (%s, %s), s = %.6g mm", r->law->name, like.kind,
            like.setting, 1e3 * like.spacing);
   else if (b->area > 0)
@@ -327,8 +359,9 @@ static void note_fall(const driving *r) {
   const drive_table *t = &r->table;
   const long row = t->bad_row < 0 ? largest_fall(t) : 0;
   if (row == 0) return;
-  printf("note: `dissipated_damage` falls, by most up to %.6g s, stretch %.6g\n",
-         t->columns[DRIVE_COLUMN_TIME].values[row], t->columns[DRIVE_COLUMN_STRETCH].values[row]);
+  printf("note: `dissipated_damage` falls, by most up to %.6g s, %s %.6g\n",
+         t->columns[DRIVE_COLUMN_TIME].values[row], t->columns[t->way].name,
+         t->columns[t->way].values[row]);
   if (r->model.law->results[RESULT_W])
     puts("  the law gives back more than its `energy W` says that it has stored: it makes energy");
   else
@@ -336,6 +369,31 @@ static void note_fall(const driving *r) {
         "  without `energy W` the stored energy is the work of the force at the states at hand: a\n"
         "  law whose states lock energy in should give W (`perilat help energy`), any other makes "
         "energy");
+}
+
+static void print_direction(const double *vector, int dimensions) {
+  for (int k = 0; k < dimensions; k++)
+    printf("%s%.4g", k ? ", " : "(", vector[k] + 0.0);
+  putchar(')');
+}
+
+/* Where waves stop to run, and how the band of strain lies that may arise there. */
+static void note_band(const driving *r) {
+  const drive_table *t = &r->table;
+  const ellipticity *e = &r->band.of;
+  const int dimensions = r->law->dimensions, strains = PL_STRAINS(dimensions);
+  double cosine = 0;
+  if (r->band.row < 0) return;
+  printf("note: ellipticity is lost at %.6g s:", t->columns[0].values[r->band.row]);
+  for (int k = 0; k < strains; k++)
+    printf("%s %s = %.6g", k ? "," : "", t->columns[1 + k].name,
+           t->columns[1 + k].values[r->band.row] + 0.0);
+  printf("\n  across n = ");
+  print_direction(e->normal, dimensions);
+  for (int k = 0; k < dimensions; k++)
+    cosine += e->normal[k] * e->along[k];
+  printf(" the smallest eigenvalue of n.D.n is %.4g Pa: strain may gather in a band, which %s\n",
+         e->least, fabs(cosine) > sqrt(0.5) ? "opens" : "shears");
 }
 
 static bool spares_inputs(const driving *r) {
@@ -405,25 +463,38 @@ static int prepare(driving *r) {
   if (!r->in->material.model) return 0;
   int status = open_law(r);
   if (status) return status;
-  if (!can_be_driven(r) || !has_section(r) || !suits_law(r) || !set_values(r) || !spares_inputs(r)) return INPUT_WRONG;
-  if (is_of_families(r))
+  if (!can_be_driven(r) || !has_section(r) || !suits_law(r) || !set_values(r) || !spares_inputs(r))
+    return INPUT_WRONG;
+  if (kind_of(r) == DRIVE_OF_FAMILIES)
     drive_family_columns(r->in, r->model.law, r->law, &r->columns);
+  else if (kind_of(r) == DRIVE_OF_POINTS)
+    drive_point_columns(r->in, r->law, &r->columns);
   else
     drive_columns(r->law, &r->columns);
   r->expectations = drive_expectations_read(r->in, &r->model, &r->columns, &r->said);
   return r->expectations ? 0 : INPUT_WRONG;
 }
 
+static bool march(driving *r) {
+  switch (kind_of(r)) {
+  case DRIVE_OF_FAMILIES:
+    return drive_family_run(r->in, r->model.law, r->law, r->parameters, r->initial, &r->table,
+                            &r->said);
+  case DRIVE_OF_POINTS:
+    return drive_point_run(r->in, r->law, r->parameters, r->initial, &r->table, &r->band, &r->said);
+  default:
+    return drive_run(r->in, r->law, r->parameters, r->initial, &r->table, &r->said);
+  }
+}
+
 /* 0, or an exit status. */
 static int drive(driving *r) {
   int status = prepare(r);
   if (status || r->options->check_only) return status;
-  if (is_of_families(r) ? !drive_family_run(r->in, r->model.law, r->law, r->parameters, r->initial,
-                                            &r->table, &r->said)
-                        : !drive_run(r->in, r->law, r->parameters, r->initial, &r->table, &r->said))
-    return INPUT_WRONG;
+  if (!march(r)) return INPUT_WRONG;
   describe(r);
-  if (!is_of_families(r)) note_fall(r);
+  if (kind_of(r) != DRIVE_OF_FAMILIES) note_fall(r);
+  if (kind_of(r) == DRIVE_OF_POINTS) note_band(r);
   bool written = write_files(r);
   if (r->table.bad_row >= 0) {
     report_bad(r);
@@ -444,11 +515,13 @@ static void close_drive(driving *r) {
 }
 
 static void print_checked(const driving *r) {
+  static const char *const things[] = {
+      [DRIVE_OF_BONDS] = "bond", [DRIVE_OF_FAMILIES] = "particle", [DRIVE_OF_POINTS] = "point"};
   const char *path = r->options->path;
   if (r->law)
     printf("%s: no errors; a path that drives one %s of `%s`, with %d expectation%s\n  perilat "
            "drive %s\n",
-           path, is_of_families(r) ? "particle" : "bond", r->law->name, r->in->expect_count,
+           path, things[kind_of(r)], r->law->name, r->in->expect_count,
            r->in->expect_count == 1 ? "" : "s", path);
   else
     printf("%s: no errors; a path that names no law, so that its expectations are not checked\n"

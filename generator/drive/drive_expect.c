@@ -12,6 +12,7 @@
 #include "generator/drive/drive_bond.h"
 #include "generator/drive/drive_family.h"
 #include "generator/drive/drive_motion.h"
+#include "generator/drive/drive_point.h"
 #include "generator/drive/drive_table.h"
 #include "runtime/deck/deck_value.h"
 
@@ -310,8 +311,10 @@ static double form_value(const judge *j, const double *parameters, const drive_t
                          long row) {
   const pl_law *kernel = j->forms.law;
   double *outputs = must_calloc((size_t)kernel->output_count, sizeof *outputs);
-  if (t->of_families)
+  if (t->of == DRIVE_OF_FAMILIES)
     drive_family_observe(j->in, j->forms.model.law, kernel, parameters, t, row, outputs);
+  else if (t->of == DRIVE_OF_POINTS)
+    drive_point_observe(j->in, kernel, parameters, t, row, outputs);
   else
     drive_observe(j->in, kernel, parameters, t, row, outputs);
   const double value = outputs[output];

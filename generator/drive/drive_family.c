@@ -186,7 +186,7 @@ static void table_open(drive_table *t, const pl_law *kernel, int neighbours, lon
     count += value_count(&kernel->fields[f], neighbours);
   for (int f = 0; f < kernel->output_count; f++)
     count += value_count(&kernel->outputs[f], neighbours);
-  *t = (drive_table){.memory = arena_new(), .of_families = true, .bad_row = -1};
+  *t = (drive_table){.memory = arena_new(), .of = DRIVE_OF_FAMILIES, .bad_row = -1};
   t->columns = arena_alloc(t->memory, (size_t)count * sizeof *t->columns);
   drive_add_column(t, "time", "s", room);
   add_parts(t, "strain", "1", kernel->dimensions, room);

@@ -116,6 +116,30 @@ static const deck_key_info particle_keys[] = {
      .doc = "of the lattice, in degrees"},
 };
 
+static const deck_key_info point_keys[] = {
+    {.name = "test",
+     .type = DECK_CHOICE,
+     .choices = "components|uniaxial stress|plane stress|shear|hydrostatic",
+     .fallback = "'components'",
+     AT(point, test),
+     .doc = "components that no `&path` names are not strained; uniaxial stress, driven by xx, and "
+            "shear, driven by xy: they bear no stress; plane stress, in space: zz, yz, xz bear "
+            "none; hydrostatic, driven by xx: yy and zz are as xx, without shear"},
+    {.name = "setting",
+     .type = DECK_WORD,
+     .choices = "plane_stress|plane_strain|space",
+     .fallback = "= the first that the law is for",
+     AT(point, setting),
+     .doc = "what the third direction does"},
+    {.name = "size",
+     .type = DECK_REAL,
+     .unit = "m",
+     .bound = BOUND_POSITIVE,
+     .fallback = "'10 mm'",
+     AT(point, cell_size),
+     .doc = "`h` of the law"},
+};
+
 static const deck_key_info material_keys[] = {
     {.name = "model",
      .type = DECK_NAME,
@@ -136,11 +160,11 @@ static const deck_key_info path_keys[] = {
      .type = DECK_CHOICE,
      .choices =
          "stretch|theta_i|theta_j|twist|stretch_rate|strain_xx|strain_yy|strain_zz|strain_xy|"
-         "strain_yz|strain_xz",
+         "strain_yz|strain_xz|stress_xx|stress_yy|stress_zz|stress_xy|stress_yz|stress_xz",
      .required = true,
      NOT_KEPT,
      .doc = "what is prescribed; several `&path` of one quantity add up; the rate is that of the "
-            "stretch unless it is given"},
+            "stretch unless it is given; stresses drive points alone"},
     LATER(
         "value", "as the quantity",
         "full value of a load; amplitude of cycles; factor on `values` and files, 1 if not given"),
@@ -294,7 +318,7 @@ bool drive_is_deck(const char *file) {
 
 bool drive_refuse_path(const char *command, const char *file) {
   if (!drive_is_path(file)) return false;
-  say_error("`%s` is a path that drives one bond, not a deck for `perilat %s`\n"
+  say_error("`%s` is a path for `perilat drive`, not a deck for `perilat %s`\n"
             "  perilat drive %s",
             file, command, file);
   return true;

@@ -10,9 +10,10 @@
   X(simulation, true, false, "The drive as a whole.")                                              \
   X(bond, true, false, "The bond that is driven.")                                                 \
   X(particle, true, false, "The particle of a law of families that is driven.")                    \
+  X(point, true, false, "The point of a law of a continuum that is driven.")                       \
   X(material, true, true, "The law: every key but `model` sets a parameter or an option.")         \
   X(initial, true, true, "State and damage at the start, where not the law's own.")                \
-  X(path, false, false, "What the bond or the particle undergoes. At least one.")                  \
+  X(path, false, false, "What the bond, the particle or the point undergoes. At least one.")       \
   X(output, true, false, "What is written.")                                                       \
   X(expect, false, false, "What should come out. Give `value` or `formula`.")
 

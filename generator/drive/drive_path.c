@@ -213,6 +213,10 @@ static void read_group(const reader *r, const namelist_group *g, int kind) {
     copy_places(r->memory, g, &in->particle.item);
     read_keys(r, g, drive_grammar.groups[kind], &in->particle);
     return;
+  case DRIVE_GROUP_point:
+    copy_places(r->memory, g, &in->point.item);
+    read_keys(r, g, drive_grammar.groups[kind], &in->point);
+    return;
   case DRIVE_GROUP_output:
     copy_places(r->memory, g, &in->output.item);
     read_keys(r, g, drive_grammar.groups[kind], &in->output);
@@ -301,6 +305,7 @@ drive_input *drive_read(arena *a, source_set *sources, int file, const deck_over
   deck_defaults(a, drive_grammar.groups[DRIVE_GROUP_simulation], &in->simulation);
   deck_defaults(a, drive_grammar.groups[DRIVE_GROUP_bond], &in->bond);
   deck_defaults(a, drive_grammar.groups[DRIVE_GROUP_particle], &in->particle);
+  deck_defaults(a, drive_grammar.groups[DRIVE_GROUP_point], &in->point);
   deck_defaults(a, drive_grammar.groups[DRIVE_GROUP_output], &in->output);
   in->simulation.end_time = in->bond.mass_i = in->bond.mass_j = -1;
   in->material.item.where = in->initial.item.where = (span){0, 0, (uint16_t)file};

@@ -1,11 +1,11 @@
-/* What is driven, and how: the groups of a path as they were read. The room: one bond, or one
-   particle of a law of families, driven along a path without a lattice, what it answers row by
-   row, with its energies, and what it is expected to answer. */
+/* What is driven, and how: the groups of a path as they were read. The room: one bond, one
+   particle of a law of families or one point of a continuum, driven along a path without a lattice
+   or a mesh, what it answers row by row, with its energies, and what it is expected to answer. */
 #ifndef PERILAT_GENERATOR_DRIVE_PATH_H
 #define PERILAT_GENERATOR_DRIVE_PATH_H
 
-#include "runtime/deck/deck.h"
 #include "runtime/base/namelist.h"
+#include "runtime/deck/deck.h"
 
 /* What a path prescribes: X(code, name, unit) */
 #define DRIVE_QUANTITIES(X)                                                                        \
@@ -17,7 +17,13 @@
   X(STRAIN_XX, "strain_xx", "1")                                                                   \
   X(STRAIN_YY, "strain_yy", "1")                                                                   \
   X(STRAIN_ZZ, "strain_zz", "1")                                                                   \
-  X(STRAIN_XY, "strain_xy", "1") X(STRAIN_YZ, "strain_yz", "1") X(STRAIN_XZ, "strain_xz", "1")
+  X(STRAIN_XY, "strain_xy", "1")                                                                   \
+  X(STRAIN_YZ, "strain_yz", "1")                                                                   \
+  X(STRAIN_XZ, "strain_xz", "1")                                                                   \
+  X(STRESS_XX, "stress_xx", "Pa")                                                                  \
+  X(STRESS_YY, "stress_yy", "Pa")                                                                  \
+  X(STRESS_ZZ, "stress_zz", "Pa")                                                                  \
+  X(STRESS_XY, "stress_xy", "Pa") X(STRESS_YZ, "stress_yz", "Pa") X(STRESS_XZ, "stress_xz", "Pa")
 
 typedef enum drive_quantity {
 #define X(code, name, unit) DRIVE_##code,
@@ -25,6 +31,19 @@ typedef enum drive_quantity {
 #undef X
       DRIVE_QUANTITY_COUNT
 } drive_quantity;
+
+/* What becomes of the components of a point that no path names: X(code, name) */
+#define DRIVE_TESTS(X)                                                                             \
+  X(COMPONENTS, "components")                                                                      \
+  X(UNIAXIAL_STRESS, "uniaxial stress")                                                            \
+  X(PLANE_STRESS, "plane stress") X(SHEAR, "shear") X(HYDROSTATIC, "hydrostatic")
+
+typedef enum drive_test {
+#define X(code, name) DRIVE_TEST_##code,
+  DRIVE_TESTS(X)
+#undef X
+      DRIVE_TEST_COUNT
+} drive_test;
 
 typedef enum drive_wave { WAVE_TRIANGLE, WAVE_SINE, WAVE_PULSE } drive_wave;
 
@@ -76,6 +95,14 @@ typedef struct drive_particle {
   double rotation;           /* rad */
 } drive_particle;
 
+/* Laws of continua: one point. */
+typedef struct drive_point {
+  deck_item item;
+  drive_test test;
+  const char *setting; /* NULL: the law's first */
+  double cell_size;    /* m */
+} drive_point;
+
 typedef struct drive_output {
   deck_item item;
   const char *csv, *hdf5, *picture; /* paths, or NULL */
@@ -88,6 +115,7 @@ typedef struct drive_input {
   drive_simulation simulation;
   drive_bond bond;
   drive_particle particle;
+  drive_point point;
   drive_output output;
   deck_material material; /* model may be NULL */
   deck_material initial;  /* state and damage at the start, as assignments */

@@ -16,7 +16,7 @@
   X(THETA_J, "theta_j", "1")                                                                       \
   X(TWIST, "twist", "1")                                                                           \
   X(N, "N", "N") X(M_I, "M_i", "N*m") X(M_J, "M_j", "N*m") X(T, "T", "N*m")
-/* Energies in J. `dissipated` is the sum of its two parts; `external` counts from what the first
+/* Energies in J, of points in J/m^3. `dissipated` is the sum of its two parts; `external` counts from what the first
    row holds; `imbalance` is external less stored less dissipated. */
 #define DRIVE_LAST_COLUMNS(X)                                                                      \
   X(STORED, "stored")                                                                              \
@@ -42,8 +42,10 @@ typedef struct drive_column {
   double *values; /* [rows] */
 } drive_column;
 
+typedef enum drive_kind { DRIVE_OF_BONDS, DRIVE_OF_FAMILIES, DRIVE_OF_POINTS } drive_kind;
+
 typedef struct drive_table {
-  bool of_families;
+  drive_kind of;
   /* Columns of what is prescribed and what answers: stretch and N, first strain and stress. */
   int way, force;
   int law_column; /* those of the law's fields, then its outputs, begin here */

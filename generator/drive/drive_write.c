@@ -48,7 +48,7 @@ static bool is_of_many(const drive_table *t, int column) {
 
 /* Columns that are 0 throughout, such as the moments of a central law, are left out. */
 static bool is_worth_showing(const drive_table *t, int column) {
-  if (column <= t->way || column == t->force) return true;
+  if (column == DRIVE_COLUMN_TIME || column == t->way || column == t->force) return true;
   for (long k = 0; k < t->rows; k++)
     if (t->columns[column].values[k] != 0) return true;
   return false;
@@ -122,7 +122,7 @@ static void print_table(const drive_table *t, const bool *shown, FILE *out) {
   int *columns = must_calloc((size_t)t->column_count, sizeof *columns), count = 0, left = 0;
   for (int c = 0; c < t->column_count; c++) {
     if (!is_worth_showing(t, c)) continue;
-    if (c > t->way && c != t->force && is_of_many(t, c))
+    if (c != t->way && c != t->force && is_of_many(t, c))
       left++;
     else
       columns[count++] = c;
@@ -226,13 +226,23 @@ bool drive_write_csv(const drive_table *t, const char *path, char *error, size_t
   return whole_file_end(&whole, good) || cannot_write(path, error, size);
 }
 
+static double spacing_of(const drive_input *in, const drive_table *t) {
+  return t->of == DRIVE_OF_POINTS     ? in->point.cell_size
+         : t->of == DRIVE_OF_FAMILIES ? in->particle.spacing
+                                      : in->bond.spacing;
+}
+
+static double volume_of(const drive_input *in, const drive_table *t) {
+  const bool bond = t->of == DRIVE_OF_BONDS;
+  const double s = spacing_of(in, t);
+  if (t->of == DRIVE_OF_POINTS) return s * s * s;
+  if (bond && in->bond.area > 0) return in->bond.area * s;
+  return sqrt(3) / 2 * s * s * (bond ? in->bond.thickness : in->particle.thickness);
+}
+
 static bool write_particles(const drive_input *in, const drive_table *t, hid_t file) {
-  const bool bond = !t->of_families;
-  const double s = bond ? in->bond.spacing : in->particle.spacing, reference[4] = {0, 0, s, 0};
-  const double thickness = bond ? in->bond.thickness : in->particle.thickness;
-  const double one =
-      bond && in->bond.area > 0 ? in->bond.area * s : sqrt(3) / 2 * s * s * thickness;
-  const double volume[2] = {one, one};
+  const double s = spacing_of(in, t), reference[4] = {0, 0, s, 0};
+  const double one = volume_of(in, t), volume[2] = {one, one};
   const int32_t body[2] = {0, 0};
   const hsize_t extent[2] = {2, 2};
   return h5_make_group(file, "/particles") &&
