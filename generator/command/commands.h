@@ -30,11 +30,9 @@
     "compile a law to a shared kernel, or a deck to a solver", COMMAND_STATUS)                     \
   X(run, "deck.nml", "nml", "run a deck", RUN_STATUS)                                              \
   X(study, "deck.nml ...", "nml",                                                                  \
-    "many runs: values crossed, strength, convergence, parameters that fit a curve",               \
-    STUDY_STATUS)                                                                                  \
+    "many runs: values crossed, strength, convergence, parameters that fit a curve", STUDY_STATUS) \
   X(drive, "[law.plm] path.nml", "plm nml",                                                        \
-    "one bond, or one particle of a law of families, along a path: table, picture, expectations",  \
-    DRIVE_STATUS)                                                                                  \
+    "one bond, particle or point along a path: table, picture, expectations", DRIVE_STATUS)        \
   X(plot, "result.h5 ...", "h5 hdf5",                                                              \
     "curves, or a map of particles or bonds, as PNG, SVG or PDF", COMMAND_STATUS)                  \
   X(compare, "a.h5 b.h5 | lab.csv", "h5 hdf5 csv",                                                 \

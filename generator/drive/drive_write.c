@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/base/elementary.h"
 #include "dsl/base/terminal.h"
 #include "generator/drive/drive_motion.h"
 #include "generator/drive/drive_table.h"
@@ -46,12 +47,26 @@ static bool is_of_many(const drive_table *t, int column) {
   return family > ROOM;
 }
 
+static double largest(const drive_table *t, int column) {
+  double most = 0;
+  for (long k = 0; k < t->rows; k++)
+    if (!(fabs(t->columns[column].values[k]) <= most)) most = fabs(t->columns[column].values[k]);
+  return most;
+}
+
+/* What is left of stresses that are held at 0, and of energies that balance. */
+static double rounding_of(const drive_table *t, int column) {
+  double most = 0;
+  for (int c = 0; c < t->column_count && t->of == DRIVE_OF_POINTS; c++)
+    if (strcmp(t->columns[c].unit, t->columns[column].unit) == 0)
+      most = pl_fmax(most, largest(t, c));
+  return 1e-12 * most;
+}
+
 /* Columns that are 0 throughout, such as the moments of a central law, are left out. */
 static bool is_worth_showing(const drive_table *t, int column) {
-  if (column == DRIVE_COLUMN_TIME || column == t->way || column == t->force) return true;
-  for (long k = 0; k < t->rows; k++)
-    if (t->columns[column].values[k] != 0) return true;
-  return false;
+  return column == DRIVE_COLUMN_TIME || column == t->way || column == t->force ||
+         !(largest(t, column) <= rounding_of(t, column));
 }
 
 /* Of the terminal; where there is none, of a wide page. */

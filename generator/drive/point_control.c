@@ -9,6 +9,7 @@
 enum { MOST = PL_MAX_STRAINS, NOTHING = -1 };
 
 static const double REACHED = 1e-13; /* of stiffness times strain: as near as rounding lets it */
+static const double SUDDEN = 1e-9;   /* of a step: how long it takes to begin */
 static const double ALL_BUT_REACHED = 1e-9; /* of the same, where it comes no nearer */
 
 /* --- who prescribes what ---------------------------------------------------------------------- */
@@ -160,7 +161,8 @@ bool point_control_read(const drive_input *in, int dimensions, point_control *ou
 typedef struct search {
   const point_control *control;
   driven_point *point;
-  const strained *before;   /* NULL: none */
+  const strained *before;
+  double since;             /* s: from there on */
   double wanted[MOST];      /* stresses, where they are prescribed */
   int unknown[MOST], count; /* components */
   strained at;
@@ -170,9 +172,9 @@ typedef struct search {
 
 /* The rates of the strains that are found follow from them. */
 static void settle(search *s) {
-  for (int n = 0; n < s->count && s->before; n++) {
+  for (int n = 0; n < s->count; n++) {
     const int k = s->unknown[n];
-    s->at.rate[k] = (s->at.strain[k] - s->before->strain[k]) / s->at.step;
+    s->at.rate[k] = (s->at.strain[k] - s->before->strain[k]) / s->since;
   }
   s->answer = driven_point_step(s->point, &s->at);
   s->residual = 0;
@@ -185,7 +187,7 @@ static void settle(search *s) {
 /* The stress by a rate: of a small one, as the stress is all but linear in it. */
 static void add_rates(search *s, int column, double matrix[MOST][MOST]) {
   const int k = s->unknown[column];
-  const double rate = s->at.rate[k], by = pl_fmax(1e-6 * fabs(rate), 1e-9 / s->at.step);
+  const double rate = s->at.rate[k], by = pl_fmax(1e-6 * fabs(rate), 1e-9 / s->since);
   double stress[2][MOST];
   for (int side = 0; side < 2; side++) {
     s->at.rate[k] = rate + (side ? by : -by);
@@ -195,7 +197,7 @@ static void add_rates(search *s, int column, double matrix[MOST][MOST]) {
   s->at.rate[k] = rate;
   for (int n = 0; n < s->count; n++)
     matrix[n][column] +=
-        (stress[1][s->unknown[n]] - stress[0][s->unknown[n]]) / (2 * by) / s->at.step;
+        (stress[1][s->unknown[n]] - stress[0][s->unknown[n]]) / (2 * by) / s->since;
 }
 
 static void jacobian(search *s, double matrix[MOST][MOST]) {
@@ -206,7 +208,7 @@ static void jacobian(search *s, double matrix[MOST][MOST]) {
     const int k = s->unknown[b];
     for (int a = 0; a < s->count; a++)
       matrix[a][b] = tangent[s->unknown[a]][k] * (point_is_shear(dimensions, k) ? 2 : 1);
-    if (s->before && s->point->kernel->reads_rates) add_rates(s, b, matrix);
+    if (s->point->kernel->reads_rates) add_rates(s, b, matrix);
   }
 }
 
@@ -260,12 +262,14 @@ static bool go_nearer(search *s) {
   return false;
 }
 
-/* Pa: what stresses of such strains are known to. */
+/* Pa: the size of what such stresses are sums of. */
 static double scale_of(const search *s) {
-  double most = 0;
-  for (int k = 0; k < s->control->strains; k++)
-    most = pl_fmax(most, fabs(s->at.strain[k]));
-  return most * s->control->stiffness;
+  double strain = 0, stress = 0;
+  for (int k = 0; k < s->control->strains; k++) {
+    strain = pl_fmax(strain, fabs(s->at.strain[k]));
+    stress = pl_fmax(stress, fabs(s->answer.stress[k]));
+  }
+  return strain * s->control->stiffness + stress;
 }
 
 static bool converge(search *s) {
@@ -295,14 +299,20 @@ static void report(const search *s, double time, diagnostics *d) {
 bool point_control_reach(const point_control *c, const drive_input *in, driven_point *p,
                          double time, double inside, const strained *before, strained *to,
                          stressed *answer, diagnostics *d) {
-  search s = {.control = c, .point = p, .before = before, .at = {.step = to->step}};
+  static const strained rest = {.step = 0};
+  const bool sudden = !before && p->kernel->reads_rates;
+  search s = {.control = c,
+              .point = p,
+              .before = before ? before : &rest,
+              .since = sudden ? SUDDEN * to->step : to->step,
+              .at = {.step = to->step}};
   for (int k = 0; k < c->strains; k++) {
     const drive_quantity q = (drive_quantity)c->follows[k];
     const bool given = c->follows[k] != NOTHING;
     if (c->by_stress[k]) {
       s.unknown[s.count++] = k;
       s.wanted[k] = given ? drive_at(in, q, time) : 0;
-      s.at.strain[k] = before ? before->strain[k] : 0;
+      s.at.strain[k] = s.before->strain[k];
     } else if (given) {
       s.at.strain[k] = drive_at(in, q, time);
       s.at.rate[k] = drive_slope(in, q, inside);

@@ -18,9 +18,10 @@ typedef struct point_control {
 bool point_control_read(const drive_input *in, int dimensions, point_control *out, diagnostics *d);
 
 /* The strains at a time, and the stress there. Rates are taken just beside it, `inside` of the step
-   that ends there; those of strains that are found are their change since `before` (NULL: none)
-   over the step. The point's fields wait to be accepted. False, with a message, where no strain
-   gives these stresses. */
+   that ends there; those of strains that are found are their change since `before` over the step.
+   Without `before` the path begins: the point was at rest, and what resists rates has not yielded.
+   The point's fields wait to be accepted. False, with a message, where no strain gives these
+   stresses. */
 bool point_control_reach(const point_control *c, const drive_input *in, driven_point *p,
                          double time, double inside, const strained *before, strained *to,
                          stressed *answer, diagnostics *d);

@@ -21,7 +21,7 @@ static void a_path_is_shown_the_way_to_drive(void **state) {
   for (size_t k = 0; k < sizeof commands / sizeof *commands; k++) {
     char arguments[100];
     snprintf(arguments, sizeof arguments, "%s path.nml", commands[k]);
-    expect(w, arguments, 1, "`path.nml` is a path that drives one bond");
+    expect(w, arguments, 1, "`path.nml` is a path for `perilat drive`");
     assert_non_null(strstr(w->said, "perilat drive path.nml"));
   }
   expect(w, "check path.nml", 0, "path.nml: no errors; a path that drives one bond");

@@ -135,7 +135,7 @@ static void files_of_the_wrong_kind_are_refused(void **state) {
       {"export picture", 1, "`picture` is a picture; `perilat export` needs a result"},
       {"format beam.nml", 1, "`beam.nml` is a deck; `perilat format` needs a law"},
       {"explain beam.nml", 1, "`beam.nml` is a deck; `perilat explain` needs a law"},
-      {"run path.nml", 1, "`path.nml` is a path that drives one bond"},
+      {"run path.nml", 1, "`path.nml` is a path for `perilat drive`"},
       {"check path.nml", 0, "a path that names no law"},
       {"check path.nml --set material.model=elastic_central", 1, "`1 mm` is a length"},
       {"check path.nml --set material.model=elastic_central --set 'expect.value=5 N'", 0,
