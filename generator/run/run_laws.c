@@ -203,35 +203,38 @@ static bool is_of_cracks(run *r, const deck_crack *c, const model *opened) {
   return false;
 }
 
-int load_crack_law(run *r, int crack) {
-  const deck_crack *c = &r->deck->cracks[crack];
-  simulation_law *out = &r->laws[r->deck->interaction_count + crack];
+/* Opened, with its parameters and its verdict; `out` is the kernel of a law that may run. */
+static int take_crack_law(run *r, const deck_crack *c, simulation_law *out) {
   char error[4 * ERROR_LENGTH];
   const char *note;
-  if (!c->model) return 0;
-  if (r->options->laws) {
-    diag_report(&r->said, DIAG_NOT_SUPPORTED, deck_where(&c->item, "model"),
-                "a stand-alone solver has no laws of cracks");
-    diag_hint(&r->said, "use `perilat run`");
-    return INPUT_WRONG;
-  }
   model *opened = &r->models[r->open_models];
   const bool good = material_law_open(&c->material, NULL, r->options->deck_path, opened, &r->said);
+  const deck_lattice none = lattice_default("plane_stress", 1, 1);
   r->open_models += opened->memory != NULL;
   if (!good || !is_of_cracks(r, c, opened)) return INPUT_WRONG;
-  out->law = model_kernel(opened, r->options->interpret || r->options->check_only, &note, error,
-                          sizeof error);
-  if (!out->law) {
+  const pl_law *kernel = model_kernel(opened, r->options->interpret || r->options->check_only,
+                                      &note, error, sizeof error);
+  if (!kernel) {
     say_error("%s", error);
     return RUN_FAILED;
   }
-  out->parameters = parameters_of(r, &opened->values, out->law);
+  out->parameters = parameters_of(r, &opened->values, kernel);
   if (!out->parameters) return INPUT_WRONG;
-  const deck_lattice none = lattice_default("plane_stress", 1, 1);
-  if (r->options->no_physics ||
-      run_law_obeys(opened, &none, out->parameters, deck_where(&c->item, "model"), &opened->said,
-                    &r->said))
-    return 0;
+  if (!r->options->no_physics &&
+      !run_law_obeys(opened, &none, out->parameters, deck_where(&c->item, "model"), &opened->said,
+                     &r->said))
+    return INPUT_WRONG;
+  out->law = kernel;
+  return 0;
+}
+
+int load_crack_law(run *r, int crack) {
+  const deck_crack *c = &r->deck->cracks[crack];
+  if (!c->model) return 0;
+  if (!r->options->laws) return take_crack_law(r, c, &r->laws[r->deck->interaction_count + crack]);
+  diag_report(&r->said, DIAG_NOT_SUPPORTED, deck_where(&c->item, "model"),
+              "a stand-alone solver has no laws of cracks");
+  diag_hint(&r->said, "use `perilat run`");
   return INPUT_WRONG;
 }
 
