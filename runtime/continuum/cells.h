@@ -53,8 +53,8 @@ sweep *cells_sweep(cells *c, const deck *k, const double *parameters, const tip_
 /* How many times as stiff as at rest the stiffest point of the state observed is; 1 of a linear law.
    No frequency of the mesh is above the root of this times the highest at rest. */
 double cells_stiffness(cells *c);
-/* Where a node had a velocity that is no number or too large: of the points around the one with the
-   largest stress, with the nodes where they were before the step. False with a linear law. `out`
+/* Where a node had a velocity that is no number or too large: of the points that push it the one
+   with the largest stress, with the nodes where they were before the step. False with a linear law. `out`
    has memory for the law's fields. */
 bool cells_worst_point(const sweep *w, long site, point_state *out);
 /* B, of what the body does not count. */

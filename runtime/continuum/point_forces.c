@@ -425,31 +425,29 @@ static void take_point(const point_forces *p, const strip *s, const point_scratc
     out->field[f] = own->old_field[f][k];
 }
 
-static bool is_around(const cells_around *c, long at) {
-  for (int n = 0; n < c->count; n++)
-    if (at >= c->at[n] && at < c->at[n] + c->points[n] * PL_LANES &&
-        (at - c->at[n]) % PL_LANES == 0)
-      return true;
-  return false;
+/* Whether a point may push the node. */
+static bool reaches(const point_forces *p, const cell_group *g, long at, const int node[2]) {
+  const int away = node[0] - g->first - (int)(at % PL_LANES);
+  return at % PL_LANES < g->count && away >= p->strips.low && away <= p->strips.high;
 }
 
 void point_forces_worst(point_forces *p, int node, const point_motion *at, point_state *out) {
-  const cells_around c = around(p, node);
-  const int j = node / p->of->nodes[0];
+  const int place[2] = {node % p->of->nodes[0], node / p->of->nodes[0]};
   point_scratch *own = &p->scratch[0];
   double most = -1;
-  for (int row = j - 1 < 0 ? 0 : j - 1; row <= j && row < p->strips.rows; row++)
+  for (int row = place[1] - p->strips.high; row <= place[1] - p->strips.low; row++) {
+    if (row < 0 || row >= p->strips.rows) continue;
     for (int g = p->strips.first_group[row]; g < p->strips.first_group[row + 1]; g++) {
       const cell_group *group = &p->strips.groups[g];
       const strip s = {row, g, g + 1, group->at, (long)group->table->points * PL_LANES};
       const pl_points points = motion_of(p, &s, own, at);
       p->law->point_step(p->law, p->uniforms, &points);
-      for (long k = 0; k < s.count; k++) {
+      for (long k = 0; k < s.count && isfinite(most); k++) {
         const double here = size_of(own->stress, k);
-        if (!is_around(&c, s.at + k) || !(isfinite(most)) || (isfinite(here) && here <= most))
-          continue;
+        if (!reaches(p, group, k, place) || here <= most) continue;
         most = here;
         take_point(p, &s, own, k, out);
       }
     }
+  }
 }

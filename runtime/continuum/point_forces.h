@@ -77,7 +77,7 @@ typedef struct point_state {
   double strain[3], stress[4]; /* Pa */
   double *field;               /* [fields] of before the step; the caller's memory */
 } point_state;
-/* Of the points around a node that with the largest stress, or without a finite one. */
+/* Of the points that push a node that with the largest stress, or without a finite one. */
 void point_forces_worst(point_forces *p, int node, const point_motion *at, point_state *out);
 
 /* B held, shape tables included. */
