@@ -503,6 +503,38 @@ static void print_family(const run *r, const bad_state *b) {
   }
 }
 
+/* What a point of a mesh was like before the step. */
+static void print_point(const run *r, const bad_state *b) {
+  const pl_law *kernel = r->laws[b->interaction].law;
+  const point_state *p = b->point;
+  fprintf(stderr,
+          "  point (%.6g, %.6g) mm of cell (%d, %d): strain xx %.6g, yy %.6g, xy %.6g; stress xx "
+          "%.6g, yy %.6g, xy %.6g MPa",
+          1e3 * p->at[0], 1e3 * p->at[1], p->cell[0], p->cell[1], p->strain[0], p->strain[1],
+          p->strain[2], 1e-6 * p->stress[0], 1e-6 * p->stress[1], 1e-6 * p->stress[2]);
+  for (int f = 0; f < kernel->field_count; f++)
+    fprintf(stderr, ", %s %.6g", kernel->fields[f].name, p->field[f]);
+  fputc('\n', stderr);
+}
+
+/* A mesh whose points have become so stiff that the step may be beyond the limit. */
+static void tell_stiffness(const run *r, FILE *out, const char *begin) {
+  for (int b = 0; b < simulation_bodies(r->simulation); b++) {
+    const cells *c = simulation_cells(r->simulation, b);
+    const step_limit *limit = simulation_step_limit(r->simulation);
+    const double part = limit->step / limit->limit;
+    if (!c || !(part * sqrt(c->stiffest) > 1)) continue;
+    fprintf(
+        out,
+        "%sa point of `%s` became %.3g times as stiff as at rest: steps of %.3g of the limit at "
+        "rest are safe\n  then, %.3g were taken; `step_safety = %.2g` tells whether that "
+        "matters\n",
+        begin, r->deck->lattices[b].name, c->stiffest, 1 / sqrt(c->stiffest), part,
+        0.9 / sqrt(c->stiffest));
+    return;
+  }
+}
+
 /* Samples of a series; NULL where there is none of that name. */
 static const double *series_of(const run *r, const char *name) {
   for (int k = 0; k < simulation_series_count(r->simulation); k++) {
@@ -533,6 +565,7 @@ static void report_bad_energy(const run *r, const bad_state *b) {
             "  what was computed until then is in the result; a smaller `step_safety` tells which",
             b->what, b->step, moment(r, b->time, when), last_value(r, "energy/kinetic"),
             last_value(r, "energy/stored"));
+  tell_stiffness(r, stderr, "  ");
 }
 
 void report_bad(const run *r) {
@@ -547,6 +580,7 @@ void report_bad(const run *r) {
       r->deck->relaxation.increments > 0 ? "after " : "", moment(r, b.time, when), b.particle,
       rows_place_text(simulation_rows(r->simulation, b.body)->dimensions, b.place, place_text));
   if (b.family) print_family(r, &b);
+  if (b.point) print_point(r, &b);
   if (b.bond_particle >= 0) {
     fprintf(stderr,
             "  bond to particle %ld: stretch %.6g, stretch rate %.6g 1/s, end rotations %.6g and "
@@ -557,6 +591,7 @@ void report_bad(const run *r) {
       explain_bad(r->model_of[b.interaction]->plan, b.parameters, &bonds, &b, stderr);
     write_bad_bond(r, &b);
   }
+  tell_stiffness(r, stderr, "  ");
   fprintf(stderr,
           "  what was computed until then is in the result; a smaller `step_safety` or a law that "
           "stays finite there mends it\n");
@@ -786,6 +821,7 @@ void conclude(const run *r, double seconds, long steps) {
   warn_of_gain(r);
   warn_of_damping(r);
   warn_of_overlap(r);
+  if (!simulation_bad(r->simulation).what[0]) tell_stiffness(r, stderr, "perilat: warning: ");
   long frames = (long)result_mark(r->result).count;
   printf("  written    %s (%ld frame%s) and its .xdmf for ParaView\n", r->result_path, frames,
          frames == 1 ? "" : "s");

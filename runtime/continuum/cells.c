@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
 #include "runtime/analysis/material.h"
 #include "runtime/base/lane_sum.h"
 #include "runtime/body/advance.h"
@@ -12,7 +14,7 @@
 #include "runtime/continuum/mesh_build.h"
 #include "runtime/continuum/node_masses.h"
 #include "runtime/continuum/point_law.h"
-#include "runtime/mesh/shape_functions.h"
+#include "runtime/mesh/mesh_fields.h"
 
 /* Power iteration finds the highest frequency from below. */
 static const double KEPT_BACK = 0.98;
@@ -56,36 +58,69 @@ cells *cells_new(const deck *k, int lattice, rows *nodes, diagnostics *d) {
 void cells_free(cells *c) {
   if (!c) return;
   if (c->has_stencil) node_stencil_close(&c->stencil);
+  point_forces_free(c->by_points);
   integration_points_close(&c->points);
   mesh_close(&c->mesh);
   tips_free(c->tips);
   free(c);
 }
 
-/* The law's tangent at rest. */
-static plane_stiffness tangent_at_rest(const pl_law *law, const double *parameters) {
+static double cell_size(const mesh *m) {
+  return sqrt(m->spacing[0] * m->spacing[1]);
+}
+
+/* The law's tangent at rest, or how its stress follows the strain rate. */
+static plane_stiffness tangent_at_rest(const cells *c, const double *parameters, bool viscous) {
   const double rest[3] = {0};
   plane_stiffness k;
-  point_law *p = point_law_new(law, parameters);
-  point_law_tangent(p, rest, 1, k.D);
+  point_law *p = point_law_new(c->law, parameters);
+  if (viscous)
+    point_law_viscosity(p, cell_size(&c->mesh), k.D);
+  else
+    point_law_tangent(p, rest, cell_size(&c->mesh), k.D);
   point_law_free(p);
   return k;
 }
 
 void cells_take_law(cells *c, const pl_law *law, const double *parameters) {
   c->law = law;
-  c->stiffness = tangent_at_rest(law, parameters);
-  node_stencil_open(&c->stencil, &c->mesh, &c->points, &c->stiffness, NULL);
-  c->has_stencil = true;
+  c->stiffness = tangent_at_rest(c, parameters, false);
+  c->has_stencil = law->linear;
+  if (c->has_stencil) node_stencil_open(&c->stencil, &c->mesh, &c->points, &c->stiffness, NULL);
 }
 
-void cells_step_limit(const cells *c, const unsigned char *held, step_limit *limit) {
-  double *mass = must_calloc((size_t)c->nodes->particle_count, sizeof *mass);
+/* The root of the largest eigenvalue of M^-1 K with that tangent at all points. */
+static double highest(const cells *c, const plane_stiffness *law, const double *mass,
+                      const unsigned char *held) {
+  node_stencil k;
+  node_stencil_open(&k, &c->mesh, &c->points, law, NULL);
+  const double omega = frequency_limit(&k, mass, held);
+  node_stencil_close(&k);
+  return omega;
+}
+
+/* Of dt^2 omega^2 + 2 c dt <= 2/beta_1: what resists the strain rate does so half a step late. */
+static double longest_step(double beta_1, double omega, double c) {
+  return (2 / beta_1) / (c + sqrt(c * c + 2 / beta_1 * omega * omega));
+}
+
+void cells_step_limit(const cells *c, const double *parameters, const unsigned char *held,
+                      step_limit *limit) {
+  double *mass = must_calloc((size_t)c->nodes->particle_count, sizeof *mass), damping = 0;
   for (long p = 0; p < c->nodes->particle_count; p++)
     mass[p] = c->nodes->site_mass[c->nodes->particle_site[p]];
-  const double omega = frequency_limit(&c->stencil, mass, held);
+  const double omega = c->has_stencil ? frequency_limit(&c->stencil, mass, held)
+                                      : highest(c, &c->stiffness, mass, held);
+  if (c->law->reads_rates) {
+    const plane_stiffness viscosity = tangent_at_rest(c, parameters, true);
+    const double root = highest(c, &viscosity, mass, held);
+    damping = root * root;
+  }
   *limit = (step_limit){.omega_max = omega, .mode = "translation"};
-  if (omega > 0) limit->limit = KEPT_BACK * sqrt(2 / c->beta_1) / omega;
+  if (omega > 0) {
+    limit->limit = KEPT_BACK * longest_step(c->beta_1, omega, damping);
+    limit->damping_ratio = 0.5 * damping / omega;
+  }
   free(mass);
 }
 
@@ -93,6 +128,8 @@ void cells_step_limit(const cells *c, const unsigned char *held, step_limit *lim
 
 typedef struct cells_engine {
   cells *of;
+  point_law *one;   /* of a linear law, to look at its outputs, */
+  double *observed; /* which are these: [1 + outputs] */
   /* [size] N: K u of the present state and of the one before; what beta_1 adds to it, of both; the
      forces that move the nodes. Those of the present state change places with the last one's. */
   double *resisting[2], *before[2], *added[2], *added_before[2], *driving[2];
@@ -105,11 +142,26 @@ static cells_engine *own(const sweep *w) {
   return w->engine.own;
 }
 
-static void find_resistance(sweep *w, int block) {
+static point_motion motion_of(const sweep *w) {
+  return (point_motion){(const double *const *)w->body->displacement,
+                        (const double *const *)w->body->velocity, w->body->time,
+                        w->body->time_step};
+}
+
+/* `seen`: not for a step. Rows of cells are shared out as rows of nodes are. */
+static void find_resistance(sweep *w, int block, bool seen) {
   const body_block *b = &w->body->blocks[block];
   cells_engine *e = own(w);
-  node_stencil_multiply(&e->of->stencil, (const double *const *)w->body->displacement, e->resisting,
-                        b->first, b->last);
+  const point_motion motion = motion_of(w);
+  if (e->of->by_points)
+    point_forces_find(e->of->by_points, block, b->first, b->last, &motion, seen);
+  else
+    node_stencil_multiply(&e->of->stencil, motion.displacement, e->resisting, b->first, b->last);
+}
+
+/* Points push nodes of several rows: what they push is added up when all have. */
+static void take_resistance(const cells_engine *e, int row) {
+  if (e->of->by_points) point_forces_take(e->of->by_points, row, e->resisting);
 }
 
 /* The forces that a row is kicked by. */
@@ -150,6 +202,7 @@ static void move_rows(sweep *w, int block) {
   cells_engine *e = own(w);
   const double *force[PL_MAX_DOF];
   for (int r = b->first; r < b->last; r++) {
+    take_resistance(e, r);
     drive_row(w, r, force);
     e->row_rate[r] += taken_by_row(w, r);
     advance_row(w->body, b, r, force);
@@ -161,7 +214,7 @@ static void step(sweep *w, int stage, int block) {
     body_step_begins(w->body, block);
     if (block == 0 && own(w)->of->tips)
       tips_before(own(w)->of->tips, w->body, &own(w)->of->stencil);
-    find_resistance(w, block);
+    find_resistance(w, block, false);
   } else {
     move_rows(w, block);
   }
@@ -181,7 +234,46 @@ static void turn(sweep *w) {
     exchange(&e->added_before[d], &e->added[d]);
   }
   e->begun = 1;
+  if (e->of->by_points) point_forces_turn(e->of->by_points);
   if (e->of->tips) tips_after(e->of->tips, w->body, &e->of->mesh, &e->of->stencil);
+}
+
+/* Of a linear law. */
+static double stored_in_row(const sweep *w, int row) {
+  const cells_engine *e = own(w);
+  const long start = body_start(w->body, row), count = w->body->count[row];
+  double sum = 0;
+  for (int d = 0; d < 2; d++)
+    sum += 0.5 * lane_dot(count, NULL, e->resisting[d] + start, w->body->displacement[d] + start);
+  return sum;
+}
+
+/* What is known of the points of the cells above a row of nodes. */
+static point_row points_of_row(const sweep *w, int row) {
+  const point_forces *p = own(w)->of->by_points;
+  if (!p) return (point_row){.stored = stored_in_row(w, row)};
+  return row < p->strips.rows ? p->rows[row] : (point_row){0};
+}
+
+/* Nodes have the means of the states of the points around them, and their part of what was lost. */
+static void show_states(sweep *w, int row) {
+  const point_forces *p = own(w)->of->by_points;
+  const node_layout *l = &p->strips.layout;
+  const long all = p->strips.count;
+  for (int i = 0; i < l->nodes[0]; i++) {
+    const int node = row * l->nodes[0] + i;
+    const long site = node_layout_at(l, node);
+    for (int f = 0; f < w->law->field_count; f++)
+      w->new_field[f][site] = point_forces_mean(p, p->new_field + f * all, node);
+    if (!p->loses) continue;
+    double *const before[] = {w->dissipated_state, w->dissipated_rate}, *const now[] = {
+                                                                            w->lost_state,
+                                                                            w->lost_rate};
+    for (int k = 0; k < PL_LOSSES; k++) {
+      before[k][site] = point_forces_share(p, p->lost + k * all, node);
+      now[k][site] = point_forces_share(p, p->lost_now + k * all, node);
+    }
+  }
 }
 
 static void observe_rows(sweep *w, int block) {
@@ -190,32 +282,44 @@ static void observe_rows(sweep *w, int block) {
   const double *force[PL_MAX_DOF];
   b->aside = true;
   for (int r = b->first; r < b->last; r++) {
-    const long start = body_start(w->body, r), count = w->body->count[r];
+    take_resistance(e, r);
     drive_row(w, r, force);
     advance_kick(w->body, b, r, force);
     motion_observe(w->body, b, r);
     body_row *seen = &w->body->observed[r];
-    seen->stored = 0;
-    for (int d = 0; d < 2; d++)
-      seen->stored +=
-          0.5 * lane_dot(count, NULL, e->resisting[d] + start, w->body->displacement[d] + start);
+    const point_row points = points_of_row(w, r);
     const double taken = taken_by_row(w, r);
-    seen->rate = e->row_rate[r] + taken;
-    seen->state = r == 0 && e->of->tips ? e->of->tips->released : 0;
-    seen->free += 0.5 * taken;
+    seen->stored = points.stored;
+    seen->rate = e->row_rate[r] + taken + points.rate;
+    seen->state = points.state + (r == 0 && e->of->tips ? e->of->tips->released : 0);
+    seen->free += 0.5 * taken + points.pending;
+    if (e->of->by_points) show_states(w, r);
   }
 }
 
 static void observe(sweep *w, int stage, int block) {
   if (stage == 0)
-    find_resistance(w, block);
+    find_resistance(w, block, true);
   else
     observe_rows(w, block);
 }
 
-/* Half of the work of each node's resistance: together all that is stored. */
+/* A plane of points at nodes: the means around, or their parts of what is stored. */
+static void show(const sweep *w, const double *plane, bool part, double *values) {
+  const point_forces *p = own(w)->of->by_points;
+  memset(values, 0, (size_t)w->lattice->size * sizeof *values);
+  for (long n = 0; n < w->lattice->particle_count; n++)
+    values[w->lattice->particle_site[n]] =
+        part ? point_forces_share(p, plane, (int)n) : point_forces_mean(p, plane, (int)n);
+}
+
+/* Of a linear law half of the work of each node's resistance: together all that is stored. */
 static void stored(sweep *w, double *values) {
   const cells_engine *e = own(w);
+  if (e->of->by_points) {
+    show(w, e->of->by_points->observed, true, values);
+    return;
+  }
   for (long q = 0; q < w->lattice->size; q++) {
     values[q] = 0;
     for (int d = 0; d < 2; d++)
@@ -223,13 +327,63 @@ static void stored(sweep *w, double *values) {
   }
 }
 
-static void output(sweep *w, int number, double *values) {
-  (void)number;
+/* Of a linear law a point remembers nothing: asked for, it is looked at. */
+static double output_at(const sweep *w, int number, int point) {
+  const cells *c = own(w)->of;
+  const double *at = c->points.at[point];
+  point_shape s;
+  double gradient[2][2], strain[3], *observed = own(w)->observed;
+  shape_functions(&c->mesh, c->points.cell[point], at, &s);
+  mesh_field(&s, &c->stencil.layout, motion_of(w).displacement, NULL, gradient);
+  mesh_strain(gradient, strain);
+  point_law_observe(own(w)->one, strain, cell_size(&c->mesh), observed);
+  return observed[1 + number];
+}
+
+/* Means over the points of the cells around the nodes. */
+static void show_linear(const sweep *w, int number, double *values) {
+  const cells *c = own(w)->of;
+  double *area = must_calloc((size_t)w->lattice->size, sizeof *area);
   memset(values, 0, (size_t)w->lattice->size * sizeof *values);
+  for (int n = 0; n < c->points.count; n++) {
+    const double value = output_at(w, number, n);
+    int corner[4];
+    mesh_corners(&c->mesh, c->points.cell[n], corner);
+    for (int k = 0; k < 4; k++) {
+      const long site = node_layout_at(&c->stencil.layout, corner[k]);
+      values[site] += c->points.area[n] * value;
+      area[site] += c->points.area[n];
+    }
+  }
+  for (long q = 0; q < w->lattice->size; q++)
+    if (area[q] > 0) values[q] /= area[q];
+  free(area);
+}
+
+static void output(sweep *w, int number, double *values) {
+  const point_forces *p = own(w)->of->by_points;
+  if (p)
+    show(w, p->observed + (1 + number) * (long)p->strips.count, false, values);
+  else
+    show_linear(w, number, values);
 }
 
 static void free_own(sweep *w) {
+  point_law_free(own(w)->one);
+  free(own(w)->observed);
   free(w->engine.own);
+}
+
+/* What asks points of the law: all of them in each step, or, of a linear law, now and then. */
+static void open_points(sweep *w, cells_engine *e, const double *parameters) {
+  cells *c = e->of;
+  if (c->law->linear) {
+    e->one = point_law_new(c->law, parameters);
+    return;
+  }
+  c->by_points = point_forces_new(&c->mesh, &c->points, c->law, parameters, w->body->block_count,
+                                  w->body->ledger);
+  if (c->by_points->loses) sweep_new_losses(w);
 }
 
 sweep *cells_sweep(cells *c, const deck *k, const double *parameters, const tip_law *cracks,
@@ -248,6 +402,8 @@ sweep *cells_sweep(cells *c, const deck *k, const double *parameters, const tip_
     e->driving[d] = body_doubles(of, c->nodes->size);
   }
   e->row_rate = body_doubles(of, c->nodes->row_count);
+  e->observed = must_calloc((size_t)c->law->output_count + 1, sizeof(double));
+  open_points(w, e, parameters);
   if (c->tips)
     tips_take(c->tips, k, &c->stiffness, material_density(c->law, parameters), cracks, time_step);
   w->engine = (sweep_engine){.step_stages = 2,
@@ -264,17 +420,66 @@ sweep *cells_sweep(cells *c, const deck *k, const double *parameters, const tip_
   return w;
 }
 
+/* --- what others ask -------------------------------------------------------------------------- */
+
 cells_memory cells_remembered(const sweep *w) {
   cells_engine *e = own(w);
-  const size_t plane = (size_t)w->lattice->size * sizeof(double);
-  return (cells_memory){
-      CELLS_PLANES,
-      {e->before[0], e->before[1], e->added_before[0], e->added_before[1], e->row_rate, &e->begun},
-      {plane, plane, plane, plane, (size_t)w->lattice->row_count * sizeof(double),
-       sizeof e->begun}};
+  const size_t plane = (size_t)w->lattice->size * sizeof(double),
+               row = (size_t)w->lattice->row_count * sizeof(double);
+  point_forces *p = e->of->by_points;
+  const size_t points = p ? (size_t)p->strips.count * sizeof(double) : 0;
+  cells_memory m = {.planes = {e->before[0], e->before[1], e->added_before[0], e->added_before[1],
+                               e->row_rate, &e->begun, &e->of->stiffest},
+                    .bytes = {plane, plane, plane, plane, row, sizeof e->begun, sizeof(double)}};
+  m.count = CELLS_PLANES - 2;
+  if (points && w->law->field_count > 0) {
+    m.planes[m.count] = p->old_field;
+    m.bytes[m.count++] = points * (size_t)w->law->field_count;
+  }
+  if (points && p->loses) {
+    m.planes[m.count] = p->lost;
+    m.bytes[m.count++] = points * PL_LOSSES;
+  }
+  return m;
 }
 
 void cells_restored(sweep *w) {
   cells *c = own(w)->of;
   if (c->tips) tips_replay(c->tips, &c->mesh, &c->stencil);
+}
+
+double cells_stiffness(cells *c) {
+  double most = 0;
+  if (!c->by_points) return 1;
+  for (int row = 0; row < c->by_points->strips.rows; row++)
+    most = pl_max(most, c->by_points->rows[row].stiffness);
+  c->stiffest = pl_max(c->stiffest, most);
+  return most;
+}
+
+bool cells_worst_point(const sweep *w, long site, point_state *out) {
+  const body *of = w->body;
+  point_forces *p = own(w)->of->by_points;
+  if (!p) return false;
+  double *before[2];
+  for (int d = 0; d < 2; d++) {
+    before[d] = must_calloc((size_t)w->lattice->size, sizeof(double));
+    for (long n = 0; n < w->lattice->particle_count; n++) {
+      const long q = w->lattice->particle_site[n];
+      before[d][q] = of->displacement[d][q];
+      if (body_has_moved(of, q) && isfinite(of->velocity[d][q]))
+        before[d][q] -= of->time_step * of->velocity[d][q];
+    }
+  }
+  point_motion motion = motion_of(w);
+  motion.displacement = (const double *const *)before;
+  point_forces_worst(p, w->lattice->site_particle[site], &motion, out);
+  free(before[0]);
+  free(before[1]);
+  return true;
+}
+
+double cells_bytes(const cells *c) {
+  return (c->has_stencil ? (double)sizeof(double) * (double)c->stencil.block_count : 0) +
+         (c->by_points ? (double)point_forces_bytes(c->by_points) : 0);
 }

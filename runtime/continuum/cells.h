@@ -1,5 +1,6 @@
 /* The cells of a mesh at work: an engine (sweep.h) that finds the forces of nodes and moves them. A
-   linear law has its stiffness assembled once (node_stencil.h), f = K u.
+   linear law has its stiffness assembled once (node_stencil.h), f = K u; of any other one, and of
+   laws with states, each point is asked in each step (point_forces.h).
 
    Steps are those of the time loop, central differences. Newmark's method with beta_2 = 0 and
    beta_1 > 1/2 is the same with the forces
@@ -14,6 +15,7 @@
 #include "dsl/base/diagnostics.h"
 #include "runtime/analysis/step_limit.h"
 #include "runtime/continuum/node_stencil.h"
+#include "runtime/continuum/point_forces.h"
 #include "runtime/continuum/tips.h"
 #include "runtime/deck/deck.h"
 #include "runtime/interaction/sweep.h"
@@ -24,10 +26,13 @@ typedef struct cells {
   double beta_1;
   mesh mesh;
   integration_points points;
-  plane_stiffness stiffness;
+  plane_stiffness stiffness; /* at rest */
   node_stencil stencil;
-  bool has_stencil;
-  tips *tips; /* of its cracks; NULL without */
+  bool has_stencil;        /* of a linear law */
+  point_forces *by_points; /* of any other law, once the run has begun; else NULL */
+  double
+      stiffest; /* the most that by_points has been as stiff as at rest, at samples; 0: not known */
+  tips *tips;   /* of its cracks; NULL without */
 } cells;
 
 /* Of the deck's lattice of that number, a &mesh; its nodes learn what volume each stands for.
@@ -37,15 +42,26 @@ void cells_free(cells *c);
 
 /* The law with its parameters. */
 void cells_take_law(cells *c, const pl_law *law, const double *parameters);
-/* The longest stable step; held[2 n + d]: freedoms that do not move by themselves. */
-void cells_step_limit(const cells *c, const unsigned char *held, step_limit *limit);
+/* The longest stable step at rest; held[2 n + d]: freedoms that do not move by themselves. */
+void cells_step_limit(const cells *c, const double *parameters, const unsigned char *held,
+                      step_limit *limit);
 /* At rest; to be freed by sweep_free, before the cells. cracks[k->crack_count]: the laws of the deck's
    cracks. */
 sweep *cells_sweep(cells *c, const deck *k, const double *parameters, const tip_law *cracks,
                    double time_step, int threads, body_ledger ledger);
 
+/* How many times as stiff as at rest the stiffest point of the state observed is; 1 of a linear law.
+   No frequency of the mesh is above the root of this times the highest at rest. */
+double cells_stiffness(cells *c);
+/* Where a node had a velocity that is no number or too large: of the points that push it the one
+   with the largest stress, with the nodes where they were before the step. False with a linear law. `out`
+   has memory for the law's fields. */
+bool cells_worst_point(const sweep *w, long site, point_state *out);
+/* B, of what the body does not count. */
+double cells_bytes(const cells *c);
+
 /* What the engine remembers from step to step, for checkpoints; and after one was read. */
-enum { CELLS_PLANES = 6 };
+enum { CELLS_PLANES = 9 };
 typedef struct cells_memory {
   int count;
   void *planes[CELLS_PLANES];

@@ -11,7 +11,7 @@ struct point_law {
   const pl_law *law;
   double *uniforms;
   /* every value stands PL_LANES times */
-  double strain[STRAINS][PL_LANES], rest[PL_LANES], size[PL_LANES];
+  double strain[STRAINS][PL_LANES], rate[STRAINS][PL_LANES], size[PL_LANES];
   double *out;       /* [PL_LANES] each: the most that one function writes */
   double *old, *new; /* [fields][PL_LANES] */
   double **old_at, **new_at, **out_at;
@@ -72,7 +72,7 @@ static void run(point_law *p, pl_point_function function, const double strain[3]
   const double *strain_at[STRAINS], *rate_at[STRAINS];
   for (int k = 0; k < STRAINS; k++) {
     strain_at[k] = p->strain[k];
-    rate_at[k] = p->rest;
+    rate_at[k] = p->rate[k];
     for (int lane = 0; lane < PL_LANES; lane++)
       p->strain[k][lane] = strain[k];
   }
@@ -108,4 +108,20 @@ void point_law_tangent(point_law *p, const double strain[3], double h, double ta
   for (int a = 0; a < STRAINS; a++)
     for (int b = 0; b < STRAINS; b++)
       tangent[a][b] = p->out_at[STRAINS * a + b][0];
+}
+
+void point_law_viscosity(point_law *p, double h, double viscosity[3][3]) {
+  const double none[STRAINS] = {0};
+  for (int b = 0; b < STRAINS; b++) {
+    double stress[2][STRESSES];
+    for (int side = 0; side < 2; side++) {
+      for (int lane = 0; lane < PL_LANES; lane++)
+        p->rate[b][lane] = side ? 1 : -1; /* 1/s */
+      point_law_stress(p, none, h, stress[side]);
+    }
+    for (int lane = 0; lane < PL_LANES; lane++)
+      p->rate[b][lane] = 0;
+    for (int a = 0; a < STRAINS; a++) /* a shear of engineers is two of tensors */
+      viscosity[a][b] = (stress[1][a] - stress[0][a]) / (b == 2 ? 4 : 2);
+  }
 }

@@ -21,5 +21,7 @@ void point_law_stress(point_law *p, const double strain[3], double h, double str
 void point_law_observe(point_law *p, const double strain[3], double h, double *observed);
 /* xx, yy, xy by xx, yy, xy, Pa; shears of strains are those of engineers. */
 void point_law_tangent(point_law *p, const double strain[3], double h, double tangent[3][3]);
+/* How the stress at rest, without strain, follows the strain rate, Pa s: as a tangent. */
+void point_law_viscosity(point_law *p, double h, double viscosity[3][3]);
 
 #endif

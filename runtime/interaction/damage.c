@@ -6,7 +6,8 @@
 #include "dsl/base/arena.h"
 
 static bool counts(const pl_field *field, bool on_particles) {
-  return field->kind == PL_FIELD_DAMAGE && (field->place == PL_ON_PARTICLE) == on_particles;
+  const bool particle = field->place == PL_ON_PARTICLE || field->place == PL_ON_POINT;
+  return field->kind == PL_FIELD_DAMAGE && particle == on_particles;
 }
 
 static bool has_damage(const pl_law *law, bool on_particles) {

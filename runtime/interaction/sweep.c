@@ -11,6 +11,7 @@
 /* --- set-up ----------------------------------------------------------------------------------- */
 
 int sweep_planes(const sweep *w, int where) {
+  if (where == PL_ON_POINT) return 1;
   if (w->law->kind != PL_STATE) return w->lattice->directions;
   return where == PL_ON_PARTICLE ? 1 : 2 * w->lattice->directions;
 }

@@ -63,7 +63,8 @@ sweep *sweep_beside(body *of, const rows *lattice, const pl_law *law, const doub
 void sweep_free(sweep *w);
 
 /* Site arrays that make up a field or an output in that place (pl_place): one for each direction of
-   a pairwise law's bonds; of a law of families one on particles, else one for each neighbour. */
+   a pairwise law's bonds; of a law of families one on particles, else one for each neighbour; of a
+   law of a continuum one, the means of the points around each node. */
 int sweep_planes(const sweep *w, int where);
 
 /* To be called when values of `field` have been set otherwise than by a step. */

@@ -20,6 +20,7 @@ struct bad_search {
   double *own_parameters; /* of the bad bond */
   double *fields;         /* [law's fields], of the bad bond; families: [1 + neighbours] of these */
   bad_neighbour *family;
+  point_state point; /* of a mesh */
 };
 
 static long in_results(const bad_search *s, int32_t particle) {
@@ -164,6 +165,12 @@ static void look_at_bonds(bad_search *s, int32_t particle) {
   }
 }
 
+/* Of a mesh the point around the node that is worst. */
+static void look_at_points(bad_search *s, int64_t site) {
+  s->point.field = s->fields;
+  if (cells_worst_point(s->state, site, &s->point)) s->found.point = &s->point;
+}
+
 static int first_bad(const bad_search *s) {
   int b = 0;
   while (body_bad(s->bodies[b].body) < 0)
@@ -204,7 +211,9 @@ void bad_search_velocity(bad_search *s) {
   s->found.what = !isfinite(at->bad_velocity)                            ? "not a number"
                   : at->bad_component >= s->of->lattice_rows->dimensions ? "runaway rotation"
                                                                          : "runaway velocity";
-  if (s->of->law->kind == PL_STATE)
+  if (s->of->cells)
+    look_at_points(s, at->bad_site);
+  else if (s->of->law->kind == PL_STATE)
     look_at_family(s, at->bad_site);
   else
     look_at_bonds(s, particle);

@@ -3,6 +3,7 @@
 #define PERILAT_RUNTIME_BAD_STATE_H
 
 #include "dsl/base/c_linkage.h"
+#include "runtime/continuum/point_forces.h"
 #include "runtime/lattice/rows.h"
 
 C_LINKAGE_BEGIN
@@ -21,7 +22,7 @@ typedef struct bad_neighbour {  /* of a law of families */
    spacing (half a turn) in one step, and its bond that gave such a force, or else the largest. A
    row was not moved from about the first bad particle on, so that the state there is that before
    the step; a partner elsewhere is moved back by its velocity. With a law of families there is no
-   such bond, but all neighbours. */
+   such bond, but all neighbours; on a mesh with a law of points the point around that is worst. */
 typedef struct bad_state {
   int body, interaction; /* of the run */
   long step;
@@ -37,6 +38,7 @@ typedef struct bad_state {
   const bad_neighbour *family; /* of the particle; the values are the simulation's */
   int family_count;
   const double *own_fields; /* [law's fields] those on particles: of the particle */
+  const point_state *point; /* of a mesh; else NULL; the values are the simulation's */
   const char *what;         /* "not a number", "runaway velocity", "energy from nothing" */
 } bad_state;
 

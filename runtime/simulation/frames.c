@@ -86,7 +86,7 @@ static void bond_values(const frames_of *of, const double *array, double *values
 }
 
 static bool on_bonds(const pl_field *f) {
-  return f->place != PL_ON_PARTICLE;
+  return f->place != PL_ON_PARTICLE && f->place != PL_ON_POINT;
 }
 
 /* Of the law, on particles or on bonds. */

@@ -91,16 +91,26 @@ static bool kind_differs(const pl_law *law, const deck *k, int lattice, diagnost
   return false;
 }
 
+/* Stress intensities, and what hides nodes from points, are of linear laws. */
+static bool cracks_fit(const pl_law *law, const deck *k, const deck_mesh *m, diagnostics *d) {
+  for (int n = 0; n < k->crack_count; n++) {
+    if (!k->cracks[n].mesh || strcmp(k->cracks[n].mesh, m->name) != 0) continue;
+    diag_report(d, DIAG_CONFLICT, k->cracks[n].item.where,
+                "a crack needs a linear elastic law: `%s` of the mesh `%s` is none", law->name,
+                m->name);
+    diag_hint(d, "take one such as `elastic`, or leave the crack out: a law with states says by "
+                 "itself where it fails");
+    return false;
+  }
+  return true;
+}
+
 /* What meshes do not do as yet, and what of the deck would have to be done. */
 static bool mesh_can_have(const pl_law *law, const deck *k, int lattice, diagnostics *d) {
   const deck_mesh *m = &k->lattices[lattice];
   const deck_item *item = NULL;
   const char *why = NULL;
-  if (!law->linear) {
-    diag_report(d, DIAG_NOT_SUPPORTED, law_fits_where(k, lattice),
-                "the law `%s` is not linear: a mesh runs linear laws alone so far", law->name);
-    return false;
-  }
+  if (!law->linear && !cracks_fit(law, k, m, d)) return false;
   for (int n = 0; n < k->material_count && !item; n++)
     if (k->materials[n].lattice && strcmp(k->materials[n].lattice, m->name) == 0 &&
         (k->materials[n].region || k->materials[n].between[0])) {
@@ -121,10 +131,6 @@ static bool mesh_can_have(const pl_law *law, const deck *k, int lattice, diagnos
       item = &k->contacts[n].item;
       why = "contact";
     }
-  if (!item && k->relaxation.increments > 0) {
-    item = &k->relaxation.item;
-    why = "quasi-static runs";
-  }
   if (!item) return true;
   diag_report(d, DIAG_NOT_SUPPORTED, item->where, "the mesh `%s` cannot have %s as yet", m->name,
               why);

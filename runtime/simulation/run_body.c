@@ -160,7 +160,7 @@ static bool find_limit_of_cells(run_body *b, const deck *k, diagnostics *d) {
     free(held);
     return false;
   }
-  cells_step_limit(b->cells, held, &b->limit);
+  cells_step_limit(b->cells, l->parameters, held, &b->limit);
   free(held);
   return step_limit_check(k, law_fits_where(k, b->lattice), l->law, &b->limit, d);
 }
@@ -418,6 +418,7 @@ double run_body_memory(const run_body *b) {
       g->list ? 2 * g->directions * (sizeof(int32_t) + (1 + (double)g->dimensions) * sizeof(double))
               : 0;
   double bytes = (double)b->body->bytes + (list + site) * (double)g->size;
+  if (b->cells) bytes += cells_bytes(b->cells);
   for (int n = 0; n < b->law_count; n++) {
     const run_law *l = &b->laws[n];
     bytes += (double)sizeof(rows_bond) * (double)l->rows->bond_count;

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "dsl/base/elementary.h"
 #include "runtime/base/clock.h"
 #include "runtime/base/subnormals.h"
 #include "runtime/loads/load_steps.h"
@@ -53,6 +54,12 @@ static void sample_laws(simulation *s) {
     }
 }
 
+/* Above which a body of the state observed has no frequency; where only the virgin one is known, that
+   of this. */
+static double highest_frequency(const run_body *of) {
+  return of->limit.omega_max * (of->cells ? sqrt(pl_fmax(1, cells_stiffness(of->cells))) : 1);
+}
+
 /* Energies of the state observed; they tell of a run that has gone wrong. */
 static void sample_energies(simulation *s) {
   const bool last = run_clock_position(&s->clock) == run_clock_end(&s->clock);
@@ -70,7 +77,7 @@ static void sample_energies(simulation *s) {
     run_body *of = &s->bodies[b];
     if (!run_body_is_link(of) &&
         !ledger_sample(&of->ledger, &of->energies, of->body, of->loads, &of->look,
-                       of->limit.omega_max, history_energies_of(&s->history, b)))
+                       highest_frequency(of), history_energies_of(&s->history, b)))
       end_badly(s, "energy from nothing");
   }
   add_up(s);

@@ -1,7 +1,7 @@
 /* The benchmark: ratios of programs that compute the same thing, taken in turn in one process,
    medians of at least five rounds. Prints tables and writes a flat object of named figures.
 
-   benchmark [--parts bonds,families,runs,lammps] [result.json] */
+   benchmark [--parts bonds,families,meshes,runs,lammps] [result.json] */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,6 +16,7 @@ typedef struct part {
 
 static const part parts[] = {{"bonds", benchmark_bonds},
                              {"families", benchmark_families},
+                             {"meshes", benchmark_meshes},
                              {"runs", benchmark_runs},
                              {"lammps", benchmark_lammps}};
 enum { PARTS = sizeof parts / sizeof *parts };

@@ -43,6 +43,7 @@ void figures_close(figures *f);
    things. */
 bool benchmark_bonds(figures *f);
 bool benchmark_families(figures *f);
+bool benchmark_meshes(figures *f);
 bool benchmark_runs(figures *f);
 bool benchmark_lammps(figures *f);
 

@@ -99,7 +99,6 @@ static void what_cannot_be_is_refused(void **state) {
   wrong(MESH "&region name = 'right' shape = 'segment' from = 0.21, 0 to = 0.21, 0.1 /\n"
              "&support region = 'right' fix = 'x' /\n",
         "is element-free");
-  wrong(MESH HELD "&relaxation increments = 3 /\n", "cannot have quasi-static runs");
   wrong(MESH HELD "&material mesh = 'plate' model = 'hooke' region = 'left' E = 1e9 /\n",
         "cannot have a material of its own");
   wrong(MESH HELD "&notch lattice = 'plate' shape = 'disc' centre = 0.1, 0.1 radius = 0.01 /\n",
@@ -107,13 +106,6 @@ static void what_cannot_be_is_refused(void **state) {
   wrong(MESH HELD "&zone mesh = 'plat' method = 'finite_elements' shape = 'disc' centre = 9, 9 "
                   "radius = 1 /\n",
         "there is no mesh `plat`");
-  pl_law bent = hooke_law;
-  bent.linear = 0;
-  small_run r;
-  small_open(&r, &bent, MESH HELD);
-  assert_null(r.simulation);
-  assert_true(says(&r, "is not linear"));
-  small_close(&r);
 }
 
 static void a_crack_along_nodes_is_warned_of(void **state) {

@@ -1,0 +1,453 @@
+#include "runtime/continuum/point_forces.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
+#include "runtime/base/lane_sum.h"
+#include "runtime/continuum/point_law.h"
+
+enum {
+  STRAINS = 3,
+  STRESSES = 4,
+  TANGENTS = STRAINS * STRAINS,
+  STRIP = 128 /* points of a strip, unless a group has more */
+};
+
+/* What a thread works with: planes of one strip. */
+typedef struct point_scratch {
+  double *strain[STRAINS], *rate[STRAINS], *stress[STRESSES], *traction[STRAINS],
+      *tangent[TANGENTS];
+  double **old_field, **new_field, **observed;
+} point_scratch;
+
+/* --- set-up ----------------------------------------------------------------------------------- */
+
+static double *doubles(point_forces *p, long count) {
+  p->doubles += count;
+  return pool_doubles(p->memory, count);
+}
+
+static void planes(point_forces *p, double **at, int count, long size) {
+  for (int k = 0; k < count; k++)
+    at[k] = doubles(p, size);
+}
+
+static int strip_room(const point_forces *p) {
+  return p->strips.most > STRIP ? p->strips.most : STRIP;
+}
+
+static void open_scratch(point_forces *p, point_scratch *s) {
+  const long size = strip_room(p);
+  planes(p, s->strain, STRAINS, size);
+  planes(p, s->rate, STRAINS, size);
+  planes(p, s->stress, STRESSES, size);
+  planes(p, s->traction, STRAINS, size);
+  planes(p, s->tangent, TANGENTS, size);
+  s->old_field = must_calloc((size_t)p->law->field_count + 1, sizeof(double *));
+  s->new_field = must_calloc((size_t)p->law->field_count + 1, sizeof(double *));
+  s->observed = must_calloc((size_t)p->law->output_count + 1, sizeof(double *));
+}
+
+static void open_states(point_forces *p, bool ledger) {
+  const long count = p->strips.count;
+  const pl_law *law = p->law;
+  p->loses = ledger && (law->field_count > 0 || law->reads_rates);
+  p->old_field = doubles(p, law->field_count * count);
+  p->new_field = doubles(p, law->field_count * count);
+  for (int f = 0; f < law->field_count; f++)
+    for (long k = 0; k < count; k++)
+      p->old_field[f * count + k] = p->new_field[f * count + k] = law->fields[f].initial;
+  p->observed = doubles(p, (1 + law->output_count) * count);
+  p->stress = doubles(p, STRESSES * count);
+  if (!p->loses) return;
+  p->lost = doubles(p, PL_LOSSES * count);
+  p->lost_now = doubles(p, PL_LOSSES * count);
+}
+
+static double cell_size(const mesh *m) {
+  return sqrt(m->spacing[0] * m->spacing[1]);
+}
+
+point_forces *point_forces_new(const mesh *m, const integration_points *points, const pl_law *law,
+                               const double *parameters, int blocks, bool ledger) {
+  const pl_bond_class none = {.size = sizeof none};
+  const double rest[STRAINS] = {0};
+  point_forces *p = must_calloc(1, sizeof *p);
+  *p = (point_forces){.of = m, .points = points, .law = law, .blocks = blocks};
+  p->memory = pool_new();
+  p->uniforms = must_calloc((size_t)law->uniform_count + 1, sizeof(double));
+  law->prepare(law, parameters, &none, p->uniforms);
+  cell_strips_open(&p->strips, m, points);
+  open_states(p, ledger);
+  p->plane = cell_strips_plane(&p->strips);
+  for (int d = 0; d < 2; d++)
+    p->pushed[d] = doubles(p, p->plane * p->strips.rows);
+  p->size = doubles(p, strip_room(p));
+  for (int k = 0; k < strip_room(p); k++)
+    p->size[k] = cell_size(m);
+  p->rows = must_calloc((size_t)p->strips.rows + 1, sizeof *p->rows);
+  p->scratch = must_calloc((size_t)blocks + 1, sizeof *p->scratch);
+  for (int b = 0; b < blocks; b++)
+    open_scratch(p, &p->scratch[b]);
+  point_law *one = point_law_new(law, parameters);
+  point_law_tangent(one, rest, cell_size(m), p->rest);
+  point_law_free(one);
+  return p;
+}
+
+void point_forces_free(point_forces *p) {
+  if (!p) return;
+  for (int b = 0; b < p->blocks; b++) {
+    free(p->scratch[b].old_field);
+    free(p->scratch[b].new_field);
+    free(p->scratch[b].observed);
+  }
+  free(p->scratch);
+  free(p->rows);
+  free(p->uniforms);
+  cell_strips_close(&p->strips);
+  pool_free(p->memory);
+  free(p);
+}
+
+long point_forces_bytes(const point_forces *p) {
+  return p->strips.bytes + (long)sizeof(double) * p->doubles;
+}
+
+/* --- a strip ---------------------------------------------------------------------------------- */
+
+typedef struct strip { /* groups of a row */
+  int row, first, last;
+  long at, count; /* its points */
+} strip;
+
+static strip next_strip(const point_forces *p, int row, int first) {
+  const cell_strips *s = &p->strips;
+  strip out = {row, first, first, s->groups[first].at, 0};
+  while (out.last < s->first_group[row + 1]) {
+    const long more = (long)s->groups[out.last].table->points * PL_LANES;
+    if (out.count > 0 && out.count + more > STRIP) break;
+    out.count += more;
+    out.last++;
+  }
+  return out;
+}
+
+static void find_strains(const point_forces *p, const strip *s, const double *const nodes[2],
+                         double *const strain[STRAINS]) {
+  for (int g = s->first; g < s->last; g++) {
+    const cell_group *group = &p->strips.groups[g];
+    double *at[STRAINS];
+    for (int c = 0; c < STRAINS; c++)
+      at[c] = strain[c] + (group->at - s->at);
+    cell_strips_strain(&p->strips, s->row, group, nodes, at);
+  }
+}
+
+/* The law's view of a strip: states in place, all else in the thread's planes. */
+static pl_points view_of(const point_forces *p, const strip *s, point_scratch *own,
+                         const point_motion *at) {
+  const long all = p->strips.count;
+  for (int f = 0; f < p->law->field_count; f++) {
+    own->old_field[f] = p->old_field + f * all + s->at;
+    own->new_field[f] = p->new_field + f * all + s->at;
+  }
+  return (pl_points){.size = sizeof(pl_points),
+                     .count = s->count,
+                     .strain = (const double *const *)own->strain,
+                     .strain_rate = (const double *const *)own->rate,
+                     .cell_size = p->size,
+                     .old_field = (const double *const *)own->old_field,
+                     .new_field = own->new_field,
+                     .stress = own->stress,
+                     .tangent = own->tangent,
+                     .time = at->time,
+                     .time_step = at->time_step};
+}
+
+static pl_points motion_of(const point_forces *p, const strip *s, point_scratch *own,
+                           const point_motion *at) {
+  find_strains(p, s, at->displacement, own->strain);
+  if (p->law->reads_rates) find_strains(p, s, at->velocity, own->rate);
+  return view_of(p, s, own, at);
+}
+
+static void push(const point_forces *p, const strip *s, const point_scratch *own,
+                 double *const stress[STRAINS]) {
+  const double *volume = p->strips.volume + s->at;
+  double *force[2] = {p->pushed[0] + s->row * p->plane, p->pushed[1] + s->row * p->plane};
+  for (int c = 0; c < STRAINS; c++) {
+    double *traction = own->traction[c];
+    const double *from = stress[c];
+    INDEPENDENT
+    for (long k = 0; k < s->count; k++)
+      traction[k] = volume[k] * from[k];
+  }
+  for (int g = s->first; g < s->last; g++) {
+    const cell_group *group = &p->strips.groups[g];
+    const long to = group->at - s->at;
+    const double *traction[STRAINS] = {own->traction[0] + to, own->traction[1] + to,
+                                       own->traction[2] + to};
+    cell_strips_push(&p->strips, group, traction, force);
+  }
+}
+
+/* What the law writes goes to planes of the whole mesh. */
+static void aim(const point_forces *p, const strip *s, double *plane, int count, double **at) {
+  for (int k = 0; k < count; k++)
+    at[k] = plane + k * (long)p->strips.count + s->at;
+}
+
+static void step_strip(const point_forces *p, const strip *s, point_scratch *own,
+                       const point_motion *at) {
+  double *lost[PL_LOSSES];
+  pl_points points = motion_of(p, s, own, at);
+  if (p->loses) {
+    aim(p, s, p->lost, PL_LOSSES, lost);
+    points.lost = lost;
+    p->law->point_ledger(p->law, p->uniforms, &points);
+  } else {
+    p->law->point_step(p->law, p->uniforms, &points);
+  }
+  push(p, s, own, own->stress);
+}
+
+/* --- looking at a state ----------------------------------------------------------------------- */
+
+/* Largest eigenvalue of a symmetric matrix (Smith 1961). */
+static double largest_eigenvalue(double a[STRAINS][STRAINS]) {
+  const double mean = (a[0][0] + a[1][1] + a[2][2]) / 3, x = a[0][0] - mean, y = a[1][1] - mean,
+               z = a[2][2] - mean, off = a[0][1] * a[0][1] + a[1][2] * a[1][2] + a[0][2] * a[0][2],
+               p = pl_sqrt((x * x + y * y + z * z + 2 * off) / 6);
+  if (!(p > 1e-12 * pl_abs(mean))) return mean;
+  const double r = (x * (y * z - a[1][2] * a[1][2]) - a[0][1] * (a[0][1] * z - a[1][2] * a[0][2]) +
+                    a[0][2] * (a[0][1] * a[1][2] - y * a[0][2])) /
+                   (2 * p * p * p);
+  const double bound = pl_max(-1, pl_min(1, r));
+  return mean + 2 * p * pl_cos(pl_atan2(pl_sqrt(1 - bound * bound), bound) / 3);
+}
+
+/* Cholesky's factor of the tangent at rest; false where it has none. */
+static bool factor_of(const double rest[STRAINS][STRAINS], double l[STRAINS][STRAINS]) {
+  for (int i = 0; i < STRAINS; i++)
+    for (int j = 0; j <= i; j++) {
+      double sum = 0.5 * (rest[i][j] + rest[j][i]);
+      for (int k = 0; k < j; k++)
+        sum -= l[i][k] * l[j][k];
+      if (i == j && !(sum > 0)) return false;
+      l[i][j] = i == j ? sqrt(sum) : sum / l[j][j];
+    }
+  return true;
+}
+
+/* Column c of a becomes L^-1 times it. */
+static void solve(double l[STRAINS][STRAINS], double a[STRAINS][STRAINS], int c) {
+  for (int i = 0; i < STRAINS; i++) {
+    for (int k = 0; k < i; k++)
+      a[i][c] -= l[i][k] * a[k][c];
+    a[i][c] /= l[i][i];
+  }
+}
+
+/* L^-1 D L^-T of the symmetric part of a tangent. */
+static double stiffness_of(double l[STRAINS][STRAINS], double *const tangent[TANGENTS], long at) {
+  double a[STRAINS][STRAINS], b[STRAINS][STRAINS];
+  for (int i = 0; i < STRAINS; i++)
+    for (int j = 0; j < STRAINS; j++)
+      a[i][j] = 0.5 * (tangent[STRAINS * i + j][at] + tangent[STRAINS * j + i][at]);
+  for (int c = 0; c < STRAINS; c++)
+    solve(l, a, c);
+  for (int i = 0; i < STRAINS; i++)
+    for (int j = 0; j < STRAINS; j++)
+      b[i][j] = a[j][i];
+  for (int c = 0; c < STRAINS; c++)
+    solve(l, b, c);
+  return largest_eigenvalue(b);
+}
+
+static double stiffest_of(const point_forces *p, const strip *s, double *const *tangent) {
+  double l[STRAINS][STRAINS] = {{0}}, most = 0;
+  if (!factor_of(p->rest, l)) return 0;
+  for (long k = 0; k < s->count; k++) {
+    const double here = stiffness_of(l, tangent, k);
+    if (here > most) most = here;
+  }
+  return most;
+}
+
+static void add_losses(const point_forces *p, const strip *s, double *const lost[PL_LOSSES],
+                       point_row *row) {
+  const double *volume = p->strips.volume + s->at;
+  double *before[PL_LOSSES];
+  aim(p, s, p->lost, PL_LOSSES, before);
+  const double now = lane_dot(s->count, NULL, lost[PL_LOST_TO_RATES], volume);
+  row->state += lane_dot(s->count, NULL, before[PL_LOST_TO_STATES], volume) +
+                lane_dot(s->count, NULL, lost[PL_LOST_TO_STATES], volume);
+  row->rate += lane_dot(s->count, NULL, before[PL_LOST_TO_RATES], volume) + 0.5 * now;
+  row->pending += 0.5 * now;
+}
+
+static void see_strip(const point_forces *p, const strip *s, point_scratch *own,
+                      const point_motion *at) {
+  double *stress[STRESSES], *lost[PL_LOSSES];
+  point_row *row = &p->rows[s->row];
+  pl_points points = motion_of(p, s, own, at);
+  aim(p, s, p->stress, STRESSES, stress);
+  points.stress = stress;
+  if (p->loses) {
+    aim(p, s, p->lost_now, PL_LOSSES, lost);
+    for (int k = 0; k < PL_LOSSES; k++)
+      memset(lost[k], 0, (size_t)s->count * sizeof(double));
+    points.lost = lost;
+    p->law->point_ledger(p->law, p->uniforms, &points);
+    add_losses(p, s, lost, row);
+  } else {
+    p->law->point_step(p->law, p->uniforms, &points);
+  }
+  push(p, s, own, stress);
+  points.old_field = (const double *const *)own->new_field; /* with the fields of this state */
+  aim(p, s, p->observed, 1 + p->law->output_count, own->observed);
+  points.observed = own->observed;
+  p->law->point_observe(p->law, p->uniforms, &points);
+  row->stored += lane_dot(s->count, NULL, own->observed[0], p->strips.volume + s->at);
+  p->law->point_tangent(p->law, p->uniforms, &points);
+  row->stiffness = pl_max(row->stiffness, stiffest_of(p, s, own->tangent));
+}
+
+/* --- rows ------------------------------------------------------------------------------------- */
+
+void point_forces_find(point_forces *p, int block, int from, int to, const point_motion *at,
+                       bool seen) {
+  const int last = to < p->strips.rows ? to : p->strips.rows;
+  for (int row = from; row < last; row++) {
+    for (int d = 0; d < 2; d++)
+      memset(p->pushed[d] + row * p->plane, 0, (size_t)p->plane * sizeof(double));
+    if (seen) p->rows[row] = (point_row){0};
+    strip s = {.last = p->strips.first_group[row]};
+    while (s.last < p->strips.first_group[row + 1]) {
+      s = next_strip(p, row, s.last);
+      if (seen)
+        see_strip(p, &s, &p->scratch[block], at);
+      else
+        step_strip(p, &s, &p->scratch[block], at);
+    }
+  }
+}
+
+void point_forces_take(const point_forces *p, int row, double *const force[2]) {
+  const cell_strips *s = &p->strips;
+  const node_layout *l = &s->layout;
+  const int from = row - s->high < 0 ? 0 : row - s->high,
+            to = row - s->low > s->rows - 1 ? s->rows - 1 : row - s->low;
+  for (int d = 0; d < 2; d++) {
+    double *out = force[d] + l->origin + row * l->stride;
+    memset(out, 0, (size_t)l->padded * sizeof *out);
+    for (int c = from; c <= to; c++) {
+      const double *in = p->pushed[d] + c * p->plane + (row - c - s->low) * l->stride;
+      INDEPENDENT
+      for (long k = 0; k < l->padded; k++)
+        out[k] += in[k];
+    }
+    for (long k = l->nodes[0]; k < l->padded; k++)
+      out[k] = 0;
+  }
+}
+
+void point_forces_turn(point_forces *p) {
+  double *kept = p->old_field;
+  p->old_field = p->new_field;
+  p->new_field = kept;
+}
+
+/* --- nodes ------------------------------------------------------------------------------------ */
+
+typedef struct cells_around {
+  int count, at[4], points[4]; /* place of the first point, and how many */
+} cells_around;
+
+static cells_around around(const point_forces *p, int node) {
+  const mesh *m = p->of;
+  const int i = node % m->nodes[0], j = node / m->nodes[0];
+  cells_around out = {.count = 0};
+  for (int k = 0; k < 4; k++) {
+    const int ci = i - 1 + k % 2, cj = j - 1 + k / 2;
+    if (ci < 0 || cj < 0 || ci >= m->nodes[0] - 1 || cj >= m->nodes[1] - 1) continue;
+    const int cell = mesh_cell_at(m, ci, cj);
+    if (p->strips.of_cell[cell] < 0) continue;
+    out.at[out.count] = p->strips.of_cell[cell];
+    out.points[out.count++] = p->points->first[cell + 1] - p->points->first[cell];
+  }
+  return out;
+}
+
+double point_forces_mean(const point_forces *p, const double *plane, int node) {
+  const cells_around c = around(p, node);
+  double sum = 0, volume = 0;
+  for (int n = 0; n < c.count; n++)
+    for (int k = 0; k < c.points[n]; k++) {
+      const int at = c.at[n] + k * PL_LANES;
+      sum += p->strips.volume[at] * plane[at];
+      volume += p->strips.volume[at];
+    }
+  return sum / volume;
+}
+
+double point_forces_share(const point_forces *p, const double *plane, int node) {
+  const cells_around c = around(p, node);
+  double sum = 0;
+  for (int n = 0; n < c.count; n++)
+    for (int k = 0; k < c.points[n]; k++)
+      sum += p->strips.volume[c.at[n] + k * PL_LANES] * plane[c.at[n] + k * PL_LANES];
+  return 0.25 * sum;
+}
+
+/* --- where it went wrong ---------------------------------------------------------------------- */
+
+static double size_of(double *const stress[STRESSES], long k) {
+  double sum = 0;
+  for (int c = 0; c < STRESSES; c++)
+    sum += stress[c][k] * stress[c][k];
+  return sum;
+}
+
+static void take_point(const point_forces *p, const strip *s, const point_scratch *own, long k,
+                       point_state *out) {
+  const cell_group *g = &p->strips.groups[s->first];
+  cell_group_place(p->of, p->points, s->row, g, (int)(s->at + k), out->at, out->cell);
+  for (int c = 0; c < STRAINS; c++)
+    out->strain[c] = own->strain[c][k];
+  for (int c = 0; c < STRESSES; c++)
+    out->stress[c] = own->stress[c][k];
+  for (int f = 0; f < p->law->field_count; f++)
+    out->field[f] = own->old_field[f][k];
+}
+
+/* Whether a point may push the node. */
+static bool reaches(const point_forces *p, const cell_group *g, long at, const int node[2]) {
+  const int away = node[0] - g->first - (int)(at % PL_LANES);
+  return at % PL_LANES < g->count && away >= p->strips.low && away <= p->strips.high;
+}
+
+void point_forces_worst(point_forces *p, int node, const point_motion *at, point_state *out) {
+  const int place[2] = {node % p->of->nodes[0], node / p->of->nodes[0]};
+  point_scratch *own = &p->scratch[0];
+  double most = -1;
+  for (int row = place[1] - p->strips.high; row <= place[1] - p->strips.low; row++) {
+    if (row < 0 || row >= p->strips.rows) continue;
+    for (int g = p->strips.first_group[row]; g < p->strips.first_group[row + 1]; g++) {
+      const cell_group *group = &p->strips.groups[g];
+      const strip s = {row, g, g + 1, group->at, (long)group->table->points * PL_LANES};
+      const pl_points points = motion_of(p, &s, own, at);
+      p->law->point_step(p->law, p->uniforms, &points);
+      for (long k = 0; k < s.count && isfinite(most); k++) {
+        const double here = size_of(own->stress, k);
+        if (!reaches(p, group, k, place) || here <= most) continue;
+        most = here;
+        take_point(p, &s, own, k, out);
+      }
+    }
+  }
+}

@@ -1,0 +1,86 @@
+/* The second way to the forces of a mesh, for laws that are not linear or have states: in each step
+   every point of integration is asked for its stress, f = sum B^T sigma w t (Hughes 1987, 4.2).
+
+   A strip is a few groups of cells of a row (cell_strips.h): strains of all their points, one call
+   of the law, forces. Rows of cells push nodes of several rows; each has planes of its own for
+   that, and these are added in one order. So results do not depend on threads.
+
+   States stand at points, old ones and new ones, and change places after a step. */
+#ifndef PERILAT_RUNTIME_POINT_FORCES_H
+#define PERILAT_RUNTIME_POINT_FORCES_H
+
+#include "runtime/base/pool.h"
+#include "runtime/kernel.h"
+#include "runtime/mesh/cell_strips.h"
+
+/* What is known of a row of cells in the state observed, J; and how much stiffer than at rest one
+   of its points is: the largest eigenvalue of the tangent by that at rest. */
+typedef struct point_row {
+  double stored, state, rate, pending, stiffness;
+} point_row;
+
+typedef struct point_forces {
+  const mesh *of;
+  const integration_points *points;
+  const pl_law *law;
+  double *uniforms;
+  cell_strips strips;
+  pool *memory;
+  bool loses; /* the law has states or rates, and energies are kept */
+  /* [fields][strips.count] SI, when the step begins and after it */
+  double *old_field, *new_field;
+  double *lost;      /* [PL_LOSSES][strips.count] J/m^3 since the start; NULL unless it loses */
+  double *lost_now;  /* [PL_LOSSES][strips.count] by the state observed */
+  double *observed;  /* [1 + outputs][strips.count] in the state observed: J/m^3, then outputs */
+  double *stress;    /* [PL_STRESSES(2)][strips.count] Pa, in the state observed */
+  double *pushed[2]; /* [rows][plane] N */
+  long plane;        /* doubles */
+  double *size;      /* [points of a strip] m: of the cells */
+  double rest[3][3]; /* Pa: tangent at rest */
+  point_row *rows;   /* [strips.rows] */
+  struct point_scratch *scratch; /* [blocks] */
+  int blocks;
+  long doubles; /* of arrays */
+} point_forces;
+
+/* `blocks` threads at most; `ledger`: energies are kept. What is pointed to must outlive it. */
+point_forces *point_forces_new(const mesh *m, const integration_points *p, const pl_law *law,
+                               const double *parameters, int blocks, bool ledger);
+void point_forces_free(point_forces *p);
+
+/* The motion that points see: displacements of the present state and velocities half a step before,
+   laid out as node_layout. */
+typedef struct point_motion {
+  const double *const *displacement, *const *velocity; /* [2] m, m/s */
+  double time, time_step;                              /* s */
+} point_motion;
+
+/* Stresses and new states of the points of the rows of cells from <= j < to, and what they push.
+   `seen`: of the present state, and not for a step: energies, outputs and stresses are kept, and so
+   is how stiff the rows are. */
+void point_forces_find(point_forces *p, int block, int from, int to, const point_motion *at,
+                       bool seen);
+/* N: adds up what pushes a row of nodes; force[2]: planes of the layout. */
+void point_forces_take(const point_forces *p, int row, double *const force[2]);
+/* After a step: new states are old ones. */
+void point_forces_turn(point_forces *p);
+
+/* Mean of a plane [strips.count] over the points around a node, by their areas; NaN without. */
+double point_forces_mean(const point_forces *p, const double *plane, int node);
+/* The node's part, a quarter, of what the cells around it hold, a plane [strips.count] per m^3. */
+double point_forces_share(const point_forces *p, const double *plane, int node);
+
+/* How a point is. */
+typedef struct point_state {
+  int cell[2];                 /* i, j */
+  double at[2];                /* m */
+  double strain[3], stress[4]; /* Pa */
+  double *field;               /* [fields] of before the step; the caller's memory */
+} point_state;
+/* Of the points that push a node that with the largest stress, or without a finite one. */
+void point_forces_worst(point_forces *p, int node, const point_motion *at, point_state *out);
+
+/* B held, shape tables included. */
+long point_forces_bytes(const point_forces *p);
+
+#endif

@@ -1,0 +1,347 @@
+#include "runtime/mesh/cell_strips.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
+#include "runtime/kernel.h"
+#include "runtime/mesh/shape_functions.h"
+
+/* --- tables ----------------------------------------------------------------------------------- */
+
+/* Nodes around the lower left corner of a cell that may act in it. */
+enum { REACH = 7, WIDE = 2 * REACH + 2, SLOTS = WIDE * WIDE };
+
+typedef struct draft { /* of a group: what acts at [point][slot] */
+  int points;
+  unsigned char *acts; /* [points][SLOTS] */
+  double *slope;       /* [points][SLOTS][2][PL_LANES] */
+  double least;        /* 1/m: slopes that differ by less are the same */
+} draft;
+
+static draft draft_new(const mesh *m) {
+  const size_t most = (size_t)MESH_MOST_GAUSS * MESH_MOST_GAUSS *
+                      (size_t)(m->gauss_parts > 1 ? m->gauss_parts * m->gauss_parts : 1);
+  return (draft){.acts = must_calloc(most * SLOTS, 1),
+                 .slope = must_calloc(most * SLOTS * 2 * PL_LANES, sizeof(double)),
+                 .least = 1e-11 / pl_min(m->spacing[0], m->spacing[1])};
+}
+
+static void draft_free(draft *d) {
+  free(d->acts);
+  free(d->slope);
+}
+
+static void draft_clear(draft *d, int points) {
+  d->points = points;
+  memset(d->acts, 0, (size_t)points * SLOTS);
+  memset(d->slope, 0, (size_t)points * SLOTS * 2 * PL_LANES * sizeof *d->slope);
+}
+
+static void draft_cell(draft *d, const mesh *m, const integration_points *p, int i, int j,
+                       int lane) {
+  const int cell = mesh_cell_at(m, i, j);
+  point_shape shape;
+  for (int g = 0; g < d->points; g++) {
+    shape_functions(m, cell, p->at[p->first[cell] + g], &shape);
+    for (int k = 0; k < shape.count; k++) {
+      const int di = shape.node[k] % m->nodes[0] - i, dj = shape.node[k] / m->nodes[0] - j;
+      const int slot = g * SLOTS + (dj + REACH) * WIDE + di + REACH;
+      d->acts[slot] = 1;
+      d->slope[(2 * slot) * PL_LANES + lane] = shape.nx[k];
+      d->slope[(2 * slot + 1) * PL_LANES + lane] = shape.ny[k];
+    }
+  }
+}
+
+static bool is_uniform(const draft *d, int lanes) {
+  const double *slope = d->slope;
+  for (int k = 0; k < 2 * d->points * SLOTS; k++, slope += PL_LANES)
+    for (int lane = 1; lane < lanes && d->acts[k / 2]; lane++)
+      if (!(fabs(slope[lane] - slope[0]) <= d->least)) return false;
+  return true;
+}
+
+static void count_slots(const draft *d, cell_table *t, int *node_of) {
+  t->nodes = t->entries = 0;
+  for (int slot = 0; slot < SLOTS; slot++) {
+    int here = 0;
+    for (int g = 0; g < d->points; g++)
+      here += d->acts[g * SLOTS + slot];
+    node_of[slot] = here > 0 ? t->nodes++ : -1;
+    t->entries += here;
+  }
+}
+
+static void allot(cell_table *t) {
+  const size_t entries = (size_t)t->entries;
+  t->offset = must_calloc((size_t)t->nodes + 1, sizeof(int));
+  t->first = must_calloc((size_t)t->points + 1, sizeof(int));
+  t->first_of_node = must_calloc((size_t)t->nodes + 1, sizeof(int));
+  t->away = must_calloc(entries + 1, sizeof(int));
+  t->entry = must_calloc(entries + 1, sizeof(int));
+  t->point = must_calloc(entries + 1, sizeof(int));
+  t->slope = must_calloc(entries * 2 * (size_t)t->lanes + 1, sizeof(double));
+}
+
+static void take_entry(const draft *d, cell_table *t, int e, int at) {
+  for (int a = 0; a < 2; a++)
+    for (int lane = 0; lane < t->lanes; lane++)
+      t->slope[(2 * e + a) * t->lanes + lane] = d->slope[(2 * at + a) * PL_LANES + lane];
+}
+
+/* Entries stand point by point; `number` keeps which one is which. */
+static cell_table *table_of(const draft *d, int lanes, long stride) {
+  cell_table *t = must_calloc(1, sizeof *t);
+  int node_of[SLOTS], *number = must_calloc((size_t)d->points * SLOTS, sizeof *number), e = 0;
+  *t = (cell_table){.points = d->points, .lanes = lanes};
+  count_slots(d, t, node_of);
+  allot(t);
+  for (int g = 0; g < d->points; g++) {
+    t->first[g] = e;
+    for (int slot = 0; slot < SLOTS; slot++) {
+      if (!d->acts[g * SLOTS + slot]) continue;
+      t->away[e] = (slot / WIDE - REACH) * (int)stride + slot % WIDE - REACH;
+      take_entry(d, t, e, g * SLOTS + slot);
+      number[g * SLOTS + slot] = e++;
+    }
+  }
+  t->first[d->points] = e;
+  e = 0;
+  for (int slot = 0; slot < SLOTS; slot++) {
+    if (node_of[slot] < 0) continue;
+    t->offset[node_of[slot]] = (slot / WIDE - REACH) * (int)stride + slot % WIDE - REACH;
+    t->first_of_node[node_of[slot]] = e;
+    for (int g = 0; g < d->points; g++)
+      if (d->acts[g * SLOTS + slot]) {
+        t->entry[e] = number[g * SLOTS + slot];
+        t->point[e++] = g;
+      }
+  }
+  t->first_of_node[t->nodes] = e;
+  free(number);
+  return t;
+}
+
+static void table_free(cell_table *t) {
+  free(t->offset);
+  free(t->first);
+  free(t->first_of_node);
+  free(t->away);
+  free(t->entry);
+  free(t->point);
+  free(t->slope);
+  free(t);
+}
+
+static bool are_alike(const cell_table *a, const cell_table *b, double least) {
+  if (a->points != b->points || a->lanes != b->lanes || a->nodes != b->nodes ||
+      a->entries != b->entries ||
+      memcmp(a->first, b->first, (size_t)a->points * sizeof *a->first) != 0 ||
+      memcmp(a->away, b->away, (size_t)a->entries * sizeof *a->away) != 0)
+    return false;
+  for (int k = 0; k < 2 * a->entries * a->lanes; k++)
+    if (!(fabs(a->slope[k] - b->slope[k]) <= least)) return false;
+  return true;
+}
+
+static long bytes_of(const cell_table *t) {
+  return (long)sizeof *t + (long)sizeof(int) * (2 * t->nodes + t->points + 3 * t->entries) +
+         (long)sizeof(double) * 2 * t->entries * t->lanes;
+}
+
+/* One like it that is there already, or it. */
+static const cell_table *keep(cell_strips *s, cell_table *t, double least) {
+  for (int k = s->table_count - 1; k >= 0; k--)
+    if (are_alike(s->tables[k], t, least)) {
+      table_free(t);
+      return s->tables[k];
+    }
+  if (s->table_count == s->table_room) {
+    s->table_room = s->table_room ? 2 * s->table_room : 64;
+    s->tables = must_realloc(s->tables, (size_t)s->table_room * sizeof(cell_table *));
+  }
+  s->bytes += bytes_of(t);
+  return s->tables[s->table_count++] = t;
+}
+
+/* --- groups ----------------------------------------------------------------------------------- */
+
+static int points_of(const integration_points *p, int cell) {
+  return p->first[cell + 1] - p->first[cell];
+}
+
+/* Where it stands among cells, and its volumes; memory has room for every cell. */
+static void place_group(cell_strips *s, const mesh *m, const integration_points *p, int row,
+                        cell_group *g) {
+  const int points = points_of(p, mesh_cell_at(m, g->first, row));
+  g->at = s->count;
+  s->count += points * PL_LANES;
+  s->most = points * PL_LANES > s->most ? points * PL_LANES : s->most;
+  for (int lane = 0; lane < g->count; lane++) {
+    const int cell = mesh_cell_at(m, g->first + lane, row);
+    s->of_cell[cell] = g->at + lane;
+    for (int k = 0; k < points; k++)
+      s->volume[g->at + k * PL_LANES + lane] = m->thickness * p->area[p->first[cell] + k];
+  }
+}
+
+static void add_group(cell_strips *s, const mesh *m, const integration_points *p, int row, int i,
+                      draft *d) {
+  const int points = points_of(p, mesh_cell_at(m, i, row));
+  cell_group *g = &s->groups[s->group_count++];
+  *g = (cell_group){.first = i};
+  draft_clear(d, points);
+  while (g->count < PL_LANES && i + g->count < m->nodes[0] - 1 &&
+         points_of(p, mesh_cell_at(m, i + g->count, row)) == points) {
+    draft_cell(d, m, p, i + g->count, row, g->count);
+    g->count++;
+  }
+  place_group(s, m, p, row, g);
+  g->table =
+      keep(s, table_of(d, is_uniform(d, g->count) ? 1 : PL_LANES, s->layout.stride), d->least);
+}
+
+static void find_reach(cell_strips *s) {
+  s->high = 1;
+  for (int k = 0; k < s->table_count; k++)
+    for (int n = 0; n < s->tables[k]->nodes; n++) {
+      const int at = s->tables[k]->offset[n] + REACH * (int)s->layout.stride + REACH,
+                dj = at / (int)s->layout.stride - REACH;
+      s->low = dj < s->low ? dj : s->low;
+      s->high = dj > s->high ? dj : s->high;
+    }
+}
+
+void cell_strips_open(cell_strips *s, const mesh *m, const integration_points *p) {
+  const int rows = m->nodes[1] - 1, wide = m->nodes[0] - 1;
+  const size_t room = (size_t)(p->count + 1) * PL_LANES;
+  draft d = draft_new(m);
+  *s = (cell_strips){.layout = node_layout_of(m->nodes, m->support), .rows = rows};
+  s->first_group = must_calloc((size_t)rows + 1, sizeof(int));
+  s->first_point = must_calloc((size_t)rows + 1, sizeof(int));
+  s->groups = must_calloc((size_t)(rows * wide) + 1, sizeof *s->groups);
+  s->of_cell = must_calloc((size_t)(rows * wide) + 1, sizeof(int));
+  s->volume = must_calloc(room, sizeof(double));
+  for (int c = 0; c < rows * wide; c++)
+    s->of_cell[c] = -1;
+  for (int row = 0; row < rows; row++) {
+    s->first_group[row] = s->group_count;
+    s->first_point[row] = s->count;
+    for (int i = 0; i < wide; i++) {
+      if (points_of(p, mesh_cell_at(m, i, row)) == 0) continue;
+      add_group(s, m, p, row, i, &d);
+      i += s->groups[s->group_count - 1].count - 1;
+    }
+  }
+  s->first_group[rows] = s->group_count;
+  s->first_point[rows] = s->count;
+  s->volume = must_realloc(s->volume, ((size_t)s->count + 1) * sizeof(double));
+  s->groups = must_realloc(s->groups, ((size_t)s->group_count + 1) * sizeof *s->groups);
+  s->bytes += (long)sizeof(int) * (2 * rows + rows * wide) + (long)sizeof(double) * s->count +
+              (long)sizeof(cell_group) * s->group_count;
+  find_reach(s);
+  draft_free(&d);
+}
+
+void cell_strips_close(cell_strips *s) {
+  for (int k = 0; k < s->table_count; k++)
+    table_free(s->tables[k]);
+  free(s->tables);
+  free(s->first_group);
+  free(s->first_point);
+  free(s->groups);
+  free(s->of_cell);
+  free(s->volume);
+}
+
+void cell_group_place(const mesh *m, const integration_points *p, int row, const cell_group *g,
+                      int at, double place[2], int cell[2]) {
+  const int lane = (at - g->at) % PL_LANES, k = (at - g->at) / PL_LANES;
+  cell[0] = g->first + lane;
+  cell[1] = row;
+  memcpy(place, p->at[p->first[mesh_cell_at(m, cell[0], row)] + k], 2 * sizeof *place);
+}
+
+/* --- strains ---------------------------------------------------------------------------------- */
+
+/* `lanes` is a literal: slopes of one lane count for all. */
+static inline __attribute__((always_inline)) void strain_of_group(const cell_table *t, int lanes,
+                                                                  const double *ux,
+                                                                  const double *uy,
+                                                                  double *const strain[3]) {
+  const double *slope = t->slope;
+  for (int g = 0; g < t->points; g++) {
+    double xx[PL_LANES] = {0}, yy[PL_LANES] = {0}, xy[PL_LANES] = {0}, yx[PL_LANES] = {0};
+    for (int e = t->first[g]; e < t->first[g + 1]; e++, slope += 2 * lanes) {
+      const double *x = ux + t->away[e], *y = uy + t->away[e];
+      for (int lane = 0; lane < PL_LANES; lane++) {
+        const double nx = slope[lanes == 1 ? 0 : lane], ny = slope[lanes == 1 ? 1 : lanes + lane];
+        xx[lane] = pl_fma(nx, x[lane], xx[lane]);
+        yy[lane] = pl_fma(ny, y[lane], yy[lane]);
+        xy[lane] = pl_fma(ny, x[lane], xy[lane]);
+        yx[lane] = pl_fma(nx, y[lane], yx[lane]);
+      }
+    }
+    for (int lane = 0; lane < PL_LANES; lane++) {
+      strain[0][g * PL_LANES + lane] = xx[lane];
+      strain[1][g * PL_LANES + lane] = yy[lane];
+      strain[2][g * PL_LANES + lane] = 0.5 * (xy[lane] + yx[lane]);
+    }
+  }
+}
+
+void cell_strips_strain(const cell_strips *s, int row, const cell_group *g,
+                        const double *const u[2], double *const strain[3]) {
+  const long at = s->layout.origin + row * s->layout.stride + g->first;
+  if (g->table->lanes == 1)
+    strain_of_group(g->table, 1, u[0] + at, u[1] + at, strain);
+  else
+    strain_of_group(g->table, PL_LANES, u[0] + at, u[1] + at, strain);
+  for (int k = 0; k < g->table->points && g->count < PL_LANES; k++)
+    for (int lane = g->count; lane < PL_LANES; lane++)
+      for (int c = 0; c < 3; c++)
+        strain[c][k * PL_LANES + lane] = 0;
+}
+
+/* --- forces ----------------------------------------------------------------------------------- */
+
+static inline __attribute__((always_inline)) void push_group(const cell_table *t, int lanes,
+                                                             const double *const traction[3],
+                                                             double *fx, double *fy) {
+  for (int n = 0; n < t->nodes; n++) {
+    double x[PL_LANES] = {0}, y[PL_LANES] = {0}, xs[PL_LANES] = {0}, ys[PL_LANES] = {0};
+    for (int e = t->first_of_node[n]; e < t->first_of_node[n + 1]; e++) {
+      const double *slope = t->slope + (long)t->entry[e] * 2 * lanes;
+      const long at = (long)t->point[e] * PL_LANES;
+      const double *xx = traction[0] + at, *yy = traction[1] + at, *xy = traction[2] + at;
+      for (int lane = 0; lane < PL_LANES; lane++) {
+        const double nx = slope[lanes == 1 ? 0 : lane], ny = slope[lanes == 1 ? 1 : lanes + lane];
+        x[lane] = pl_fma(nx, xx[lane], x[lane]);
+        xs[lane] = pl_fma(ny, xy[lane], xs[lane]);
+        y[lane] = pl_fma(ny, yy[lane], y[lane]);
+        ys[lane] = pl_fma(nx, xy[lane], ys[lane]);
+      }
+    }
+    double *to_x = fx + t->offset[n], *to_y = fy + t->offset[n];
+    for (int lane = 0; lane < PL_LANES; lane++) {
+      to_x[lane] += x[lane] + xs[lane];
+      to_y[lane] += y[lane] + ys[lane];
+    }
+  }
+}
+
+void cell_strips_push(const cell_strips *s, const cell_group *g, const double *const traction[3],
+                      double *const force[2]) {
+  const long at = -s->low * s->layout.stride + g->first;
+  if (g->table->lanes == 1)
+    push_group(g->table, 1, traction, force[0] + at, force[1] + at);
+  else
+    push_group(g->table, PL_LANES, traction, force[0] + at, force[1] + at);
+}
+
+long cell_strips_plane(const cell_strips *s) {
+  return (s->high - s->low + 2) * s->layout.stride;
+}

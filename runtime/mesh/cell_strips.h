@@ -1,0 +1,72 @@
+/* Points of integration side by side: PL_LANES cells of a row that have as many points each are a
+   group, and a vector holds the same point of all of them. What acts at a point stands on a regular
+   grid, so the nodes of neighbouring cells are neighbours in memory, and strains and forces are
+   found by loops of unit stride without lists of nodes:
+
+       cells  c0  c1  c2 ...                 node at `offset` from the lower left corner of c0:
+       point   0   0   0     lanes 0, 1, 2   displacement u[offset], u[offset + 1], u[offset + 2]
+       point   1   1   1                                                                            */
+#ifndef PERILAT_RUNTIME_CELL_STRIPS_H
+#define PERILAT_RUNTIME_CELL_STRIPS_H
+
+#include "runtime/mesh/integration_points.h"
+#include "runtime/mesh/node_layout.h"
+
+/* What acts at the points of a group. Away from edges, zones and cracks it is the same in all cells
+   (to rounding, 1e-11 of a slope) and stored once for all groups like it. */
+typedef struct cell_table {
+  int points;         /* of each cell */
+  int lanes;          /* 1: the same in all cells of the group; else PL_LANES, one for each */
+  int nodes, entries; /* nodes that act at some point; pairs of both */
+  int *offset;        /* [nodes] doubles in a plane, from the lower left corner of the first cell */
+  int *first;         /* [points + 1] entries of a point */
+  int *away;          /* [entries] offset of the node */
+  double *slope;      /* [entries][2][lanes] N_,x and N_,y, 1/m */
+  int *first_of_node; /* [nodes + 1] of the two below */
+  int *entry, *point; /* [entries] node by node */
+} cell_table;
+
+typedef struct cell_group {
+  int first, count; /* cells of its row: i of the first; at most PL_LANES */
+  int at;           /* place of its first point; PL_LANES for each point of a cell follow */
+  const cell_table *table;
+} cell_group;
+
+typedef struct cell_strips {
+  node_layout layout;
+  int rows;           /* of cells */
+  int *first_group;   /* [rows + 1] */
+  int *first_point;   /* [rows + 1] places of points */
+  cell_group *groups; /* [group_count] row by row */
+  int group_count;
+  int count;           /* places of points, those that fill vectors up included */
+  int most;            /* of a group */
+  int low, high;       /* rows of nodes that a row of cells acts on: from j + low to j + high */
+  double *volume;      /* [count] m^3; 0 of those that fill up */
+  int *of_cell;        /* [cells] place of its first point, -1 without; the next is PL_LANES on */
+  cell_table **tables; /* [table_count] */
+  int table_count, table_room;
+  long bytes; /* of it all */
+} cell_strips;
+
+/* The mesh's cracks are those of now. */
+void cell_strips_open(cell_strips *s, const mesh *m, const integration_points *p);
+void cell_strips_close(cell_strips *s);
+
+/* strain xx, yy, xy (of tensors) of the points of a group; u: planes laid out as `layout`;
+   strain[3][points of the group]; 0 in what fills up. `row`: of cells. */
+void cell_strips_strain(const cell_strips *s, int row, const cell_group *g,
+                        const double *const u[2], double *const strain[3]);
+/* Adds sum B^T t over the points of the group to the nodes' forces: traction[3][points of the
+   group], stress xx, yy, xy times volume, N m; force[2]: planes with the layout's stride that begin
+   with node row `row + low`, at node 0. */
+void cell_strips_push(const cell_strips *s, const cell_group *g, const double *const traction[3],
+                      double *const force[2]);
+/* Doubles of such a plane. */
+long cell_strips_plane(const cell_strips *s);
+
+/* Where the point at that place stands, m, and the lower left node of its cell. */
+void cell_group_place(const mesh *m, const integration_points *p, int row, const cell_group *g,
+                      int at, double place[2], int cell[2]);
+
+#endif
