@@ -291,6 +291,11 @@ sweep *cells_sweep(cells *c, const deck *k, const double *parameters, const tip_
   return w;
 }
 
+void cells_look(const sweep *w) {
+  const cells *c = own(w)->of;
+  if (c->tips) tips_at_rest(c->tips, w->body, &c->stencil);
+}
+
 cells_memory cells_remembered(const sweep *w) {
   cells_engine *e = own(w);
   const size_t plane = (size_t)w->lattice->size * sizeof(double);

@@ -505,6 +505,11 @@ void tips_after(tips *t, const body *w, mesh *m, node_stencil *k) {
   if (t->step % t->update_steps == 0 && some_grows(t)) grow(t, w, m, k);
 }
 
+void tips_at_rest(tips *t, const body *w, const node_stencil *k) {
+  for (int n = 0; n < t->count; n++)
+    look_at(t, &t->items[n], w, k); /* velocities and accelerations are 0, as they began */
+}
+
 void tips_replay(tips *t, mesh *m, node_stencil *k) {
   if (t->pieces.count < 0 || t->pieces.count > TIPS_MOST_PIECES) t->pieces.count = 0;
   for (int64_t n = 0; n < t->pieces.count; n++)

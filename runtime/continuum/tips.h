@@ -85,6 +85,8 @@ void tips_before(tips *t, const body *w, const node_stencil *k);
 /* When the step n-1 -> n has moved them: a look at t_n, if it is time for one, and growth; `m` and `k`
    are the mesh and its stiffness, which growth changes. */
 void tips_after(tips *t, const body *w, mesh *m, node_stencil *k);
+/* A look at a body that stands still (static_solution.h). */
+void tips_at_rest(tips *t, const body *w, const node_stencil *k);
 /* After `pieces` was read from a checkpoint: the mesh and its stiffness as they were then. */
 void tips_replay(tips *t, mesh *m, node_stencil *k);
 /* Pieces of a tip so far: points of its path, in order; *at begins with where the tip was at the

@@ -291,6 +291,7 @@ static void check_traction(deck_reader *r, const namelist_group *from, void *int
                 "the line that is loaded ends where it begins");
   if (!deck_load_read(r->memory, from, &traction_kind, &item->force, r->d)) return;
   deck_warn_late(r, &item->item, "start", item->force.start);
+  spread(r, from, &item->force);
 }
 
 DECK_MORE(traction, force, .identity = "mesh", .check = check_traction,

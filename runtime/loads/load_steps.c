@@ -228,6 +228,22 @@ static void keep_all_turning(const loads *l, const body *w) {
   }
 }
 
+double load_steps_motion(const loads *l, const body *w, const constraint *c, long step) {
+  return motion_at(l, w, c, step);
+}
+
+double load_steps_factor(const loads *l, const body *w, const applied *f, long step) {
+  return factor_at(l, w, f, step);
+}
+
+void load_steps_weigh(const loads *l, body *w, long step) {
+  if (w->weight) set_gravity(l, w, step);
+}
+
+bool load_steps_holds(const loads *l, const body *w, const constraint *c) {
+  return is_held(l, w, c, (long)l->clock.first);
+}
+
 void load_steps_increment(loads *l, const body *w, load_clock clock) {
   l->clock = clock;
   for (long i = 0; i < l->constraint_count; i++) {

@@ -239,7 +239,8 @@ static bool open_materials(run_body *b, const deck *k, rows *const *built, diagn
   return planes && mass && find_limit(b, k, d);
 }
 
-/* The value of an element-free node is a parameter, not its displacement: it cannot be held. */
+/* The value of an element-free node is a parameter, not its displacement: it cannot be held, but by
+   what bears nothing in a static run (mesh_rest.h). */
 static bool moves_elements_alone(const run_body *b, const deck_item *item, int region,
                                  diagnostics *d) {
   const region_sites *at = region >= 0 ? &b->loads->regions[region] : NULL;
@@ -263,7 +264,7 @@ static bool moves_elements_alone(const run_body *b, const deck_item *item, int r
 
 static bool holds_elements_alone(const run_body *b, const deck *k, diagnostics *d) {
   bool good = true;
-  for (int n = 0; n < k->support_count && b->loads; n++)
+  for (int n = 0; n < k->support_count && b->loads && !k->relaxation.solved; n++)
     good = moves_elements_alone(b, &k->supports[n].item, deck_find_region(k, k->supports[n].region),
                                 d) &&
            good;
@@ -389,6 +390,7 @@ bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d) {
   b->body = b->state->body;
   loads_point_masses(b->loads, b->body);
   if (k->gravity_count > 0) body_add_gravity(b->body);
+  if (b->cells && k->relaxation.solved) b->rest = mesh_rest_new(b->cells, b->loads, b->body);
   return loads_initial_motion(b->loads, b->body, d);
 }
 
@@ -400,6 +402,7 @@ damage_law *run_body_damages(const run_body *b) {
 }
 
 void run_body_free(run_body *b) {
+  mesh_rest_free(b->rest);
   loads_free(b->loads);
   sweep_free(b->state);
   for (int n = 0; n < b->law_count; n++) {
