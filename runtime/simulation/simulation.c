@@ -274,6 +274,10 @@ const rows *simulation_rows(const simulation *s, int number) {
   return s->bodies[number].lattice_rows;
 }
 
+const cells *simulation_cells(const simulation *s, int number) {
+  return s->bodies[number].cells;
+}
+
 const step_limit *simulation_step_limit(const simulation *s) {
   return &s->limit;
 }
