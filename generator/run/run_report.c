@@ -736,9 +736,8 @@ static void conclude_increments(const run *r) {
   const long increments = simulation_increments(r->simulation, &unbalanced);
   if (increments == 0) return;
   if (r->deck->relaxation.solved) {
-    printf("  static     %ld increment%s solved; unbalanced force left: at most %.2g of the "
-           "reactions or loads\n",
-           increments, increments == 1 ? "" : "s", largest_of(r, "relaxation_unbalance"));
+    printf("  static     unbalanced force left: at most %.2g of the reactions or loads\n",
+           largest_of(r, "relaxation_unbalance"));
     return;
   }
   printf("  increments %ld, in the mean %ld steps each, at most %.0f; unbalanced force left: at "
@@ -777,6 +776,10 @@ static void conclude_monitor(const run *r, int k) {
 }
 
 static void conclude_speed(const run *r, double seconds, long steps) {
+  if (r->deck->relaxation.solved) {
+    printf("%ld solution%s in %.2f s\n", steps, steps == 1 ? "" : "s", seconds);
+    return;
+  }
   const double rate = (double)steps / pl_fmax(seconds, 1e-9);
   double bonds = 0, nodes = 0;
   for (int b = 0; b < simulation_bodies(r->simulation); b++) {

@@ -15,13 +15,27 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
+/* Where the line meets the straight one through a row (axis 1) or column of nodes of a mapped mesh;
+   no number where they are parallel. */
+static double cut_by_row(const mesh *m, int axis, int k, const double from[2],
+                         const double to[2]) {
+  double a[2], b[2];
+  const int last = m->nodes[1 - axis] - 1;
+  mesh_place(m, axis ? mesh_node(m, 0, k) : mesh_node(m, k, 0), a);
+  mesh_place(m, axis ? mesh_node(m, last, k) : mesh_node(m, k, last), b);
+  const double row[2] = {b[0] - a[0], b[1] - a[1]}, way[2] = {to[0] - from[0], to[1] - from[1]};
+  return ((a[0] - from[0]) * row[1] - (a[1] - from[1]) * row[0]) /
+         (way[0] * row[1] - way[1] * row[0]);
+}
+
 /* Parameters of the line, 0 .. 1, at which it leaves a cell; with its ends. */
 static int cut_line(const mesh *m, const double from[2], const double to[2], double *cut) {
   int count = 0;
   cut[count++] = 0;
   for (int a = 0; a < 2; a++)
     for (int k = 0; k < m->nodes[a]; k++) {
-      const double u = (mesh_at(m, a, k) - from[a]) / (to[a] - from[a]);
+      const double u = m->mapped ? cut_by_row(m, a, k, from, to)
+                                 : (mesh_at(m, a, k) - from[a]) / (to[a] - from[a]);
       if (u > 0 && u < 1) cut[count++] = u;
     }
   cut[count++] = 1;

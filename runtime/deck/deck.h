@@ -74,6 +74,8 @@ typedef struct deck_lattice {
   double within; /* spacings; to sites */
   /* of a mesh: the corner of least coordinates, extent, nodes along x and y */
   double corner[3], size[3]; /* m */
+  const double *corners;     /* of a quadrilateral: x1, y1, ... counter-clockwise, m; else NULL */
+  int corner_count;          /* values: 8, or 0 */
   double nodes[2];           /* whole */
   mesh_method method;
   double support;   /* d_max, spacings */
