@@ -7,7 +7,9 @@
    stiffness loses as a crack advances, with the displacements held, is energy that the crack has
    released (ledger).
 
-   An end of a crack inside the mesh is a tip; one on its border is not. */
+   An end of a crack inside the mesh is a tip; one on its border is not. A crack on an edge of the mesh,
+   where this is half of a body and its mirror image, hides nothing: it is a free face, and its tip has
+   the half of the box that lies in the mesh, which counts twice for K_I; K_II is 0. */
 #ifndef PERILAT_RUNTIME_TIPS_H
 #define PERILAT_RUNTIME_TIPS_H
 

@@ -138,12 +138,13 @@ typedef struct deck_material {
   bool beside; /* other laws are at work on the lattice, too */
 } deck_material;
 
-typedef struct deck_crack { /* in the element-free part of a mesh */
+typedef struct deck_crack { /* in the element-free part of a mesh, or on its edge */
   deck_item item;
   const char *name, *mesh;
   const double *points; /* x1, y1, x2, y2, ..., m */
   int point_count;      /* pairs */
   bool grows;
+  bool symmetry;          /* on the edge of a mesh that is half of a body */
   const char *model;      /* law of its tips; NULL where it does not grow */
   deck_material material; /* that law with what the deck sets of it */
 } deck_crack;

@@ -226,6 +226,12 @@ static const deck_key_info crack_keys[] = {
      .fallback = ".false.",
      DECK_AT(crack, grows),
      .doc = "its tips run on as the law says"},
+    {.name = "symmetry",
+     .type = DECK_LOGICAL,
+     .fallback = ".false.",
+     DECK_AT(crack, symmetry),
+     .doc = "it lies on a straight edge of the mesh, which is half of a body and its mirror image; "
+            "beyond the tip a support holds the edge. Finite elements, too"},
     {.name = "model",
      .type = DECK_NAME,
      DECK_AT(crack, model),
@@ -262,6 +268,11 @@ static void check_crack(deck_reader *r, const namelist_group *from, void *into) 
   item->material = (deck_material){
       .item = item->item, .lattice = item->mesh, .mesh = item->mesh, .model = item->model};
   deck_assignments_read(r->memory, from, &deck_group_crack, &item->material, r->d);
+  if (item->grows && item->symmetry) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "symmetry"),
+                "a crack on a line of symmetry does not grow: supports hold its way");
+    diag_hint(r->d, "leave out `grows`, or give the whole body");
+  }
   if (item->grows && !item->model) {
     diag_report(r->d, DIAG_MISSING_KEY, from->where, "a crack that grows needs a `model`");
     diag_hint(r->d, "such as model = 'lefm'  K_Ic = '0.8 MPa*m^(1/2)'");
@@ -273,8 +284,8 @@ static void check_crack(deck_reader *r, const namelist_group *from, void *into) 
 }
 
 DECK_LIST(crack, .identity = "name", .open = true, .check = check_crack,
-          .doc = "A crack in the element-free part of a mesh: nodes do not act across it. Every "
-                 "other key sets a parameter or an option of its law.");
+          .doc = "A crack in the element-free part of a mesh: nodes do not act across it; or on "
+                 "its edge, by `symmetry`. Every other key sets a parameter or an option of its law.");
 
 static const deck_key_info tips_keys[] = {
     {.name = "integral",
