@@ -163,6 +163,12 @@ void mesh_rest_work(mesh_rest *r) {
 
 /* --- before a run ----------------------------------------------------------------------------- */
 
+static bool has_single_points(const mesh *m) {
+  for (int c = 0; c < mesh_cell_count(m); c++)
+    if (m->cell[c] == CELL_ELEMENT && m->element_gauss[c] == 1) return true;
+  return false;
+}
+
 static bool is_stiff(mesh_rest *r, const char *name, span where, diagnostics *d) {
   static_result found = {.solved = false};
   double at[2];
@@ -172,8 +178,11 @@ static bool is_stiff(mesh_rest *r, const char *name, span where, diagnostics *d)
   diag_report(d, DIAG_BAD_VALUE, where,
               "the mesh `%s` can move freely: nothing holds its node at (%.6g, %.6g) mm along %s",
               name, 1e3 * at[0], 1e3 * at[1], found.loose_axis ? "y" : "x");
-  diag_hint(d, "hold it by a `&support` so that it can neither slide nor turn: both directions of "
-               "one node, and one of another");
+  diag_hint(d, has_single_points(&r->c->mesh)
+                   ? "elements with one point of integration have motions without stiffness: give "
+                     "`gauss = 2`; and hold the mesh so that it can neither slide nor turn"
+                   : "hold it by a `&support` so that it can neither slide nor turn: both "
+                     "directions of one node, and one of another");
   return false;
 }
 
