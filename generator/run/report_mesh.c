@@ -24,8 +24,12 @@ static void print_cells(const mesh *m) {
 /* "mesh       beam: 74 x 25 nodes, 3.13151 x 3.175 mm apart, 1752 cells: ...; 24048 points" */
 static void announce_cells(const cells *c, const deck_mesh *k) {
   const mesh *m = &c->mesh;
-  printf("  mesh       %s: %d x %d nodes, %.6g x %.6g mm apart, %d cells", k->name, m->nodes[0],
-         m->nodes[1], 1e3 * m->spacing[0], 1e3 * m->spacing[1], mesh_cell_count(m));
+  printf("  mesh       %s: %d x %d nodes, ", k->name, m->nodes[0], m->nodes[1]);
+  if (m->mapped)
+    printf("at least %.6g mm apart", 1e3 * k->spacing);
+  else
+    printf("%.6g x %.6g mm apart", 1e3 * m->spacing[0], 1e3 * m->spacing[1]);
+  printf(", %d cells", mesh_cell_count(m));
   print_cells(m);
   printf("; %d points\n", c->points.count);
 }
@@ -48,7 +52,7 @@ static void announce_law(const run *r, int interaction, const cells *c) {
 }
 
 /* "crack      notch: 19.05 mm, grows by lefm; its 1 tip is looked at every 42 us" */
-static void announce_crack(const tips *t, const deck_crack *k, double step) {
+static void announce_crack(const tips *t, const deck_crack *k, double step, bool at_rest) {
   int count = 0;
   for (int n = 0; n < t->count; n++)
     count += t->items[n].of == k;
@@ -65,6 +69,10 @@ static void announce_crack(const tips *t, const deck_crack *k, double step) {
     printf("grows by %s", k->model);
   else
     fputs("does not grow", stdout);
+  if (at_rest) {
+    putchar('\n');
+    return;
+  }
   printf("; its tip%s looked at every %.4g us\n", count == 1 ? " is" : "s are",
          1e6 * step * (double)t->check_steps);
 }
@@ -77,5 +85,6 @@ void announce_mesh(const run *r, int lattice) {
     if (k->interactions[n].lattice == lattice) announce_law(r, n, c);
   for (int n = 0; n < k->crack_count && c->tips; n++)
     if (strcmp(k->cracks[n].mesh, k->lattices[lattice].name) == 0)
-      announce_crack(c->tips, &k->cracks[n], simulation_step_limit(r->simulation)->step);
+      announce_crack(c->tips, &k->cracks[n], simulation_step_limit(r->simulation)->step,
+                     k->relaxation.solved);
 }

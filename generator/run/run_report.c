@@ -355,6 +355,11 @@ static void announce_line_load(const run *r, int force) {
 /* Loads come in the deck's time, which has nothing to do with that of the steps. */
 static void announce_increments(const run *r) {
   const deck_relaxation *k = &r->deck->relaxation;
+  if (k->solved) {
+    printf("  static     %d increment%s, each the solution of K u = F\n", k->increments,
+           k->increments == 1 ? "" : "s");
+    return;
+  }
   printf(
       "  increments %d, quasi-static, each until the unbalanced force is %.4g of the reactions or "
       "loads, or for %ld steps\n",
@@ -393,9 +398,19 @@ static void announce_frequencies(const run *r) {
   }
 }
 
+/* "0.3061 us: 0.25 of the stable step 1.224 us (rotation mode rules)" */
+static void announce_step(const run *r) {
+  const step_limit *limit = simulation_step_limit(r->simulation);
+  printf("%.4g us: %.3g of the stable step %.4g us (%s mode%s", 1e6 * limit->step,
+         limit->step / limit->limit, 1e6 * limit->limit, limit->mode,
+         limit->at_surface ? " at a surface" : "");
+  if (r->deck->lattice_count > 1)
+    printf(" of %s", r->deck->lattices[simulation_ruling_body(r->simulation)].name);
+  puts(" rules)");
+}
+
 void announce(const run *r) {
   const deck_simulation *s = &simulation_deck(r->simulation)->simulation;
-  const step_limit *limit = simulation_step_limit(r->simulation);
   printf("%s\n", s->title ? s->title : r->options->deck_path);
   for (int k = 0; k < r->deck->lattice_count; k++) {
     if (deck_lattice_is_mesh(&r->deck->lattices[k])) {
@@ -422,12 +437,7 @@ void announce(const run *r) {
   else
     printf("  time       %.6g ms in %ld steps of ", 1e3 * s->end_time,
            simulation_step_count(r->simulation));
-  printf("%.4g us: %.3g of the stable step %.4g us (%s mode%s", 1e6 * limit->step,
-         limit->step / limit->limit, 1e6 * limit->limit, limit->mode,
-         limit->at_surface ? " at a surface" : "");
-  if (r->deck->lattice_count > 1)
-    printf(" of %s", r->deck->lattices[simulation_ruling_body(r->simulation)].name);
-  puts(" rules)");
+  if (!r->deck->relaxation.solved) announce_step(r);
   announce_frequencies(r);
   printf("  machine    %d thread%s, %.1f MiB\n", simulation_threads(r->simulation),
          simulation_threads(r->simulation) == 1 ? "" : "s",
@@ -760,6 +770,11 @@ static void conclude_increments(const run *r) {
   long unbalanced;
   const long increments = simulation_increments(r->simulation, &unbalanced);
   if (increments == 0) return;
+  if (r->deck->relaxation.solved) {
+    printf("  static     unbalanced force left: at most %.2g of the reactions or loads\n",
+           largest_of(r, "relaxation_unbalance"));
+    return;
+  }
   printf("  increments %ld, in the mean %ld steps each, at most %.0f; unbalanced force left: at "
          "most %.2g of the "
          "reactions or loads\n",
@@ -796,6 +811,10 @@ static void conclude_monitor(const run *r, int k) {
 }
 
 static void conclude_speed(const run *r, double seconds, long steps) {
+  if (r->deck->relaxation.solved) {
+    printf("%ld solution%s in %.2f s\n", steps, steps == 1 ? "" : "s", seconds);
+    return;
+  }
   const double rate = (double)steps / pl_fmax(seconds, 1e-9);
   double bonds = 0, nodes = 0;
   for (int b = 0; b < simulation_bodies(r->simulation); b++) {

@@ -421,6 +421,10 @@ sweep *cells_sweep(cells *c, const deck *k, const double *parameters, const tip_
 }
 
 /* --- what others ask -------------------------------------------------------------------------- */
+void cells_look(const sweep *w) {
+  const cells *c = own(w)->of;
+  if (c->tips) tips_at_rest(c->tips, w->body, &c->stencil);
+}
 
 cells_memory cells_remembered(const sweep *w) {
   cells_engine *e = own(w);

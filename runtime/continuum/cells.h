@@ -59,6 +59,8 @@ double cells_stiffness(cells *c);
 bool cells_worst_point(const sweep *w, long site, point_state *out);
 /* B, of what the body does not count. */
 double cells_bytes(const cells *c);
+/* Stress intensities at the tips, where the body stands still. */
+void cells_look(const sweep *w);
 
 /* What the engine remembers from step to step, for checkpoints; and after one was read. */
 enum { CELLS_PLANES = 9 };

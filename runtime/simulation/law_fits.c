@@ -111,6 +111,14 @@ static bool mesh_can_have(const pl_law *law, const deck *k, int lattice, diagnos
   const deck_item *item = NULL;
   const char *why = NULL;
   if (!law->linear && !cracks_fit(law, k, m, d)) return false;
+  if (!law->linear && k->relaxation.solved) {
+    diag_report(d, DIAG_NOT_SUPPORTED, law_fits_where(k, lattice),
+                "the law `%s` is not linear: `&static` solves equations of linear laws alone",
+                law->name);
+    diag_hint(d, "`&relaxation increments = %d` in its place brings a body of any law to rest",
+              k->relaxation.increments);
+    return false;
+  }
   for (int n = 0; n < k->material_count && !item; n++)
     if (k->materials[n].lattice && strcmp(k->materials[n].lattice, m->name) == 0 &&
         (k->materials[n].region || k->materials[n].between[0])) {
