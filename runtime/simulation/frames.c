@@ -8,6 +8,7 @@
 
 #include "dsl/base/arena.h"
 #include "runtime/analysis/particle_tensors.h"
+#include "runtime/continuum/crack_paths.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/output_fields.h"
 #include "runtime/interaction/damage.h"
@@ -47,6 +48,13 @@ typedef struct frame_tensor {
 enum { OUTPUT_TENSORS(X) TENSORS };
 #undef X
 
+enum { PATH_NAME = NAMELIST_LONGEST_NAME + sizeof "/points" };
+typedef struct frame_path { /* a crack of a mesh */
+  char name[PATH_NAME];
+  const tips *tips;
+  const deck_crack *of;
+} frame_path;
+
 struct frame_set {
   const deck_output *asked;
   const run_body *bodies;
@@ -57,6 +65,8 @@ struct frame_set {
   const run_clock *clock;
   bond_forces **forces;  /* [body_count] NULL unless some field needs them */
   frame_tensor *tensors; /* [TENSORS][body_count] */
+  frame_path *paths;     /* [path_count] those of the last fields */
+  int path_count;
   frame_field *fields;
   frame_source *sources; /* [count][law_count]; of bonds only that of their law */
   int count;
@@ -501,9 +511,36 @@ static void add_cracks(frame_set *f, const monitor *m) {
                                         .long_name = "of each crack: place along the line, width"};
 }
 
+/* Of the mesh of that body. */
+static void add_path(frame_set *f, const run_body *of, const deck_crack *c) {
+  frame_path *path = &f->paths[f->path_count++];
+  *path = (frame_path){.tips = of->cells->tips, .of = c};
+  snprintf(path->name, sizeof path->name, "%s/points", c->name);
+  const int64_t steps = f->clock->relaxation ? INT64_MAX : f->clock->step_count;
+  f->fields[f->count++] =
+      (frame_field){.name = path->name,
+                    .unit = "m",
+                    .of_cracks = true,
+                    .mesh = of->name,
+                    .components = 2,
+                    .count = crack_path_most(path->tips, c, steps),
+                    .kind = "path",
+                    .long_name = "points of the crack from its first to its last, with what has "
+                                 "grown at either end"};
+}
+
+static void add_paths(frame_set *f, const deck *k) {
+  f->paths = must_calloc((size_t)k->crack_count + 1, sizeof *f->paths);
+  for (int n = 0; n < k->crack_count; n++)
+    for (int b = 0; b < f->body_count; b++)
+      if (f->bodies[b].cells && strcmp(f->bodies[b].name, k->cracks[n].mesh) == 0)
+        add_path(f, &f->bodies[b], &k->cracks[n]);
+}
+
 frame_set *frames_new(const deck_output *asked, const run_body *bodies, int count,
                       const monitors *watched, const run_clock *clock) {
-  const size_t most = most_fields(bodies, count) + (size_t)watched->count;
+  const size_t most =
+      most_fields(bodies, count) + (size_t)(watched->count + watched->deck->crack_count);
   frame_set *f = must_calloc(1, sizeof *f);
   *f = (frame_set){.asked = asked,
                    .bodies = bodies,
@@ -526,6 +563,7 @@ frame_set *frames_new(const deck_output *asked, const run_body *bodies, int coun
     add_of_law(f, n);
   for (int m = 0; m < watched->count; m++)
     add_cracks(f, &watched->items[m]);
+  add_paths(f, watched->deck);
   return f;
 }
 
@@ -538,6 +576,7 @@ void frames_free(frame_set *f) {
       free(f->tensors[k].values[c]);
   free(f->forces);
   free(f->tensors);
+  free(f->paths);
   free(f->fields);
   free(f->sources);
   free(f);
@@ -572,8 +611,18 @@ static void values_of_cracks(const frame_set *f, const frame_field *field, doubl
   }
 }
 
+static void values_of_path(const frame_path *path, long most, double *values) {
+  const int count = crack_path(path->tips, path->of, (double(*)[2])values, (int)most);
+  for (long k = 2 * (long)count; k < 2 * most; k++)
+    values[k] = NAN;
+}
+
 void frames_values(const frame_set *f, int field, double *values) {
   const frame_field *of = &f->fields[field];
+  if (of->mesh) {
+    values_of_path(&f->paths[field - (f->count - f->path_count)], of->count, values);
+    return;
+  }
   if (of->of_cracks) {
     values_of_cracks(f, of, values);
     return;
