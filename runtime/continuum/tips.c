@@ -8,7 +8,7 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "runtime/crack/hoop_stress.h"
-#include "runtime/mesh/shape_functions.h"
+#include "runtime/mesh/mesh_fields.h"
 
 static const double ON_BORDER = 1e-6; /* spacings */
 
@@ -240,18 +240,15 @@ static tip_point fields_at(const tips *t, const body *w, const node_stencil *k, 
   tip_point p = {.at = {at[0], at[1]}, .area = area};
   point_shape s;
   shape_functions(k->of, cell, at, &s);
-  for (int q = 0; q < s.count; q++) {
-    const long site = node_layout_at(&k->layout, s.node[q]);
+  mesh_field(&s, &k->layout, (const double *const *)w->displacement, NULL, p.gradient);
+  for (int q = 0; q < s.count; q++)
     for (int d = 0; d < 2; d++) {
-      const double u = w->displacement[d][site], v = t->velocity[d][s.node[q]];
-      p.gradient[d][0] += s.nx[q] * u;
-      p.gradient[d][1] += s.ny[q] * u;
+      const double v = t->velocity[d][s.node[q]];
       p.velocity[d] += s.n[q] * v;
       p.velocity_gradient[d][0] += s.nx[q] * v;
       p.velocity_gradient[d][1] += s.ny[q] * v;
       p.acceleration[d] += s.n[q] * t->acceleration[d][s.node[q]];
     }
-  }
   const double e[3] = {p.gradient[0][0], p.gradient[1][1], p.gradient[0][1] + p.gradient[1][0]};
   const plane_stiffness *law = &k->laws[k->law_of_cell ? k->law_of_cell[cell] : 0];
   for (int a = 0; a < 3; a++)
