@@ -305,6 +305,41 @@ static void bond_table(run *r, result_header *h) {
   h->bonds = bonds;
 }
 
+/* Its cells but those that are not there, nodes counter-clockwise. */
+static result_mesh mesh_of(run *r, const char *name, const mesh *m, long first_particle) {
+  const size_t most = (size_t)mesh_cell_count(m);
+  int32_t *nodes = arena_alloc(r->memory, 4 * most * sizeof *nodes),
+          *method = arena_alloc(r->memory, most * sizeof *method);
+  long count = 0;
+  for (int c = 0; c < mesh_cell_count(m); c++) {
+    int corner[4];
+    if (m->cell[c] == CELL_ABSENT) continue;
+    mesh_corners(m, c, corner);
+    const int32_t around[4] = {corner[0], corner[1], corner[3], corner[2]};
+    memcpy(nodes + 4 * count, around, sizeof around);
+    method[count++] = (int32_t)m->cell[c];
+  }
+  return (result_mesh){.name = name,
+                       .first_particle = first_particle,
+                       .node_count = mesh_node_count(m),
+                       .cell_count = count,
+                       .cells = nodes,
+                       .method = method,
+                       .thickness = m->thickness};
+}
+
+static void mesh_table(run *r, result_header *h) {
+  const int bodies = simulation_bodies(r->simulation);
+  result_mesh *meshes = arena_alloc(r->memory, (size_t)bodies * sizeof *meshes);
+  long first = 0;
+  for (int b = 0; b < bodies; b++) {
+    const mesh *m = simulation_mesh(r->simulation, b);
+    if (m) meshes[h->mesh_count++] = mesh_of(r, r->deck->lattices[b].name, m, first);
+    first += (long)own_particles(r, b);
+  }
+  h->meshes = meshes;
+}
+
 /* What a law says may take several lines. */
 static const char *one_line(const run *r, const char *words) {
   char *line = arena_text(r->memory, words, strlen(words));
@@ -318,6 +353,7 @@ static void frame_table(run *r, result_header *h) {
   const frame_field *offered;
   h->field_count = simulation_frame_fields(r->simulation, &offered);
   result_field *fields = arena_alloc(r->memory, (size_t)h->field_count * sizeof *fields);
+  result_crack *cracks = arena_alloc(r->memory, (size_t)h->field_count * sizeof *cracks);
   for (int k = 0; k < h->field_count; k++) {
     const frame_field *f = &offered[k];
     fields[k] = (result_field){f->name,
@@ -327,8 +363,10 @@ static void frame_table(run *r, result_header *h) {
                                f->count,
                                f->kind,
                                one_line(r, f->long_name)};
+    if (f->mesh) cracks[h->crack_count++] = (result_crack){f->name, f->mesh};
   }
   h->fields = fields;
+  h->cracks = cracks;
 }
 
 /* What made the kernels: now, when the solver was built, or nothing. */
@@ -369,6 +407,7 @@ result_header describe_result(run *r) {
   name_compiler(r, &h);
   particle_table(r, &h);
   bond_table(r, &h);
+  mesh_table(r, &h);
   return h;
 }
 

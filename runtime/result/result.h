@@ -59,7 +59,6 @@ typedef struct result_field { /* of a frame */
      "path" of a crack of a mesh; else "other" */
   const char *kind;
   const char *long_name; /* in words; NULL: nobody has said */
-  const char *mesh;      /* of a path: whose crack it is; else NULL */
 } result_field;
 
 /* The points of a crack, "notch/points"; `count` is how many it can have. */
@@ -97,6 +96,10 @@ typedef struct result_mesh {
   double thickness;      /* m */
 } result_mesh;
 
+typedef struct result_crack { /* whose points are a path */
+  const char *field, *mesh;   /* "notch/points", "beam" */
+} result_crack;
+
 typedef struct result_header {
   const char *path;        /* of the final file */
   const char *fingerprint; /* says which run the frames belong to */
@@ -120,6 +123,8 @@ typedef struct result_header {
   int interaction_count;
   const result_mesh *meshes;
   int mesh_count;
+  const result_crack *cracks; /* [crack_count] all paths */
+  int crack_count;
   const result_field *fields;
   int field_count;
 } result_header;
