@@ -158,7 +158,8 @@
   X(export, "--field", "NAME",                                                                     \
     "this field of the frame only, not all; may be given several times")                           \
   X(export, "--bonds", "", "the bonds of the frame, not its particles")                            \
-  X(export, "--cracks", "NAME", "the cracks across the line of this monitor, frame by frame")      \
+  X(export, "--cracks", "NAME",                                                                    \
+    "points of this crack, or the cracks across the line of this monitor, frame by frame")         \
   X(export, "--json", "", "as one JSON document on the standard output")                           \
   X(info, "--spacing", "L", "of the lattice that the law is put on, e.g. '10 mm'")                 \
   X(info, "--thickness", "T", "of the plate, e.g. '0.1 m'")                                        \
