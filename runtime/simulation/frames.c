@@ -9,6 +9,7 @@
 #include "dsl/base/arena.h"
 #include "runtime/analysis/particle_tensors.h"
 #include "runtime/continuum/crack_paths.h"
+#include "runtime/continuum/node_fields.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/output_fields.h"
 #include "runtime/interaction/damage.h"
@@ -44,7 +45,7 @@ typedef struct frame_tensor {
   int64_t found_step; /* step that the values are of; -1: none */
 } frame_tensor;
 
-#define X(name, unit, words) TENSOR_##name,
+#define X(name, unit, words, of_nodes) TENSOR_##name,
 enum { OUTPUT_TENSORS(X) TENSORS };
 #undef X
 
@@ -147,8 +148,31 @@ static void values_of_constant(const frames_of *of, const frame_source *from, do
 
 /* --- fields of any law ------------------------------------------------------------------------ */
 
+/* Nodes have parameters of their fields, which are not these themselves. */
+static void node_values(const frames_of *of, double *const *planes, double *values) {
+  const double *const two[2] = {planes[0], planes[1]};
+  node_field_values(of->body->cells, two, values);
+}
+
 static void values_of_displacement(const frames_of *of, const frame_source *from, double *values) {
-  site_values(of, of->body->body->displacement, from->components, values);
+  if (of->body->cells)
+    node_values(of, of->body->body->displacement, values);
+  else
+    site_values(of, of->body->body->displacement, from->components, values);
+}
+
+/* From those of the nodes' parameters, in place. */
+static void smooth_velocity(const frames_of *of, double *values) {
+  const rows *g = of->body->lattice_rows;
+  double *planes[2];
+  for (int c = 0; c < 2; c++) {
+    planes[c] = must_calloc((size_t)g->size, sizeof **planes);
+    for (long p = 0; p < g->particle_count; p++)
+      planes[c][g->particle_site[p]] = values[2 * p + c];
+  }
+  node_values(of, planes, values);
+  free(planes[0]);
+  free(planes[1]);
 }
 
 static void values_of_velocity(const frames_of *of, const frame_source *from, double *values) {
@@ -157,6 +181,7 @@ static void values_of_velocity(const frames_of *of, const frame_source *from, do
     for (int c = 0; c < from->components; c++)
       values[p * from->components + c] = load_steps_velocity(of->body->loads, of->body->state->body,
                                                              c, g->particle_site[p], of->step);
+  if (of->body->cells) smooth_velocity(of, values);
 }
 
 static void values_of_rotation(const frames_of *of, const frame_source *from, double *values) {
@@ -193,6 +218,12 @@ static void values_of_dissipated(const frames_of *of, const frame_source *from, 
 /* --- tensors ---------------------------------------------------------------------------------- */
 
 static void find_stress(const frames_of *of, bond_forces *forces, double *const *values) {
+  if (of->body->cells) {
+    double *const *u = of->body->body->displacement;
+    const double *const two[2] = {u[0], u[1]};
+    node_field_stress(of->body->cells, of->body->laws[0].parameters, two, values);
+    return;
+  }
   bond_forces_find(forces, -1);
   particle_stress(forces, of->body->body, values);
 }
@@ -200,6 +231,11 @@ static void find_stress(const frames_of *of, bond_forces *forces, double *const 
 static void find_strain(const frames_of *of, bond_forces *forces, double *const *values) {
   const body *b = of->body->body;
   (void)forces;
+  if (of->body->cells) {
+    const double *const two[2] = {b->displacement[0], b->displacement[1]};
+    node_field_strain(of->body->cells, two, values);
+    return;
+  }
   for (long p = 0; p < b->lattice->particle_count; p++) {
     const long site = b->lattice->particle_site[p];
     double here[TENSOR_MOST] = {0};
@@ -218,12 +254,12 @@ static void values_of_tensor(const frames_of *of, const frame_source *from, doub
 }
 
 typedef struct tensor_field {
-  const char *name, *unit, *words;
+  const char *name, *unit, *words, *of_nodes;
   tensor_values *find;
 } tensor_field;
 
 static const tensor_field tensor_fields[] = {
-#define X(name, unit, words) {#name, unit, words, find_##name},
+#define X(name, unit, words, of_nodes) {#name, unit, words, of_nodes, find_##name},
     OUTPUT_TENSORS(X)
 #undef X
 };
@@ -392,7 +428,7 @@ static void begin_tensor(frame_set *f, int k, int b) {
   frame_tensor *t = &f->tensors[k * f->body_count + b];
   const tensor_component *component;
   const int count = tensor_components(of->body->dimensions, &component);
-  if (k == TENSOR_stress) f->forces[b] = bond_forces_new(of->state);
+  if (k == TENSOR_stress && !of->cells) f->forces[b] = bond_forces_new(of->state);
   *t = (frame_tensor){.find = tensor_fields[k].find, .forces = f->forces[b], .found_step = -1};
   for (int c = 0; c < count; c++) {
     t->values[c] = must_calloc((size_t)of->lattice_rows->size, sizeof(double));
@@ -420,7 +456,7 @@ static void add_tensor(frame_set *f, int k, int b) {
                                .components = 1,
                                .interaction = first_law(f, b),
                                .kind = "other",
-                               .long_name = from->words};
+                               .long_name = f->bodies[b].cells ? from->of_nodes : from->words};
     add(f, field, values_of_tensor, c)->tensor = t;
   }
 }
