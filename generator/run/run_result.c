@@ -18,6 +18,7 @@
 #include "runtime/lattice/parameter_planes.h"
 #include "runtime/lattice/rows_select.h"
 #include "runtime/lattice/shape_matrix.h"
+#include "runtime/mesh/node_layout.h"
 #include "runtime/simulation/simulation_save.h"
 
 /* --- paths and fingerprint -------------------------------------------------------------------- */
@@ -305,25 +306,35 @@ static void bond_table(run *r, result_header *h) {
   h->bonds = bonds;
 }
 
-/* Its cells but those that are not there, nodes counter-clockwise. */
-static result_mesh mesh_of(run *r, const char *name, const mesh *m, long first_particle) {
+/* The corners of a cell as particles of its mesh, counter-clockwise; false: one is not there. */
+static bool corners_of(const mesh *m, const rows *w, const node_layout *l, int cell,
+                       int32_t around[4]) {
+  static const int order[4] = {0, 1, 3, 2};
+  int corner[4];
+  bool whole = m->cell[cell] != CELL_ABSENT;
+  mesh_corners(m, cell, corner);
+  for (int k = 0; k < 4; k++) {
+    around[k] = w->site_particle[node_layout_at(l, corner[order[k]])];
+    whole = whole && around[k] >= 0;
+  }
+  return whole;
+}
+
+/* Its cells but those that are not there as a whole. */
+static result_mesh mesh_of(run *r, int number, const mesh *m, long first_particle) {
   const size_t most = (size_t)mesh_cell_count(m);
-  int32_t *nodes = arena_alloc(r->memory, 4 * most * sizeof *nodes),
+  const rows *w = simulation_rows(r->simulation, number);
+  const node_layout l = node_layout_of(m->nodes, m->support);
+  int32_t *corners = arena_alloc(r->memory, 4 * most * sizeof *corners),
           *method = arena_alloc(r->memory, most * sizeof *method);
   long count = 0;
-  for (int c = 0; c < mesh_cell_count(m); c++) {
-    int corner[4];
-    if (m->cell[c] == CELL_ABSENT) continue;
-    mesh_corners(m, c, corner);
-    const int32_t around[4] = {corner[0], corner[1], corner[3], corner[2]};
-    memcpy(nodes + 4 * count, around, sizeof around);
-    method[count++] = (int32_t)m->cell[c];
-  }
-  return (result_mesh){.name = name,
+  for (int c = 0; c < mesh_cell_count(m); c++)
+    if (corners_of(m, w, &l, c, corners + 4 * count)) method[count++] = (int32_t)m->cell[c];
+  return (result_mesh){.name = r->deck->lattices[number].name,
                        .first_particle = first_particle,
-                       .node_count = mesh_node_count(m),
+                       .node_count = w->particle_count,
                        .cell_count = count,
-                       .cells = nodes,
+                       .cells = corners,
                        .method = method,
                        .thickness = m->thickness};
 }
@@ -334,7 +345,7 @@ static void mesh_table(run *r, result_header *h) {
   long first = 0;
   for (int b = 0; b < bodies; b++) {
     const mesh *m = simulation_mesh(r->simulation, b);
-    if (m) meshes[h->mesh_count++] = mesh_of(r, r->deck->lattices[b].name, m, first);
+    if (m) meshes[h->mesh_count++] = mesh_of(r, b, m, first);
     first += (long)own_particles(r, b);
   }
   h->meshes = meshes;

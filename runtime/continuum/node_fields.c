@@ -25,14 +25,17 @@ static int cells_around(const mesh *m, int node, int around[4]) {
 void node_field_values(const cells *c, const double *const planes[2], double *values) {
   const node_layout l = layout_of(c);
   for (int n = 0; n < mesh_node_count(&c->mesh); n++) {
+    const int32_t particle = c->nodes->site_particle[node_layout_at(&l, n)];
     int around[4];
     double at[2];
     point_shape s;
-    values[2 * n] = values[2 * n + 1] = NAN;
+    if (particle < 0) continue;
+    double *value = values + 2 * particle;
+    value[0] = value[1] = NAN;
     mesh_place(&c->mesh, n, at);
     if (cells_around(&c->mesh, n, around) == 0) continue;
     shape_functions(&c->mesh, around[0], at, &s);
-    mesh_field(&s, &l, planes, values + 2 * n, NULL);
+    mesh_field(&s, &l, planes, value, NULL);
   }
 }
 
@@ -61,10 +64,12 @@ void node_field_strain(const cells *c, const double *const displacement[2],
                        double *const strain[3]) {
   const node_layout l = layout_of(c);
   for (int n = 0; n < mesh_node_count(&c->mesh); n++) {
+    const long site = node_layout_at(&l, n);
     double here[3];
+    if (c->nodes->site_particle[site] < 0) continue;
     const bool known = strain_at(c, &l, displacement, n, here);
     for (int k = 0; k < 3; k++)
-      strain[k][node_layout_at(&l, n)] = known ? here[k] : NAN;
+      strain[k][site] = known ? here[k] : NAN;
   }
 }
 
@@ -74,10 +79,12 @@ void node_field_stress(const cells *c, const double *parameters,
   const double h = sqrt(c->mesh.spacing[0] * c->mesh.spacing[1]);
   point_law *law = point_law_new(c->law, parameters);
   for (int n = 0; n < mesh_node_count(&c->mesh); n++) {
+    const long site = node_layout_at(&l, n);
     double strain[3], here[4] = {NAN, NAN, NAN, NAN};
+    if (c->nodes->site_particle[site] < 0) continue;
     if (strain_at(c, &l, displacement, n, strain)) point_law_stress(law, strain, h, here);
     for (int k = 0; k < 3; k++)
-      stress[k][node_layout_at(&l, n)] = here[k];
+      stress[k][site] = here[k];
   }
   point_law_free(law);
 }
