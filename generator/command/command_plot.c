@@ -51,6 +51,23 @@ static bool read_whole(const char *name, const char *text, long *value) {
   return false;
 }
 
+/* A number, an axis, or a component of a tensor. */
+static bool read_component(const char *text, plot_map_options *o) {
+  static const char *const parts[] = {"xx", "yy", "zz", "xy", "yz", "xz", "principal"};
+  long whole;
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
+    if (strcmp(text, parts[k]) == 0) {
+      o->part = text;
+      return true;
+    }
+  if (strlen(text) == 1 && strchr("xyz", *text))
+    whole = *text - 'x';
+  else if (!read_whole("--component", text, &whole))
+    return false;
+  o->component = (int)whole;
+  return true;
+}
+
 /* "z=0.05" or "x=5 mm". */
 static bool read_slice(const char *text, plot_map_options *o) {
   const char *axis = strchr("xyz", text[0]);
@@ -140,8 +157,16 @@ static bool read_one(int argc, char **argv, int *at, plot_request *q) {
   else if ((v = special_value(argc, argv, at, "--factor", &q->of_maps, &bad)))
     bad = bad || !read_number("--factor", v, &q->map.factor);
   else if ((v = special_value(argc, argv, at, "--component", &q->of_maps, &bad))) {
-    bad = bad || !read_whole("--component", v, &whole);
-    q->map.component = (int)whole;
+    bad = bad || !read_component(v, &q->map);
+  } else if ((v = special_value(argc, argv, at, "--range", &q->of_maps, &bad)))
+    q->map.range = v;
+  else if ((v = special_value(argc, argv, at, "--contours", &q->of_maps, &bad))) {
+    bad = bad || !read_whole("--contours", v, &whole);
+    q->map.contours = (int)whole;
+    if (!bad && (whole < 1 || whole > PLOT_MOST_CONTOURS)) {
+      say_error("--contours needs a number of lines from 1 to %d", PLOT_MOST_CONTOURS);
+      bad = 1;
+    }
   } else if ((v = special_value(argc, argv, at, "--slice", &q->of_maps, &bad)))
     bad = bad || !read_slice(v, &q->map);
   else if (argv[*at][0] == '-')

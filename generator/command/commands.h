@@ -140,7 +140,13 @@
   X(plot, "--mark", "FIELD",                                                                       \
     "dots where a field is above 0 (yielded), or above or below a value ('S_p > 1e-6')")           \
   X(plot, "--component", "K",                                                                      \
-    "component of a vector: 0 is x, 1 is y, 2 is z; its size if not given")                        \
+    "component of a vector: x, y, z, or 0, 1, 2; its size if not given. Of stress and strain xx, " \
+    "yy, xy, ..., or principal, the largest principal value")                                      \
+  X(plot, "--range", "LOW,HIGH",                                                                   \
+    "values between which a map's colours run, e.g. '0 MPa,5 MPa'; all that there are if not "     \
+    "given")                                                                                       \
+  X(plot, "--contours", "N",                                                                       \
+    "of a map on meshes: about N lines of equal value, at round values, instead of colours")       \
   X(plot, "--factor", "F", "displacements of the map times F; so that they are seen if not given") \
   X(plot, "--slice", "z=0.05",                                                                     \
     "a slice of a body in space, half a spacing to either side; its surface if not given")         \
