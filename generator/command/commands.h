@@ -134,6 +134,8 @@
     "a line at a value, e.g. '58.88 kN' or 'f_t A = 58.88 kN'; may be given several times")        \
   X(plot, "--map", "FIELD",                                                                        \
     "a map of this field of particles or bonds instead of curves, or of two damages, A,B")         \
+  X(plot, "--cracks", "",                                                                          \
+    "paths of the cracks of meshes, of one or several results in one picture, with --label")       \
   X(plot, "--frame", "N", "frame of the map, from 0; -1 is the last (default)")                    \
   X(plot, "--frames", "LIST",                                                                      \
     "several frames in one picture: 0,5,-1, or those nearest to values: cmod=0.1mm,0.2mm")         \

@@ -1,6 +1,7 @@
 #include "runtime/continuum/node_fields.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "runtime/continuum/point_law.h"
 #include "runtime/mesh/mesh_fields.h"
@@ -39,18 +40,31 @@ void node_field_values(const cells *c, const double *const planes[2], double *va
   }
 }
 
+/* An element with one point knows the strain there alone: what its corners do beside is no strain of
+   the law's. */
+static void place_in_cell(const mesh *m, int cell, const double node[2], double at[2]) {
+  int corner[4];
+  memcpy(at, node, 2 * sizeof *at);
+  if (m->cell[cell] != CELL_ELEMENT || m->element_gauss[cell] > 1) return;
+  mesh_corners(m, cell, corner);
+  mesh_place(m, corner[0], at);
+  for (int a = 0; a < 2; a++)
+    at[a] += 0.5 * m->spacing[a];
+}
+
 /* The mean over the cells around the node; false: there are none. */
 static bool strain_at(const cells *c, const node_layout *l, const double *const displacement[2],
                       int node, double strain[3]) {
   int around[4];
-  double at[2];
+  double there[2];
   const int count = cells_around(&c->mesh, node, around);
-  mesh_place(&c->mesh, node, at);
+  mesh_place(&c->mesh, node, there);
   for (int k = 0; k < 3; k++)
     strain[k] = 0;
   for (int n = 0; n < count; n++) {
     point_shape s;
-    double gradient[2][2], here[3];
+    double gradient[2][2], here[3], at[2];
+    place_in_cell(&c->mesh, around[n], there, at);
     shape_functions(&c->mesh, around[n], at, &s);
     mesh_field(&s, l, displacement, NULL, gradient);
     mesh_strain(gradient, here);

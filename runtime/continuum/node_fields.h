@@ -1,6 +1,6 @@
 /* Fields of a mesh at its nodes, as frames show them: what the nodes' values make of them (mesh_fields.h).
-   Gradients are the mean of those in the cells around a node; beside a crack a node sees its own
-   side. */
+   Gradients are the mean of those in the cells around a node, of elements with one point of those
+   there; beside a crack a node sees its own side. */
 #ifndef PERILAT_RUNTIME_NODE_FIELDS_H
 #define PERILAT_RUNTIME_NODE_FIELDS_H
 

@@ -28,9 +28,9 @@ double scale_part(double value, double low, double high) {
   return high > low ? pl_fmin(pl_fmax((value - low) / (high - low), 0), 1) : 0;
 }
 
-int scale_step(double value, double low, double high) {
+int scale_step(double value, double low, double high, int steps) {
   if (isnan(value)) return -1;
-  return (int)pl_fmin(SCALE_STEPS * scale_part(value, low, high), SCALE_STEPS - 1);
+  return (int)pl_fmin(steps * scale_part(value, low, high), steps - 1);
 }
 
 static const colour palette[] = {{0.00, 0.27, 0.55}, {0.80, 0.25, 0.05}, {0.10, 0.50, 0.20},

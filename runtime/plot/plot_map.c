@@ -22,8 +22,9 @@ enum {
   MARGIN = 40,
   HEAD = 64,
   FOOT = 84,
-  AXES = 76, /* above the foot: the axes of a body in space */
-  GAP = 28,  /* between panels */
+  AXES = 76,  /* above the foot: the axes of a body in space */
+  LINES = 20, /* above the foot: samples of cracks */
+  GAP = 28,   /* between panels */
   CAPTION = 30,
   LEAST_HEIGHT = 300,
   MOST_HEIGHT = 1500
@@ -130,7 +131,8 @@ static bool fit_picture(sheet *s, char *error, size_t size) {
     snprintf(error, size, "the frame's displacements are not finite or too large to draw");
     return false;
   }
-  s->foot = FOOT + (s->panels[0].frame.dimensions == 3 ? AXES : 0);
+  s->foot = FOOT + (s->panels[0].frame.dimensions == 3 ? AXES : 0) +
+            (s->panels[0].frame.meshes.crack_count > 0 ? LINES : 0);
   s->caption = s->count > 1 ? CAPTION : 0;
   place_panels(s);
   return true;
@@ -266,7 +268,7 @@ static void draw_bonds_of(canvas *c, const map *m, int component, double low, do
                           int wanted, bool separated) {
   for (long b = 0; b < m->frame.bonds; b++)
     if (is_separated(m, b) == separated &&
-        scale_step(plot_frame_value(&m->frame, b, component), low, high) == wanted)
+        scale_step(plot_frame_value(&m->frame, b, component), low, high, SCALE_STEPS) == wanted)
       stroke_bond(c, m, b);
   cairo_stroke(c->cr);
 }
@@ -457,9 +459,10 @@ static void name_values(const plot_frame *f, int component, const char *unit_tex
 static void draw_value_legend(canvas *c, const sheet *s, const plot_map_options *o) {
   const plot_frame *f = &s->panels[0].frame;
   double width = 360, x = WIDTH - MARGIN - width, y = s->height - 50, factor;
-  for (int k = 0; k < 180; k++) {
-    canvas_colour(c, scale_colour(k / 179.0));
-    cairo_rectangle(c->cr, x + 2 * k, y, 2.5, 14);
+  const int steps = f->meshes.count > 0 ? CELL_STEPS : 180;
+  for (int k = 0; k < steps; k++) {
+    canvas_colour(c, scale_colour(f->meshes.count > 0 ? (k + 0.5) / steps : k / 179.0));
+    cairo_rectangle(c->cr, x + width / steps * k, y, width / steps + 0.5, 14);
     cairo_fill(c->cr);
   }
   const char *shown = readable_unit(f->unit_text, pl_fmax(fabs(s->least), fabs(s->most)), &factor);

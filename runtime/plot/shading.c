@@ -68,8 +68,8 @@ void shading_fill(shading *s, const double at[4][2], const double value[4]) {
 }
 
 static uint32_t pixel_of(double value, double low, double high) {
-  const int step = scale_step(value, low, high);
-  const colour k = step < 0 ? scale_no_value : scale_colour((step + 0.5) / SCALE_STEPS);
+  const int step = scale_step(value, low, high, CELL_STEPS);
+  const colour k = step < 0 ? scale_no_value : scale_colour((step + 0.5) / CELL_STEPS);
   return 0xFF000000u | (uint32_t)lround(255 * k.r) << 16 | (uint32_t)lround(255 * k.g) << 8 |
          (uint32_t)lround(255 * k.b);
 }
