@@ -310,11 +310,15 @@ static bool export_frame(result_file *f, const export_request *q, FILE *out, jso
 
 /* --- cracks ---------------------------------------------------------------------------------- */
 
-enum { CRACK_FRAME, CRACK_TIME, CRACK_PLACE, CRACK_WIDTH, CRACK_COLUMNS };
+enum { CRACK_FRAME, CRACK_TIME, CRACK_FIRST, CRACK_SECOND, CRACK_COLUMNS };
 
-/* A row for each crack of each frame, from the values of result_read_cracks. */
-static table list_cracks(const double *values, long frames, long most, const double *times) {
-  static const char *const names[CRACK_COLUMNS] = {"frame", "time", "place", "width"};
+/* A row for each crack of each frame, from the values of result_read_cracks; or for each point of a
+   crack, from those of result_read_path. */
+static table list_cracks(const double *values, long frames, long most, const double *times,
+                         bool path) {
+  static const char *const widths[CRACK_COLUMNS] = {"frame", "time", "place", "width"},
+                           *const points[CRACK_COLUMNS] = {"frame", "time", "x", "y"};
+  const char *const *names = path ? points : widths;
   static const char *const units[CRACK_COLUMNS] = {"1", "s", "m", "m"};
   table t = {.columns = must_calloc(CRACK_COLUMNS, sizeof *t.columns), .count = CRACK_COLUMNS};
   for (int c = 0; c < CRACK_COLUMNS; c++) {
@@ -339,12 +343,14 @@ static table list_cracks(const double *values, long frames, long most, const dou
 static bool export_cracks(result_file *f, const export_request *q, FILE *out, json *w) {
   char error[1024];
   long frames = 0, most = 0, instants = 0;
-  double *values = result_read_cracks(f, q->cracks, &frames, &most, error, sizeof error),
+  const bool path = result_has_path(f, q->cracks);
+  double *values = path ? result_read_path(f, q->cracks, &frames, &most, error, sizeof error)
+                        : result_read_cracks(f, q->cracks, &frames, &most, error, sizeof error),
          *times = result_read_frame_times(f, &instants);
   const bool good = values && times && instants >= frames;
   if (!good) say_error("%s", values ? "the frames have no times" : error);
   if (good) {
-    table t = list_cracks(values, frames, most, times);
+    table t = list_cracks(values, frames, most, times, path);
     if (w)
       put_rows(w, "cracks", &t);
     else

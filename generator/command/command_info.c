@@ -184,6 +184,40 @@ static bool print_cracks(result_file *f, const char *monitor) {
   return values != NULL;
 }
 
+static long points_in(const double *points, long most) {
+  long count = 0;
+  while (count < most && !isnan(points[2 * count]))
+    count++;
+  return count;
+}
+
+static double length_of(const double *points, long count) {
+  double sum = 0;
+  for (long k = 1; k < count; k++)
+    sum += pl_hypot(points[2 * k] - points[2 * k - 2], points[2 * k + 1] - points[2 * k - 1]);
+  return sum;
+}
+
+/* "from (114.3, -38.1) to (114.3, -35.7) mm, 2.381 mm long; 19.05 mm in the first frame" */
+static bool print_path(result_file *f, const char *crack) {
+  char error[1024];
+  long frames = 0, most = 0;
+  double *points = result_read_path(f, crack, &frames, &most, error, sizeof error);
+  if (!points) say_error("%s", error);
+  if (points && frames > 0) {
+    const double *last = points + 2 * most * (frames - 1);
+    const long count = points_in(last, most);
+    if (count > 0)
+      printf("Crack `%s`: from (%.6g, %.6g) to (%.6g, %.6g) mm in the last frame, %.5g mm long; "
+             "%.5g mm in the first\n",
+             name_shown(crack), 1e3 * last[0], 1e3 * last[1], 1e3 * last[2 * count - 2],
+             1e3 * last[2 * count - 1], 1e3 * length_of(last, count),
+             1e3 * length_of(points, points_in(points, most)));
+  }
+  free(points);
+  return points != NULL;
+}
+
 static bool print_result(result_file *f, const char *path) {
   result_sizes s;
   bool good = read_sizes(f, path, &s);
@@ -209,7 +243,9 @@ static bool print_result(result_file *f, const char *path) {
   result_names_free(&fields);
   result_names cracks = result_list(f, "/cracks");
   for (int k = 0; k < cracks.count; k++)
-    good = print_cracks(f, cracks.items[k]) && good;
+    good = (result_has_path(f, cracks.items[k]) ? print_path(f, cracks.items[k])
+                                                : print_cracks(f, cracks.items[k])) &&
+           good;
   result_names_free(&cracks);
   return good;
 }

@@ -15,6 +15,7 @@
 #include "runtime/base/quantity.h"
 #include "runtime/plot/plot_curve.h"
 #include "runtime/plot/plot_map.h"
+#include "runtime/plot/plot_paths.h"
 
 /* --data, with the --band of two of its columns; --line; --band of two values. */
 typedef struct beside_request {
@@ -30,7 +31,8 @@ typedef struct plot_request {
   plot_curve_options curve;
   plot_map_options map;
   const char *frames, *frame; /* as given */
-  bool is_map;
+  bool is_map, is_paths;
+  plot_paths_options paths;
   const char *of_curves, *of_maps; /* an option that only these know, when one was given */
 } plot_request;
 
@@ -49,6 +51,23 @@ static bool read_whole(const char *name, const char *text, long *value) {
   if (!*end && end != text && !errno && labs(*value) < INT_MAX) return true;
   say_error("%s needs a whole number, not `%s`", name, text);
   return false;
+}
+
+/* A number, an axis, or a component of a tensor. */
+static bool read_component(const char *text, plot_map_options *o) {
+  static const char *const parts[] = {"xx", "yy", "zz", "xy", "yz", "xz", "principal"};
+  long whole;
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
+    if (strcmp(text, parts[k]) == 0) {
+      o->part = text;
+      return true;
+    }
+  if (strlen(text) == 1 && strchr("xyz", *text))
+    whole = *text - 'x';
+  else if (!read_whole("--component", text, &whole))
+    return false;
+  o->component = (int)whole;
+  return true;
 }
 
 /* "z=0.05" or "x=5 mm". */
@@ -115,7 +134,9 @@ static bool read_one(int argc, char **argv, int *at, plot_request *q) {
   else if ((v = option_value(argc, argv, at, "--map", &bad))) {
     q->map.field = v;
     q->is_map = true;
-  } else if ((v = special_value(argc, argv, at, "--x", &q->of_curves, &bad)))
+  } else if (option_flag(argv, at, "--cracks"))
+    q->is_paths = true;
+  else if ((v = special_value(argc, argv, at, "--x", &q->of_curves, &bad)))
     bad = bad || !set_once(&q->curve.x, v);
   else if ((v = special_value(argc, argv, at, "--y", &q->of_curves, &bad)))
     q->ys[q->y_count++] = v;
@@ -123,7 +144,7 @@ static bool read_one(int argc, char **argv, int *at, plot_request *q) {
     q->curve.x_unit = v;
   else if ((v = special_value(argc, argv, at, "--y-unit", &q->of_curves, &bad)))
     q->curve.y_unit = v;
-  else if ((v = special_value(argc, argv, at, "--label", &q->of_curves, &bad)))
+  else if ((v = option_value(argc, argv, at, "--label", &bad)))
     q->labels[q->label_count++] = v;
   else if ((v = special_value(argc, argv, at, "--data", &q->of_curves, &bad)))
     add_beside(q, BESIDE_TABLE, v);
@@ -131,7 +152,7 @@ static bool read_one(int argc, char **argv, int *at, plot_request *q) {
     add_beside(q, BESIDE_LINE, v);
   else if ((v = special_value(argc, argv, at, "--band", &q->of_curves, &bad)))
     bad = bad || !add_band(q, v);
-  else if ((v = special_value(argc, argv, at, "--frame", &q->of_maps, &bad)))
+  else if ((v = option_value(argc, argv, at, "--frame", &bad)))
     bad = bad || !read_whole("--frame", q->frame = v, &q->map.frame);
   else if ((v = special_value(argc, argv, at, "--frames", &q->of_maps, &bad)))
     q->frames = v;
@@ -140,8 +161,16 @@ static bool read_one(int argc, char **argv, int *at, plot_request *q) {
   else if ((v = special_value(argc, argv, at, "--factor", &q->of_maps, &bad)))
     bad = bad || !read_number("--factor", v, &q->map.factor);
   else if ((v = special_value(argc, argv, at, "--component", &q->of_maps, &bad))) {
-    bad = bad || !read_whole("--component", v, &whole);
-    q->map.component = (int)whole;
+    bad = bad || !read_component(v, &q->map);
+  } else if ((v = special_value(argc, argv, at, "--range", &q->of_maps, &bad)))
+    q->map.range = v;
+  else if ((v = special_value(argc, argv, at, "--contours", &q->of_maps, &bad))) {
+    bad = bad || !read_whole("--contours", v, &whole);
+    q->map.contours = (int)whole;
+    if (!bad && (whole < 1 || whole > PLOT_MOST_CONTOURS)) {
+      say_error("--contours needs a number of lines from 1 to %d", PLOT_MOST_CONTOURS);
+      bad = 1;
+    }
   } else if ((v = special_value(argc, argv, at, "--slice", &q->of_maps, &bad)))
     bad = bad || !read_slice(v, &q->map);
   else if (argv[*at][0] == '-')
@@ -239,8 +268,19 @@ static bool draw_map(plot_request *q) {
   return good;
 }
 
+static bool draw_paths(plot_request *q) {
+  char error[1024];
+  q->paths = (plot_paths_options){.output = q->curve.output,
+                                  .title = q->curve.title,
+                                  .labels = q->label_count ? q->labels : NULL,
+                                  .frame = q->map.frame};
+  const bool good = plot_paths(q->results, q->result_count, &q->paths, error, sizeof error);
+  if (!good) say_error("%s", error);
+  return good;
+}
+
 static bool draw(plot_request *q) {
-  const bool good = q->is_map ? draw_map(q) : draw_curves(q);
+  const bool good = q->is_paths ? draw_paths(q) : q->is_map ? draw_map(q) : draw_curves(q);
   if (good) printf("written %s\n", q->curve.output);
   return good;
 }
@@ -256,6 +296,8 @@ static bool are_results(const plot_request *q) {
 static bool complete(const plot_request *q) {
   if (q->result_count == 0)
     say_error("`perilat plot` needs a result file\n  perilat plot result.h5 -o curve.png");
+  else if (q->is_paths && q->is_map)
+    say_error("--cracks draws paths, --map a map, which has its cracks in it; give one of them");
   else if (q->is_map && q->result_count > 1)
     say_error("a map shows one result; give one file");
   else if (q->label_count && q->label_count != q->result_count &&
@@ -263,10 +305,15 @@ static bool complete(const plot_request *q) {
     say_error("%d labels for %d results%s; give one --label a result%s", q->label_count,
               q->result_count, q->table_count ? " and their tables" : "",
               q->table_count ? ", then one a table" : "");
-  else if (q->is_map && q->of_curves)
-    say_error("%s belongs to curves, --map draws a map; leave one of them out", q->of_curves);
-  else if (!q->is_map && q->of_maps)
-    say_error("%s belongs to maps; add --map FIELD, e.g. --map damage", q->of_maps);
+  else if (q->is_map && (q->of_curves || q->label_count))
+    say_error("%s belongs to curves, --map draws a map; leave one of them out",
+              q->of_curves ? q->of_curves : "--label");
+  else if (q->is_paths && (q->of_curves || q->of_maps))
+    say_error("%s does not belong to --cracks; leave one of them out",
+              q->of_curves ? q->of_curves : q->of_maps);
+  else if (!q->is_map && (q->of_maps || (q->frame && !q->is_paths)))
+    say_error("%s belongs to maps; add --map FIELD, e.g. --map damage",
+              q->of_maps ? q->of_maps : "--frame");
   else if (q->frame && q->frames)
     say_error("--frame shows one frame, --frames several; give one of them");
   else if (q->map.component < -1)
@@ -299,7 +346,7 @@ static bool spares_inputs(const plot_request *q) {
 /* "beam_load.png", in the working folder: after the first result and what is drawn, so that
    pictures of other results stay. */
 static void name_output(plot_request *q, char *name, size_t size) {
-  const char *drawn = q->is_map ? q->map.field : q->ys[0];
+  const char *drawn = q->is_paths ? "cracks" : q->is_map ? q->map.field : q->ys[0];
   const char *slash = strrchr(q->results[0], '/');
   const char *result = slash ? slash + 1 : q->results[0], *dot = strrchr(result, '.');
   const size_t stem = dot && dot > result ? (size_t)(dot - result) : strlen(result);

@@ -134,13 +134,21 @@
     "a line at a value, e.g. '58.88 kN' or 'f_t A = 58.88 kN'; may be given several times")        \
   X(plot, "--map", "FIELD",                                                                        \
     "a map of this field of particles or bonds instead of curves, or of two damages, A,B")         \
+  X(plot, "--cracks", "",                                                                          \
+    "paths of the cracks of meshes, of one or several results in one picture, with --label")       \
   X(plot, "--frame", "N", "frame of the map, from 0; -1 is the last (default)")                    \
   X(plot, "--frames", "LIST",                                                                      \
     "several frames in one picture: 0,5,-1, or those nearest to values: cmod=0.1mm,0.2mm")         \
   X(plot, "--mark", "FIELD",                                                                       \
     "dots where a field is above 0 (yielded), or above or below a value ('S_p > 1e-6')")           \
   X(plot, "--component", "K",                                                                      \
-    "component of a vector: 0 is x, 1 is y, 2 is z; its size if not given")                        \
+    "component of a vector: x, y, z, or 0, 1, 2; its size if not given. Of stress and strain xx, " \
+    "yy, xy, ..., or principal, the largest principal value")                                      \
+  X(plot, "--range", "LOW,HIGH",                                                                   \
+    "values between which a map's colours run, e.g. '0 MPa,5 MPa'; all that there are if not "     \
+    "given")                                                                                       \
+  X(plot, "--contours", "N",                                                                       \
+    "of a map on meshes: about N lines of equal value, at round values, instead of colours")       \
   X(plot, "--factor", "F", "displacements of the map times F; so that they are seen if not given") \
   X(plot, "--slice", "z=0.05",                                                                     \
     "a slice of a body in space, half a spacing to either side; its surface if not given")         \
@@ -158,7 +166,8 @@
   X(export, "--field", "NAME",                                                                     \
     "this field of the frame only, not all; may be given several times")                           \
   X(export, "--bonds", "", "the bonds of the frame, not its particles")                            \
-  X(export, "--cracks", "NAME", "the cracks across the line of this monitor, frame by frame")      \
+  X(export, "--cracks", "NAME",                                                                    \
+    "points of this crack, or the cracks across the line of this monitor, frame by frame")         \
   X(export, "--json", "", "as one JSON document on the standard output")                           \
   X(info, "--spacing", "L", "of the lattice that the law is put on, e.g. '10 mm'")                 \
   X(info, "--thickness", "T", "of the plate, e.g. '0.1 m'")                                        \

@@ -61,7 +61,7 @@ typedef struct finding {
   char place[256];          /* of the largest gap, in words */
   double time, values[2];   /* there; NAN where there are none */
   long frame;               /* or -1 */
-  const char *at;           /* "sample", "particle", "bond": the gap's row; or NULL */
+  const char *at;           /* "sample", "particle", "bond", "point": the gap's row; or NULL */
 } finding;
 
 static finding finding_of(const char *name, const char *unit_text, const gap *g) {
@@ -433,6 +433,56 @@ static void compare_field(comparison_run *c, const char *name, void *context) {
   report(c, &found);
 }
 
+/* Points of a crack in all frames that both have. */
+static void compare_path(comparison_run *c, const char *crack, const frame_context *x) {
+  char error[1024], name[300];
+  long frames[2] = {0, 0}, most[2] = {0, 0};
+  double *points[2];
+  for (int k = 0; k < 2; k++)
+    points[k] = result_read_path(c->files[k], crack, &frames[k], &most[k], error, sizeof error);
+  snprintf(name, sizeof name, "cracks/%.250s/points", crack);
+  gap g = no_gap;
+  const long both = frames[0] < frames[1] ? frames[0] : frames[1];
+  for (long f = 0; points[0] && points[1] && f < both; f++)
+    for (long n = 0; n < 2 * most[0] || n < 2 * most[1]; n++)
+      widen(&g, n < 2 * most[0] ? points[0][2 * most[0] * f + n] : NAN,
+            n < 2 * most[1] ? points[1][2 * most[1] * f + n] : NAN, f, n / 2);
+  if (points[0] && points[1]) {
+    finding found = finding_of(name, "m", &g);
+    if (g.row >= 0) {
+      found.frame = g.frame;
+      found.at = "point";
+      found.time = x->time[0][g.frame];
+      const int used = write_instant(found.place, sizeof found.place, x, g.frame);
+      snprintf(found.place + used, sizeof found.place - (size_t)used, "point %ld", g.row);
+    }
+    report(c, &found);
+  } else {
+    say_error("%s", error);
+    c->wrong = true;
+  }
+  free(points[0]);
+  free(points[1]);
+}
+
+/* Cracks of meshes. */
+static void compare_paths(comparison_run *c, const frame_context *x) {
+  for (int k = 0; k < 2; k++) {
+    result_names cracks = result_list(c->files[k], "/cracks");
+    for (int n = 0; n < cracks.count; n++) {
+      const char *crack = cracks.items[n];
+      char name[300];
+      if (!result_has_path(c->files[k], crack)) continue;
+      snprintf(name, sizeof name, "cracks/%.250s/points", crack);
+      if (!result_has_path(c->files[1 - k], crack))
+        report_unlike(c, name, "only in %s", c->request->results[k]);
+      else if (k == 0)
+        compare_path(c, crack, x);
+    }
+    result_names_free(&cracks);
+  }
+}
+
 static void compare_frame_times(comparison_run *c, const frame_context *x) {
   gap g = no_gap;
   for (long f = 0; f < x->frames[0] && f < x->frames[1]; f++)
@@ -467,6 +517,7 @@ static void compare_frames(comparison_run *c) {
       each_asked(c, "/frames", c->request->fields, c->request->field_count, compare_field, &x);
     else
       each_name(c, "/frames", compare_field, &x);
+    if (!c->request->field_count) compare_paths(c, &x);
   } else {
     report_unlike(c, "particles", "%ld and %ld, or at other places: no frames are compared",
                   x.particles[0], x.particles[1]);

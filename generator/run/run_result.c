@@ -14,10 +14,12 @@
 #include "generator/kernel/version.h"
 #include "generator/run/run_report.h"
 #include "runtime/base/whole_file.h"
+#include "runtime/continuum/cells.h"
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/lattice/parameter_planes.h"
 #include "runtime/lattice/rows_select.h"
 #include "runtime/lattice/shape_matrix.h"
+#include "runtime/mesh/node_layout.h"
 #include "runtime/simulation/simulation_save.h"
 
 /* --- paths and fingerprint -------------------------------------------------------------------- */
@@ -317,6 +319,51 @@ static void bond_table(run *r, result_header *h) {
   h->bonds = bonds;
 }
 
+/* The corners of a cell as particles of its mesh, counter-clockwise; false: one is not there. */
+static bool corners_of(const mesh *m, const rows *w, const node_layout *l, int cell,
+                       int32_t around[4]) {
+  static const int order[4] = {0, 1, 3, 2};
+  int corner[4];
+  bool whole = m->cell[cell] != CELL_ABSENT;
+  mesh_corners(m, cell, corner);
+  for (int k = 0; k < 4; k++) {
+    around[k] = w->site_particle[node_layout_at(l, corner[order[k]])];
+    whole = whole && around[k] >= 0;
+  }
+  return whole;
+}
+
+/* Its cells but those that are not there as a whole. */
+static result_mesh mesh_of(run *r, int number, const mesh *m, long first_particle) {
+  const size_t most = (size_t)mesh_cell_count(m);
+  const rows *w = simulation_rows(r->simulation, number);
+  const node_layout l = node_layout_of(m->nodes, m->support);
+  int32_t *corners = arena_alloc(r->memory, 4 * most * sizeof *corners),
+          *method = arena_alloc(r->memory, most * sizeof *method);
+  long count = 0;
+  for (int c = 0; c < mesh_cell_count(m); c++)
+    if (corners_of(m, w, &l, c, corners + 4 * count)) method[count++] = (int32_t)m->cell[c];
+  return (result_mesh){.name = r->deck->lattices[number].name,
+                       .first_particle = first_particle,
+                       .node_count = w->particle_count,
+                       .cell_count = count,
+                       .cells = corners,
+                       .method = method,
+                       .thickness = m->thickness};
+}
+
+static void mesh_table(run *r, result_header *h) {
+  const int bodies = simulation_bodies(r->simulation);
+  result_mesh *meshes = arena_alloc(r->memory, (size_t)bodies * sizeof *meshes);
+  long first = 0;
+  for (int b = 0; b < bodies; b++) {
+    const cells *c = simulation_cells(r->simulation, b);
+    if (c) meshes[h->mesh_count++] = mesh_of(r, b, &c->mesh, first);
+    first += (long)own_particles(r, b);
+  }
+  h->meshes = meshes;
+}
+
 /* What a law says may take several lines. */
 static const char *one_line(const run *r, const char *words) {
   char *line = arena_text(r->memory, words, strlen(words));
@@ -330,6 +377,7 @@ static void frame_table(run *r, result_header *h) {
   const frame_field *offered;
   h->field_count = simulation_frame_fields(r->simulation, &offered);
   result_field *fields = arena_alloc(r->memory, (size_t)h->field_count * sizeof *fields);
+  result_crack *cracks = arena_alloc(r->memory, (size_t)h->field_count * sizeof *cracks);
   for (int k = 0; k < h->field_count; k++) {
     const frame_field *f = &offered[k];
     fields[k] = (result_field){f->name,
@@ -339,8 +387,10 @@ static void frame_table(run *r, result_header *h) {
                                f->count,
                                f->kind,
                                one_line(r, f->long_name)};
+    if (f->mesh) cracks[h->crack_count++] = (result_crack){f->name, f->mesh};
   }
   h->fields = fields;
+  h->cracks = cracks;
 }
 
 /* What made the kernels: now, when the solver was built, or nothing. */
@@ -381,6 +431,7 @@ result_header describe_result(run *r) {
   name_compiler(r, &h);
   particle_table(r, &h);
   bond_table(r, &h);
+  mesh_table(r, &h);
   return h;
 }
 

@@ -102,6 +102,15 @@ void deck_check_name(deck_reader *r, const char *kind, const char *name, const d
   diag_note(r->d, deck_where(first, "name"), "it is named here");
 }
 
+void deck_check_not_both(deck_reader *r, const char *kind, const deck_item *item,
+                         const char *its_kind, const char *name, const deck_item *other) {
+  if (!other) return;
+  diag_report(r->d, DIAG_DUPLICATE_NAME, deck_where(item, "name"),
+              "a %s and a %s cannot both be called `%s`: results have them side by side", kind,
+              its_kind, deck_shown(r->memory, name));
+  diag_note(r->d, deck_where(other, "name"), "the %s is named here", its_kind);
+}
+
 bool deck_same_name(const char *a, const char *b) {
   return a && b && strcmp(a, b) == 0;
 }

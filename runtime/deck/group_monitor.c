@@ -247,6 +247,9 @@ static void check_monitor_name(deck_reader *r, const deck_monitor *item) {
   int first = deck_find_monitor(r->k, item->name);
   deck_check_name(r, "monitor", item->name, &item->item,
                   first < 0 ? NULL : &r->k->monitors[first].item);
+  const int crack = deck_find_crack(r->k, item->name);
+  deck_check_not_both(r, "monitor", &item->item, "crack", item->name,
+                      crack < 0 ? NULL : &r->k->cracks[crack].item);
 }
 
 /* Regions overlap: whatever moves others of the same lattice may move particles of this one. */

@@ -6,7 +6,7 @@
 #include "runtime/base/symmetric_tensor.h"
 
 bool output_is_component(const char *name, int dimensions) {
-#define X(tensor, unit, words) #tensor "_",
+#define X(tensor, unit, words, of_nodes) #tensor "_",
   static const char *const begins[] = {OUTPUT_TENSORS(X)};
 #undef X
   for (size_t k = 0; k < sizeof begins / sizeof *begins; k++) {

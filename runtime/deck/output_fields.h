@@ -23,10 +23,10 @@
 /* Symmetric tensors of any law, which frames hold component by component, stress_xx and so on; a
    deck asks for all of one or for a component.
 
-   X(name, unit, words), as the functions that find them: frames.c. */
+   X(name, unit, words, words of a mesh's nodes), as the functions that find them: frames.c. */
 #define OUTPUT_TENSORS(X)                                                                          \
-  X(stress, "Pa", "stress of the bonds")                                                           \
-  X(strain, "1", "strain of the bonds that the particle began with")
+  X(stress, "Pa", "stress of the bonds", "stress at the node, by the law")                         \
+  X(strain, "1", "strain of the bonds that the particle began with", "strain at the node")
 
 /* Whether a name is that of a component, "stress_xx". */
 bool output_is_component(const char *name, int dimensions);

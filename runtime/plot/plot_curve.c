@@ -8,6 +8,7 @@
 #include "dsl/base/characters.h"
 #include "dsl/base/elementary.h"
 #include "dsl/base/units.h"
+#include "runtime/plot/colour_scale.h"
 #include "runtime/plot/plot_axes.h"
 #include "runtime/plot/plot_beside.h"
 #include "runtime/plot/plot_curve.h"
@@ -22,27 +23,6 @@ typedef struct curve {
   long count;
   char label[256];
 } curve;
-
-static const colour palette[] = {{0.00, 0.27, 0.55}, {0.80, 0.25, 0.05}, {0.10, 0.50, 0.20},
-                                 {0.55, 0.20, 0.60}, {0.85, 0.55, 0.00}, {0.05, 0.55, 0.60},
-                                 {0.45, 0.30, 0.15}, {0.40, 0.40, 0.40}};
-enum { PALETTE = sizeof palette / sizeof *palette };
-
-/* More curves than there are colours go from blue to red, in their order. */
-static colour ink_of(int k, int count) {
-  static const colour scale[] = {{0.00, 0.15, 0.60},
-                                 {0.00, 0.55, 0.75},
-                                 {0.20, 0.65, 0.20},
-                                 {0.90, 0.65, 0.00},
-                                 {0.75, 0.05, 0.05}};
-  enum { LAST = sizeof scale / sizeof *scale - 1 };
-  if (count <= PALETTE) return palette[k % PALETTE];
-  const double at = (double)LAST * k / (count - 1);
-  const int from = at < LAST ? (int)at : LAST - 1;
-  const double part = at - from;
-  const colour a = scale[from], b = scale[from + 1];
-  return (colour){a.r + part * (b.r - a.r), a.g + part * (b.g - a.g), a.b + part * (b.b - a.b)};
-}
 
 static void label_of(const char *path, char *label, size_t size) {
   const char *slash = strrchr(path, '/');
@@ -183,7 +163,7 @@ static void draw_legend(canvas *c, const diagram *g) {
   cairo_fill(c->cr);
   for (int k = 0; k < count; k++) {
     const double line = b.top + LINE * k + 20;
-    canvas_colour(c, ink_of(k, g->count));
+    canvas_colour(c, scale_ink(k, g->count));
     if (k < g->count)
       canvas_line(c, b.left + 10, line - 6, b.left + 46, line - 6, 3);
     else
@@ -205,7 +185,7 @@ static void draw_inside(canvas *c, const diagram *g) {
   for (int k = 0; k < o->beside_count; k++)
     beside_draw_band(c, &o->beside[k], k, &g->x, &g->y);
   for (int k = 0; k < g->count; k++)
-    draw_curve(c, &g->curves[k], &g->x, &g->y, ink_of(k, g->count));
+    draw_curve(c, &g->curves[k], &g->x, &g->y, scale_ink(k, g->count));
   for (int k = 0; k < o->beside_count; k++)
     beside_draw_points(c, &o->beside[k], k, &g->x, &g->y);
   cairo_restore(c->cr);

@@ -7,7 +7,9 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/base/eigen.h"
 #include "runtime/base/quantity.h"
+#include "runtime/base/symmetric_tensor.h"
 #include "runtime/plot/canvas.h"
 #include "runtime/result/result_fields.h"
 #include "runtime/result/result_file.h"
@@ -25,6 +27,8 @@ void plot_frame_free(plot_frame *m) {
   free(m->second);
   free(m->pairs);
   free(m->marked);
+  free(m->nodes);
+  plot_meshes_free(&m->meshes);
 }
 
 static double bond_length(const plot_frame *m, long b) {
@@ -91,9 +95,111 @@ static void move_particles(plot_frame *m, const double *displacement, double wan
     m->moved[p] = m->reference[p] + m->factor * displacement[p];
 }
 
+static bool is_stored(result_file *f, const char *field) {
+  result_names fields = result_members(f, "/frames");
+  const bool stored = result_names_find(&fields, field) >= 0;
+  result_names_free(&fields);
+  return stored;
+}
+
+/* --- tensors ---------------------------------------------------------------------------------- */
+
+/* "stress" of a result that has "stress_xx". */
+static bool is_tensor(result_file *f, const plot_frame *m, const char *field) {
+  const tensor_component *component;
+  const int count = tensor_components(m->dimensions, &component);
+  bool any = false;
+  for (int c = 0; c < count && !is_stored(f, field); c++) {
+    char name[300];
+    snprintf(name, sizeof name, "%.250s_%s", field, component[c].name);
+    any = any || is_stored(f, name);
+  }
+  return any;
+}
+
+/* [particles] of one component. */
+static double *read_component(result_file *f, plot_frame *m, const plot_map_options *o,
+                              const char *component, char *error, size_t size) {
+  char name[300];
+  long count = 0;
+  int components = 0;
+  snprintf(name, sizeof name, "%.250s_%s", o->field, component);
+  double *values = result_read_frame(f, name, o->frame, &count, &components, m->unit_text,
+                                     sizeof m->unit_text, error, size);
+  if (!values || (count == m->particles && components == 1)) return values;
+  snprintf(error, size, "`%s` does not have a value for each particle", name);
+  free(values);
+  return NULL;
+}
+
+/* Into values[0]: of the components of one particle. */
+static double largest_principal(int dimensions, const double *values) {
+  const tensor_component *component;
+  const int count = tensor_components(dimensions, &component);
+  double a[EIGEN_MOST][EIGEN_MOST] = {{0}}, found[EIGEN_MOST], vectors[EIGEN_MOST][EIGEN_MOST];
+  double most = -INFINITY;
+  for (int c = 0; c < count; c++) {
+    if (!isfinite(values[c])) return NAN;
+    a[component[c].first][component[c].second] = values[c];
+    a[component[c].second][component[c].first] = values[c];
+  }
+  eigen_symmetric(dimensions, a, found, vectors);
+  for (int k = 0; k < dimensions; k++)
+    most = pl_fmax(most, found[k]);
+  return most;
+}
+
+/* In the plane that of the directions of the plane. */
+static double *read_principal(result_file *f, plot_frame *m, const plot_map_options *o, char *error,
+                              size_t size) {
+  const tensor_component *component;
+  const int count = tensor_components(m->dimensions, &component);
+  double *all[TENSOR_MOST] = {NULL}, *most = NULL;
+  bool good = true;
+  for (int c = 0; c < count && good; c++) {
+    all[c] = read_component(f, m, o, component[c].name, error, size);
+    good = all[c] != NULL;
+  }
+  if (good) most = must_calloc((size_t)m->particles + 1, sizeof *most);
+  for (long p = 0; good && p < m->particles; p++) {
+    double here[TENSOR_MOST];
+    for (int c = 0; c < count; c++)
+      here[c] = all[c][p];
+    most[p] = largest_principal(m->dimensions, here);
+  }
+  for (int c = 0; c < count; c++)
+    free(all[c]);
+  return most;
+}
+
+static bool read_tensor(result_file *f, plot_frame *m, const plot_map_options *o, char *error,
+                        size_t size) {
+  const bool principal = o->part && strcmp(o->part, "principal") == 0;
+  if (!principal && (!o->part || tensor_find(m->dimensions, o->part) < 0)) {
+    snprintf(error, size, "`%s` is a tensor: give --component xx, yy, %sxy%s or principal",
+             o->field, m->dimensions == 3 ? "zz, " : "", m->dimensions == 3 ? ", yz, xz" : "");
+    return false;
+  }
+  m->values = principal ? read_principal(f, m, o, error, size)
+                        : read_component(f, m, o, o->part, error, size);
+  m->value_count = m->particles;
+  m->components = 1;
+  if (principal)
+    snprintf(m->shown, sizeof m->shown, "largest principal %.200s", o->field);
+  else
+    snprintf(m->shown, sizeof m->shown, "%.200s_%s", o->field, o->part);
+  return m->values != NULL;
+}
+
 static bool read_values(result_file *f, plot_frame *m, const plot_map_options *o, char *error,
                         size_t size) {
   char name[512];
+  if (is_tensor(f, m, o->field)) return read_tensor(f, m, o, error, size);
+  snprintf(m->shown, sizeof m->shown, "%.250s", o->field);
+  if (o->part) {
+    snprintf(error, size, "`%s` has no component `%s`: it is no tensor", o->field, o->part);
+    return false;
+  }
   if (!result_find(f, "/frames", o->field, name, sizeof name, error, size)) return false;
   m->values = result_read_frame(f, name, o->frame, &m->value_count, &m->components, m->unit_text,
                                 sizeof m->unit_text, error, size);
@@ -110,13 +216,6 @@ static bool read_values(result_file *f, plot_frame *m, const plot_map_options *o
     return false;
   }
   return true;
-}
-
-static bool is_stored(result_file *f, const char *field) {
-  result_names fields = result_members(f, "/frames");
-  const bool stored = result_names_find(&fields, field) >= 0;
-  result_names_free(&fields);
-  return stored;
 }
 
 /* --- marks ------------------------------------------------------------------------------------ */
@@ -223,11 +322,15 @@ static bool read_damage(result_file *f, plot_frame *m, const char *path, const p
   m->damage = NULL;
   if (!m->of_damage || read_damage_of_particles(f, m, o)) return true;
   if (!error[0])
-    snprintf(error, size,
-             "`%s` holds no damage of bonds: write fields = 'displacement', 'damage' in &output "
-             "and run again "
-             "(a law without a damage has none to store)",
-             path);
+    snprintf(
+        error, size,
+        m->meshes.count > 0 && m->bonds == 0
+            ? "`%s` is of a mesh, which has no damage: give --map stress, say, with fields = "
+              "'displacement', 'stress' in &output"
+            : "`%s` holds no damage of bonds: write fields = 'displacement', 'damage' in &output "
+              "and run again "
+              "(a law without a damage has none to store)",
+        path);
   return false;
 }
 
@@ -313,6 +416,13 @@ static double frequency_of(result_file *f, long frame) {
   return found;
 }
 
+static void find_nodes(plot_frame *m) {
+  if (m->meshes.count > 0) m->nodes = must_calloc((size_t)m->particles + 1, 1);
+  for (int n = 0; n < m->meshes.count; n++)
+    for (long k = 0; k < 4 * m->meshes.items[n].cell_count; k++)
+      m->nodes[m->meshes.items[n].cells[k]] = 1;
+}
+
 static bool read_frame(result_file *f, const char *path, plot_frame *m, const plot_map_options *o,
                        char *error, size_t size) {
   m->reference = result_read_reference(f, &m->particles, &m->dimensions);
@@ -330,9 +440,12 @@ static bool read_frame(result_file *f, const char *path, plot_frame *m, const pl
   long k = o->frame < 0 ? frames + o->frame : o->frame;
   m->time = times && k >= 0 && k < frames ? times[k] : NAN;
   free(times);
+  if (!plot_meshes_read(&m->meshes, f, o->frame, error, size)) return false;
+  find_nodes(m);
   m->increment = increment_at(f, m->time);
   m->frequency = frequency_of(f, k);
   m->spacing = spacing_of(m);
+  if (m->spacing == 0 && m->meshes.count > 0) m->spacing = m->meshes.items[0].size;
   char *title = result_read_title(f);
   snprintf(m->title, sizeof m->title, "%s", o->title ? o->title : title);
   free(title);

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "runtime/plot/plot_map.h"
+#include "runtime/plot/plot_mesh.h"
 
 typedef struct plot_frame {
   int dimensions; /* of the result; from plot_frame_read on, places have two coordinates */
@@ -31,6 +32,9 @@ typedef struct plot_frame {
   char view[80];         /* of a body in space: what is shown, for the picture's head */
   double axes[3][2];     /* of a body in space: unit vectors along x, y, z in the picture, m a m */
   char extents[128]; /* of a body in space: "x 0 to 100 mm, ...", where it stood in the beginning */
+  plot_meshes meshes;   /* their nodes are particles, too */
+  unsigned char *nodes; /* [particles] 1: a node of a mesh; NULL without meshes */
+  char shown[256];      /* what the values are, "stress_yy" */
   double time, factor, spacing;
   long increment;   /* of a quasi-static run, whose time means nothing; -1: a dynamic one */
   double frequency; /* Hz: of the mode that the frame is, whose number is `time`; NaN: of none */

@@ -10,7 +10,10 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/base/quantity.h"
 #include "runtime/plot/canvas.h"
+#include "runtime/plot/colour_scale.h"
+#include "runtime/plot/plot_cells.h"
 #include "runtime/plot/plot_frame.h"
 #include "runtime/plot/plot_map.h"
 
@@ -19,8 +22,9 @@ enum {
   MARGIN = 40,
   HEAD = 64,
   FOOT = 84,
-  AXES = 76, /* above the foot: the axes of a body in space */
-  GAP = 28,  /* between panels */
+  AXES = 76,  /* above the foot: the axes of a body in space */
+  LINES = 20, /* above the foot: samples of cracks */
+  GAP = 28,   /* between panels */
   CAPTION = 30,
   LEAST_HEIGHT = 300,
   MOST_HEIGHT = 1500
@@ -51,19 +55,21 @@ static const colour plain_ink = {0.45, 0.48, 0.52};
 
 static const colour mark_ink = {0.05, 0.25, 0.80};
 
-typedef struct
-    map { /* a panel: x = origin_x + (X - left) * scale, y = origin_y - (Y - bottom) * scale */
+typedef struct map { /* a panel */
   plot_frame frame;
-  double left, bottom, scale, origin_x, origin_y;
+  map_place at;
   char caption[128];
 } map;
 
 typedef struct sheet {
   map *panels;
   int count, columns;
-  double low[2], high[2];     /* what all panels show, m */
-  double scale, height, foot; /* of the picture, below the panels */
-  double caption;             /* above each panel; 0: a single one has none */
+  double low[2], high[2];       /* what all panels show, m */
+  double scale, height, foot;   /* of the picture, below the panels */
+  double caption;               /* above each panel; 0: a single one has none */
+  double least, most;           /* of the values that have colours */
+  double levels[CONTOURS_MOST]; /* [level_count] lines of equal value; none: filled cells */
+  int level_count;
 } sheet;
 
 /* --- drawing ---------------------------------------------------------------------------------- */
@@ -105,11 +111,11 @@ static void place_panels(sheet *s) {
   for (int k = 0; k < s->count; k++) {
     map *m = &s->panels[k];
     const int column = k % s->columns, below = rows - 1 - k / s->columns;
-    m->left = s->low[0];
-    m->bottom = s->low[1];
-    m->scale = s->scale;
-    m->origin_x = MARGIN + column * (part + GAP) + indent;
-    m->origin_y = s->height - s->foot - below * (high + GAP);
+    m->at = (map_place){.left = s->low[0],
+                        .bottom = s->low[1],
+                        .scale = s->scale,
+                        .origin_x = MARGIN + column * (part + GAP) + indent,
+                        .origin_y = s->height - s->foot - below * (high + GAP)};
   }
 }
 
@@ -125,17 +131,18 @@ static bool fit_picture(sheet *s, char *error, size_t size) {
     snprintf(error, size, "the frame's displacements are not finite or too large to draw");
     return false;
   }
-  s->foot = FOOT + (s->panels[0].frame.dimensions == 3 ? AXES : 0);
+  s->foot = FOOT + (s->panels[0].frame.dimensions == 3 ? AXES : 0) +
+            (s->panels[0].frame.meshes.crack_count > 0 ? LINES : 0);
   s->caption = s->count > 1 ? CAPTION : 0;
   place_panels(s);
   return true;
 }
 
 static double at_x(const map *m, double x) {
-  return m->origin_x + (x - m->left) * m->scale;
+  return m->at.origin_x + (x - m->at.left) * m->at.scale;
 }
 static double at_y(const map *m, double y) {
-  return m->origin_y - (y - m->bottom) * m->scale;
+  return m->at.origin_y - (y - m->at.bottom) * m->at.scale;
 }
 
 static int class_of(double damage) {
@@ -182,7 +189,7 @@ static void stroke_crack(canvas *c, const map *m, long b) {
 }
 
 static void draw_class(canvas *c, const map *m, int k) {
-  const double thin = pl_fmax(0.4, 0.12 * m->frame.spacing * m->scale);
+  const double thin = pl_fmax(0.4, 0.12 * m->frame.spacing * m->at.scale);
   const int separated = class_count(m) - 1;
   canvas_colour(c, k == NO_CLASS ? plain_ink : classes_of(m)[k].ink);
   cairo_set_line_width(c->cr, k == 0 ? 0.6 * thin : k == separated ? 1.6 * thin : 1.4 * thin);
@@ -208,33 +215,10 @@ static void draw_bonds(canvas *c, const map *m, bool coloured) {
     draw_class(c, m, k);
 }
 
-/* Dark blue - green - yellow; equal steps look equal, also in grey. */
-static colour shade(double v) {
-  static const colour stops[] = {{0.27, 0.00, 0.33},
-                                 {0.23, 0.32, 0.55},
-                                 {0.13, 0.57, 0.55},
-                                 {0.37, 0.79, 0.38},
-                                 {0.99, 0.91, 0.14}};
-  double at = pl_fmin(pl_fmax(v, 0), 1) * 4;
-  int k = at >= 4 ? 3 : (int)at;
-  double w = at - k;
-  return (colour){stops[k].r + w * (stops[k + 1].r - stops[k].r),
-                  stops[k].g + w * (stops[k + 1].g - stops[k].g),
-                  stops[k].b + w * (stops[k + 1].b - stops[k].b)};
-}
-
-/* Place in the colour bar, 0 to 1. */
-static double place_of(double value, double low, double high) {
-  return high > low ? pl_fmin(pl_fmax((value - low) / (high - low), 0), 1) : 0;
-}
-
-/* What is no number has no colour: a body may not have the field. */
-static const colour no_value = {0.85, 0.85, 0.85};
-
 static colour particle_colour(const map *m, long p, int component, double low, double high) {
   const double value = plot_frame_value(&m->frame, p, component);
   if (m->frame.of_damage) return classes[class_of(value)].ink;
-  return isnan(value) ? no_value : shade(place_of(value, low, high));
+  return isnan(value) ? scale_no_value : scale_colour(scale_part(value, low, high));
 }
 
 static void draw_particle(canvas *c, const map *m, long p, colour ink, double radius, bool edge) {
@@ -261,12 +245,14 @@ static bool is_dot(const map *m, long p, int component) {
 static void draw_particles(canvas *c, const map *m, int component, double low, double high) {
   enum { DOTS, BALLS, PASSES };
   const bool coloured = m->frame.values && !m->frame.of_bonds;
+  const unsigned char *nodes = m->frame.nodes; /* cells show their values */
   const bool by_class = coloured && m->frame.of_damage && !m->frame.surface;
-  const double whole = 0.5 * m->frame.spacing * m->scale;
+  const double whole = 0.5 * m->frame.spacing * m->at.scale;
   cairo_new_path(c->cr);
   for (int k = 0; k < (by_class ? CLASSES : PASSES); k++)
     for (long p = 0; p < m->frame.particles; p++) {
       const bool ball = coloured && !is_dot(m, p, component);
+      if (nodes && nodes[p]) continue;
       if ((by_class ? class_of(m->frame.values[p]) : ball ? BALLS : DOTS) != k) continue;
       draw_particle(c, m, p, coloured ? particle_colour(m, p, component, low, high) : plain_ink,
                     pl_fmax(0.7, ball ? whole : 0.2 * whole), ball && m->frame.surface);
@@ -277,18 +263,12 @@ static bool is_separated(const map *m, long b) {
   return m->frame.damage && m->frame.damage[b] >= 1;
 }
 
-enum { SHADES = 64, NO_SHADE = -1 };
-static int shade_of(double value, double low, double high) {
-  if (isnan(value)) return NO_SHADE;
-  return (int)pl_fmin(SHADES * place_of(value, low, high), SHADES - 1);
-}
-
 /* Those of one shade, separated or not. */
 static void draw_bonds_of(canvas *c, const map *m, int component, double low, double high,
                           int wanted, bool separated) {
   for (long b = 0; b < m->frame.bonds; b++)
     if (is_separated(m, b) == separated &&
-        shade_of(plot_frame_value(&m->frame, b, component), low, high) == wanted)
+        scale_step(plot_frame_value(&m->frame, b, component), low, high, SCALE_STEPS) == wanted)
       stroke_bond(c, m, b);
   cairo_stroke(c->cr);
 }
@@ -296,17 +276,37 @@ static void draw_bonds_of(canvas *c, const map *m, int component, double low, do
 /* Bonds by their value, higher ones above lower ones; separated ones as thin lines across their
    crack. */
 static void draw_bond_values(canvas *c, const map *m, int component, double low, double high) {
-  const double wide = pl_fmax(0.8, 0.22 * m->frame.spacing * m->scale);
+  const double wide = pl_fmax(0.8, 0.22 * m->frame.spacing * m->at.scale);
   cairo_set_line_cap(c->cr, CAIRO_LINE_CAP_ROUND);
   cairo_set_line_width(c->cr, 0.3 * wide);
-  canvas_colour(c, no_value);
-  draw_bonds_of(c, m, component, low, high, NO_SHADE, false);
-  for (int k = 0; k < 2 * SHADES; k++) {
-    const bool separated = k < SHADES;
-    canvas_colour(c, shade((k % SHADES + 0.5) / SHADES));
+  canvas_colour(c, scale_no_value);
+  draw_bonds_of(c, m, component, low, high, -1, false);
+  for (int k = 0; k < 2 * SCALE_STEPS; k++) {
+    const bool separated = k < SCALE_STEPS;
+    canvas_colour(c, scale_colour((k % SCALE_STEPS + 0.5) / SCALE_STEPS));
     cairo_set_line_width(c->cr, separated ? 0.3 * wide : wide);
-    draw_bonds_of(c, m, component, low, high, k % SHADES, separated);
+    draw_bonds_of(c, m, component, low, high, k % SCALE_STEPS, separated);
   }
+}
+
+/* --- meshes ----------------------------------------------------------------------------------- */
+
+/* Cells, their outline and their cracks; cells without values, too. */
+static void draw_meshes(canvas *c, const map *m, const sheet *s, int component) {
+  const plot_frame *f = &m->frame;
+  double *values = NULL;
+  if (f->meshes.count == 0) return;
+  if (f->values && !f->of_bonds) values = must_calloc((size_t)f->particles + 1, sizeof *values);
+  for (long p = 0; values && p < f->particles; p++)
+    values[p] = plot_frame_value(f, p, component);
+  const mesh_view v = {f->reference, f->moved, values};
+  if (values && s->level_count > 0)
+    plot_cells_contours(c, &f->meshes, &v, &m->at, s->levels, s->level_count);
+  else if (values)
+    plot_cells_fill(c, &f->meshes, &v, &m->at, s->least, s->most);
+  plot_cells_outline(c, &f->meshes, &v, &m->at);
+  plot_cells_cracks(c, &f->meshes, &v, &m->at);
+  free(values);
 }
 
 /* --- marks ------------------------------------------------------------------------------------ */
@@ -323,7 +323,7 @@ static void draw_mark(canvas *c, double x, double y, double radius) {
 
 /* On particles, or on the middle of bonds. */
 static void draw_marks(canvas *c, const map *m) {
-  const double radius = pl_fmax(1.6, 0.22 * m->frame.spacing * m->scale);
+  const double radius = pl_fmax(1.6, 0.22 * m->frame.spacing * m->at.scale);
   const long count = m->frame.marks_on_bonds ? m->frame.bonds : m->frame.particles;
   for (long k = 0; m->frame.marked && k < count; k++) {
     if (!(m->frame.marked[k] > 0)) continue;
@@ -382,7 +382,7 @@ static void draw_captions(canvas *c, const sheet *s) {
                wide = (s->high[0] - s->low[0]) * s->scale;
   canvas_colour(c, (colour){0.1, 0.1, 0.1});
   for (int k = 0; k < s->count && s->count > 1; k++)
-    canvas_text_within(c, s->panels[k].origin_x, s->panels[k].origin_y - high - 10, 18, wide,
+    canvas_text_within(c, s->panels[k].at.origin_x, s->panels[k].at.origin_y - high - 10, 18, wide,
                        s->panels[k].caption);
 }
 
@@ -443,31 +443,57 @@ static void draw_damage_legend(canvas *c, const sheet *s) {
   canvas_text(c, x, y, 18, ANCHOR_RIGHT, s->panels[0].frame.damage_of);
 }
 
-static void draw_value_legend(canvas *c, const sheet *s, const plot_map_options *o, double low,
-                              double high) {
+/* "stress_yy [MPa]"; which component of a vector. */
+static void name_values(const plot_frame *f, int component, const char *unit_text, char *text,
+                        size_t size) {
+  const char *part = f->components == 1 ? ""
+                     : component == 0   ? " x"
+                     : component == 1   ? " y"
+                     : component == 2   ? " z"
+                                        : " (size)";
+  const bool pure = strcmp(unit_text, "1") == 0;
+  snprintf(text, size, "%s%s%s%s%s", f->shown, part, pure ? "" : " [", pure ? "" : unit_text,
+           pure ? "" : "]");
+}
+
+static void draw_value_legend(canvas *c, const sheet *s, const plot_map_options *o) {
   const plot_frame *f = &s->panels[0].frame;
   double width = 360, x = WIDTH - MARGIN - width, y = s->height - 50, factor;
-  for (int k = 0; k < 180; k++) {
-    canvas_colour(c, shade(k / 179.0));
-    cairo_rectangle(c->cr, x + 2 * k, y, 2.5, 14);
+  const int steps = f->meshes.count > 0 ? CELL_STEPS : 180;
+  for (int k = 0; k < steps; k++) {
+    canvas_colour(c, scale_colour(f->meshes.count > 0 ? (k + 0.5) / steps : k / 179.0));
+    cairo_rectangle(c->cr, x + width / steps * k, y, width / steps + 0.5, 14);
     cairo_fill(c->cr);
   }
-  const char *shown = readable_unit(f->unit_text, pl_fmax(fabs(low), fabs(high)), &factor);
-  char text[256];
+  const char *shown = readable_unit(f->unit_text, pl_fmax(fabs(s->least), fabs(s->most)), &factor);
+  char text[512];
   canvas_colour(c, (colour){0.1, 0.1, 0.1});
-  snprintf(text, sizeof text, "%.4g", low * factor);
+  snprintf(text, sizeof text, "%s%.4g", o->range ? "\u2264 " : "", s->least * factor);
   canvas_text(c, x, y + 34, 18, ANCHOR_LEFT, text);
-  snprintf(text, sizeof text, "%.4g", high * factor);
+  snprintf(text, sizeof text, "%s%.4g", o->range ? "\u2265 " : "", s->most * factor);
   canvas_text(c, x + width, y + 34, 18, ANCHOR_RIGHT, text);
-  const char *part = f->components == 1  ? ""
-                     : o->component == 0 ? " x"
-                     : o->component == 1 ? " y"
-                     : o->component == 2 ? " z"
-                                         : " (size)";
-  const bool pure = strcmp(shown, "1") == 0;
-  snprintf(text, sizeof text, "%s%s%s%s%s", o->field, part, pure ? "" : " [", pure ? "" : shown,
-           pure ? "" : "]");
+  name_values(f, o->component, shown, text, sizeof text);
   canvas_text(c, x - 14, y + 13, 18, ANCHOR_RIGHT, text);
+}
+
+/* A sample of each line above its value. */
+static void draw_level_legend(canvas *c, const sheet *s, const plot_map_options *o) {
+  const plot_frame *f = &s->panels[0].frame;
+  const double step = pl_fmin(72, 1000.0 / s->level_count);
+  double x = WIDTH - MARGIN - step * s->level_count, factor;
+  const double y = s->height - 44;
+  const char *shown = readable_unit(f->unit_text, pl_fmax(fabs(s->least), fabs(s->most)), &factor);
+  char text[512];
+  name_values(f, o->component, shown, text, sizeof text);
+  canvas_colour(c, (colour){0.1, 0.1, 0.1});
+  canvas_text(c, x - 14, y + 22, 18, ANCHOR_RIGHT, text);
+  for (int k = 0; k < s->level_count; k++, x += step) {
+    canvas_colour(c, contour_colour(k, s->level_count));
+    canvas_line(c, x + 0.1 * step, y, x + 0.9 * step, y, 5);
+    canvas_colour(c, (colour){0.1, 0.1, 0.1});
+    snprintf(text, sizeof text, "%.4g", s->levels[k] * factor + 0.0);
+    if (step >= 50 || k % 2 == 0) canvas_text(c, x + step / 2, y + 22, 16, ANCHOR_CENTRE, text);
+  }
 }
 
 /* Least and largest value that is drawn; false when none is a number. */
@@ -486,6 +512,9 @@ static bool range_of(const sheet *s, int component, double *low, double *high) {
 
 static void draw_crack_legend(canvas *c, const sheet *s) {
   const double x = MARGIN + 300, y = s->height - 34;
+  const map *last = &s->panels[s->count - 1]; /* where most has grown */
+  if (last->frame.meshes.crack_count > 0)
+    plot_cells_crack_legend(c, &last->frame.meshes, MARGIN, s->height - 66);
   bool any = false;
   for (int n = 0; n < s->count; n++)
     for (long b = 0; b < s->panels[n].frame.bonds; b++)
@@ -498,26 +527,58 @@ static void draw_crack_legend(canvas *c, const sheet *s) {
 
 /* --- the picture ------------------------------------------------------------------------------ */
 
-static void draw_field(canvas *c, const map *m, const plot_map_options *o, double low,
-                       double high) {
-  if (m->frame.of_bonds) draw_bond_values(c, m, o->component, low, high);
-  draw_particles(c, m, o->component, low, high);
+static void draw_field(canvas *c, const map *m, const plot_map_options *o, const sheet *s) {
+  if (m->frame.of_bonds) draw_bond_values(c, m, o->component, s->least, s->most);
+  draw_meshes(c, m, s, o->component);
+  draw_particles(c, m, o->component, s->least, s->most);
   if (m->frame.damage) draw_bonds(c, m, false);
 }
 
-static void draw_damage(canvas *c, const map *m, const plot_map_options *o) {
+static void draw_damage(canvas *c, const map *m, const plot_map_options *o, const sheet *s) {
+  draw_meshes(c, m, s, o->component);
   if (m->frame.damage) draw_bonds(c, m, true); /* damage of particles says nothing of bonds */
   draw_particles(c, m, o->component, 0, 0);
 }
 
-static bool draw_sheet(sheet *s, const plot_map_options *o, char *error, size_t size) {
-  double low = 0, high = 0;
-  if (!fit_picture(s, error, size)) return false;
-  const bool measured = s->panels[0].frame.values && !s->panels[0].frame.of_damage;
-  if (measured && !range_of(s, o->component, &low, &high)) {
+/* "LOW,HIGH", in the unit of the values. */
+static bool read_range(sheet *s, const char *range, char *error, size_t size) {
+  const char *unit_text = s->panels[0].frame.unit_text, *comma = strchr(range, ',');
+  if (comma && quantity_read(range, (size_t)(comma - range), unit_text, &s->least) &&
+      quantity_read(comma + 1, strlen(comma + 1), unit_text, &s->most) && s->least < s->most)
+    return true;
+  snprintf(error, size, "--range needs two ascending values in a unit of `%s`, not `%s`", unit_text,
+           range);
+  return false;
+}
+
+/* Which values have colours, or lines. */
+static bool choose_values(sheet *s, const plot_map_options *o, char *error, size_t size) {
+  if (!range_of(s, o->component, &s->least, &s->most)) {
     snprintf(error, size, "`%s` holds no finite value to draw", o->field);
     return false;
   }
+  if (o->range && !read_range(s, o->range, error, size)) return false;
+  if (o->contours > 0) s->level_count = contour_levels(s->least, s->most, o->contours, s->levels);
+  if (o->contours == 0 || s->level_count > 0) return true;
+  snprintf(error, size, "`%s` is the same everywhere: there are no lines of equal value", o->field);
+  return false;
+}
+
+static void draw_legend(canvas *c, const sheet *s, const plot_map_options *o, bool measured) {
+  if (!measured)
+    draw_damage_legend(c, s);
+  else if (s->level_count > 0)
+    draw_level_legend(c, s, o);
+  else
+    draw_value_legend(c, s, o);
+  if (measured) draw_crack_legend(c, s);
+  draw_mark_legend(c, s, o->mark);
+}
+
+static bool draw_sheet(sheet *s, const plot_map_options *o, char *error, size_t size) {
+  if (!fit_picture(s, error, size)) return false;
+  const bool measured = s->panels[0].frame.values && !s->panels[0].frame.of_damage;
+  if (measured && !choose_values(s, o, error, size)) return false;
   canvas c;
   if (!canvas_open(&c, o->output, WIDTH, s->height, error, size)) return false;
   draw_head(&c, s);
@@ -526,17 +587,12 @@ static bool draw_sheet(sheet *s, const plot_map_options *o, char *error, size_t 
   draw_axes(&c, s);
   for (int k = 0; k < s->count; k++) {
     if (measured)
-      draw_field(&c, &s->panels[k], o, low, high);
+      draw_field(&c, &s->panels[k], o, s);
     else
-      draw_damage(&c, &s->panels[k], o);
+      draw_damage(&c, &s->panels[k], o, s);
     draw_marks(&c, &s->panels[k]);
   }
-  if (measured) draw_crack_legend(&c, s);
-  if (measured)
-    draw_value_legend(&c, s, o, low, high);
-  else
-    draw_damage_legend(&c, s);
-  draw_mark_legend(&c, s, o->mark);
+  draw_legend(&c, s, o, measured);
   return canvas_close(&c, error, size);
 }
 

@@ -1,12 +1,14 @@
 #include "runtime/result/result.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
 #include "runtime/base/whole_file.h"
 #include "runtime/result/hdf5_tools.h"
+#include "runtime/result/mesh_views.h"
 #include "runtime/result/sealed_file.h"
 #include "runtime/result/views.h"
 #include "runtime/result/xdmf.h"
@@ -187,28 +189,85 @@ typedef struct frame_sets {
   hid_t *sets; /* [field_count]; negative: could not be made */
   double *times;
   long count;
+  mesh_views meshes;
 } frame_sets;
 
-static int shape_of(const result_field *f, long frames, hsize_t shape[3]) {
-  shape[0] = (hsize_t)frames;
-  shape[1] = (hsize_t)f->count;
+/* The path that the field is; NULL of others. */
+static mesh_path *path_of(const frame_sets *s, const result_field *f) {
+  for (int k = 0; k < s->meshes.path_count; k++)
+    if (s->meshes.paths[k].field == f) return &s->meshes.paths[k];
+  return NULL;
+}
+
+/* How many points of a path there are. */
+static bool measure_frame(void *context, int64_t frame, const double *record) {
+  const frame_sets *s = context;
+  const double *values = record + 1;
+  (void)frame;
+  for (int k = 0; k < s->header->field_count; k++) {
+    const result_field *f = &s->header->fields[k];
+    mesh_path *p = path_of(s, f);
+    while (p && p->most < f->count && !isnan(values[2 * p->most]))
+      p->most++;
+    values += numbers_of(f);
+  }
+  return true;
+}
+
+/* "" of a path that the header does not tell of. */
+static const char *mesh_of(const result_header *h, const result_field *f) {
+  for (int k = 0; k < h->crack_count; k++)
+    if (strcmp(h->cracks[k].field, f->name) == 0) return h->cracks[k].mesh;
+  return "";
+}
+
+/* Room for the paths. A damaged frame leaves a sentence. */
+static bool open_paths(const result *r, frame_sets *s, char *error, size_t size) {
+  const result_header *h = s->header;
+  mesh_views *v = &s->meshes;
+  v->paths = must_calloc((size_t)h->field_count + 1, sizeof *v->paths);
+  for (int k = 0; k < h->field_count; k++)
+    if (result_field_is_path(&h->fields[k]))
+      v->paths[v->path_count++] =
+          (mesh_path){.field = &h->fields[k], .mesh = mesh_of(h, &h->fields[k]), .most = 1};
+  if (v->path_count > 0 && !frame_file_each(r->frames, measure_frame, s, error, size)) return false;
+  for (int k = 0; k < v->path_count; k++)
+    v->paths[k].points =
+        must_calloc(2 * (size_t)(v->paths[k].most * s->count) + 1, sizeof *v->paths[k].points);
+  return true;
+}
+
+static int shape_of(const frame_sets *s, const result_field *f, hsize_t shape[3]) {
+  const mesh_path *p = path_of(s, f);
+  shape[0] = (hsize_t)s->count;
+  shape[1] = (hsize_t)(p ? p->most : f->count);
   shape[2] = (hsize_t)f->components;
   return f->interaction ? 2 : 3;
 }
 
-static hid_t make_field(hid_t file, const result_field *f, long frames) {
+/* "/cracks/notch" of "notch/points". */
+static bool make_group_of_path(hid_t file, const result_field *f) {
+  char name[512];
+  snprintf(name, sizeof name, "/cracks/%.*s", (int)(strrchr(f->name, '/') - f->name), f->name);
+  return h5_make_group(file, name);
+}
+
+static hid_t make_field(hid_t file, const frame_sets *s, const result_field *f) {
   char name[512];
   hsize_t shape[3];
   if (result_field_of_cracks(f) && !h5_make_group(file, "/cracks")) return -1;
+  if (result_field_is_path(f) && !make_group_of_path(file, f)) return -1;
   snprintf(name, sizeof name, "%s/%s", result_field_of_cracks(f) ? "/cracks" : "/frames",
            f->interaction ? f->interaction : f->name);
   if (f->interaction) {
     if (!h5_make_group(file, name)) return -1;
     snprintf(name, sizeof name, "/frames/%s/%s", f->interaction, f->name);
   }
-  const int rank = shape_of(f, frames, shape);
+  const int rank = shape_of(s, f, shape);
   const hid_t set = h5_make_frames(file, name, rank, shape, f->unit);
-  if (set < 0 || h5_attribute_text(set, "kind", f->kind)) return set;
+  if (set < 0 || (h5_attribute_text(set, "kind", f->kind) &&
+                  (!path_of(s, f) || h5_attribute_text(set, "mesh", path_of(s, f)->mesh))))
+    return set;
   H5Dclose(set);
   return -1;
 }
@@ -221,7 +280,9 @@ static bool put_frame(void *context, int64_t frame, const double *record) {
   for (int k = 0; good && k < s->header->field_count; k++) {
     const result_field *f = &s->header->fields[k];
     hsize_t shape[3];
-    const int rank = shape_of(f, s->count, shape);
+    const int rank = shape_of(s, f, shape);
+    const mesh_path *p = path_of(s, f);
+    if (p) memcpy(p->points + 2 * p->most * frame, values, 2 * (size_t)p->most * sizeof *values);
     good = s->sets[k] >= 0 && h5_write_frame(s->sets[k], (long)frame, rank, shape, values);
     values += numbers_of(f);
   }
@@ -244,16 +305,17 @@ static bool describe_fields(hid_t file, const frame_sets *s) {
 /* A damaged frame leaves a sentence in `error`, a full disk none. */
 static bool write_frames(hid_t file, const result *r, frame_sets *s, char *error, size_t size) {
   const int fields = r->header.field_count;
-  bool good = h5_make_group(file, "/frames");
+  bool good = h5_make_group(file, "/frames") && open_paths(r, s, error, size);
   s->sets = must_alloc(((size_t)fields + 1) * sizeof *s->sets);
   for (int k = 0; k < fields; k++) {
-    s->sets[k] = good ? make_field(file, &r->header.fields[k], s->count) : -1;
+    s->sets[k] = good ? make_field(file, s, &s->header->fields[k]) : -1;
     good = s->sets[k] >= 0;
   }
   good = good && frame_file_each(r->frames, put_frame, s, error, size) && describe_fields(file, s);
   for (int k = 0; k < fields; k++)
     if (s->sets[k] >= 0) good = H5Dclose(s->sets[k]) >= 0 && good;
   free(s->sets);
+  if (good) mesh_views_find(&s->meshes, s->header, s->count);
   return good;
 }
 
@@ -275,10 +337,11 @@ static bool write_hdf5(const result *r, const result_ending *e, frame_sets *fram
                        const char *path, char *error, size_t size) {
   const hid_t file = sealed_file_create(path);
   if (file < 0) return false;
-  const bool good = write_attributes(file, &r->header, e) && write_input(file, &r->header) &&
-                    write_particles(file, &r->header) && write_history(file, &r->header, e) &&
-                    write_frames(file, r, frames, error, size) &&
-                    views_write(file, &r->header, frames->count);
+  const bool good =
+      write_attributes(file, &r->header, e) && write_input(file, &r->header) &&
+      write_particles(file, &r->header) && mesh_views_write_meshes(file, &r->header) &&
+      write_history(file, &r->header, e) && write_frames(file, r, frames, error, size) &&
+      views_write(file, &r->header, &frames->meshes, frames->count);
   if (good) return sealed_file_close(file, path);
   H5Fclose(file);
   return false;
@@ -286,7 +349,8 @@ static bool write_hdf5(const result *r, const result_ending *e, frame_sets *fram
 
 static bool write_sidecar(const result *r, const frame_sets *frames, const char *path) {
   FILE *out = fopen(path, "w");
-  const bool good = out && xdmf_write(out, &r->header, frames->times, frames->count);
+  const bool good =
+      out && xdmf_write(out, &r->header, &frames->meshes, frames->times, frames->count);
   return out && fclose(out) == 0 && good;
 }
 
@@ -324,5 +388,6 @@ bool result_finish(result *r, const result_ending *e, char *error, size_t size) 
   } else
     whole_file_end(&file, false);
   free(frames.times);
+  mesh_views_free(&frames.meshes);
   return good || fail(path, error, size);
 }

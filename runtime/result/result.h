@@ -23,6 +23,12 @@
                             and kind ("state", "damage", "output" of the law, "other")
      /cracks/<monitor>      [F, N, 2] m: place along the monitor's line and width of each crack in
                             the order of places, NaN beyond the last; only with such monitors
+     /cracks/<crack>/points [F, P, 2] m: the points of a mesh's crack from its first to its last,
+                            with what has grown at either end, NaN beyond; P as many as it has had;
+                            attribute mesh
+     /meshes/<mesh>/        nodes [N, 2] m, cells [C, 4] their nodes counter-clockwise, method [C]
+                            of cells (1 a finite element, 2 blended, 3 element-free); attributes
+                            first_particle (of its nodes in /particles) and thickness (m)
      /VTKHDF, /xdmf         the same for other programs (views.h)
 
    The times are dimension scales of what stands beside them. */
@@ -50,14 +56,18 @@ typedef struct result_field { /* of a frame */
   int components;          /* 1, 2, ... */
   long count;              /* particles, bonds or, at most, cracks */
   /* "state", "damage", "output" of the law; "cracks" across the line of the monitor of that name;
-     else "other" */
+     "path" of a crack of a mesh; else "other" */
   const char *kind;
   const char *long_name; /* in words; NULL: nobody has said */
 } result_field;
 
+/* The points of a crack, "notch/points"; `count` is how many it can have. */
+static inline bool result_field_is_path(const result_field *f) {
+  return strcmp(f->kind, "path") == 0;
+}
 /* Neither of particles nor of bonds. */
 static inline bool result_field_of_cracks(const result_field *f) {
-  return strcmp(f->kind, "cracks") == 0;
+  return strcmp(f->kind, "cracks") == 0 || result_field_is_path(f);
 }
 
 typedef struct result_series { /* of the history */
@@ -76,6 +86,19 @@ typedef struct result_bonds { /* of an interaction */
   long count;
   const int32_t *pairs; /* [count][2] particles */
 } result_bonds;
+
+typedef struct result_mesh {
+  const char *name;
+  long first_particle, node_count; /* its nodes are particles of the result */
+  long cell_count;
+  const int32_t *cells;  /* [cell_count][4] its nodes, counter-clockwise */
+  const int32_t *method; /* [cell_count] 1, 2, 3 as /meshes says */
+  double thickness;      /* m */
+} result_mesh;
+
+typedef struct result_crack { /* whose points are a path */
+  const char *field, *mesh;   /* "notch/points", "beam" */
+} result_crack;
 
 typedef struct result_header {
   const char *path;        /* of the final file */
@@ -98,6 +121,10 @@ typedef struct result_header {
   const int32_t *resolved;   /* [N]; NULL on lattices */
   const result_bonds *bonds; /* [interaction_count] */
   int interaction_count;
+  const result_mesh *meshes;
+  int mesh_count;
+  const result_crack *cracks; /* [crack_count] all paths */
+  int crack_count;
   const result_field *fields;
   int field_count;
 } result_header;

@@ -67,28 +67,40 @@ double *result_read_frame_times(result_file *f, long *frames) {
   return result_read_table(f, "/frames/time", false, 1, 1, frames, &columns);
 }
 
-/* Which lines of monitors there are. */
-static void say_no_cracks(result_file *f, const char *monitor, char *error, size_t size) {
+/* Cracks, and lines of monitors that cracks cut. */
+static void say_no_cracks(result_file *f, const char *name, char *error, size_t size) {
   result_names there = result_list(f, "/cracks");
-  int n =
-      snprintf(error, size, "`%s` has no cracks of a monitor `%s`", f->path, name_shown(monitor));
+  int n = snprintf(error, size, "`%s` has no crack, and no cracks of a monitor, `%s`", f->path,
+                   name_shown(name));
   for (int k = 0; k < there.count && n > 0 && (size_t)n < size; k++)
-    n += snprintf(error + n, size - (size_t)n, "%s`%s`", k ? ", " : "; it has those of ",
+    n += snprintf(error + n, size - (size_t)n, "%s`%s`", k ? ", " : "; it has ",
                   name_shown(there.items[k]));
   if (there.count == 0 && n > 0 && (size_t)n < size)
     snprintf(error + n, size - (size_t)n,
-             ": it holds them where the deck has one of the kind 'crack_width'");
+             ": it holds them where the deck has a &crack, or a monitor of the kind 'crack_width'");
   result_names_free(&there);
 }
 
-double *result_read_cracks(result_file *f, const char *monitor, long *frames, long *most,
-                           char *error, size_t size) {
-  char path[512];
+/* "/cracks/notch/points" */
+static void name_path(const char *crack, char path[600]) {
+  snprintf(path, 600, "/cracks/%.500s/points", crack);
+}
+
+bool result_has_path(result_file *f, const char *crack) {
+  char path[600];
+  name_path(crack, path);
+  const hid_t set = strchr(crack, '/') ? -1 : result_set_open(f, path);
+  if (set >= 0) H5Dclose(set);
+  return set >= 0;
+}
+
+/* [frames][most][2]. */
+static double *read_pairs(result_file *f, const char *path, const char *name, long *frames,
+                          long *most, char *error, size_t size) {
   hsize_t shape[3] = {0, 0, 0};
-  snprintf(path, sizeof path, "/cracks/%.500s", monitor);
-  const hid_t set = strchr(monitor, '/') ? -1 : result_set_open(f, path);
+  const hid_t set = strchr(name, '/') ? -1 : result_set_open(f, path);
   if (set < 0) {
-    say_no_cracks(f, monitor, error, size);
+    say_no_cracks(f, name, error, size);
     return NULL;
   }
   double *values = result_set_read(f, set, H5T_NATIVE_DOUBLE, sizeof *values, 3, shape);
@@ -102,6 +114,20 @@ double *result_read_cracks(result_file *f, const char *monitor, long *frames, lo
   *most = (long)shape[1];
   H5Dclose(set);
   return values;
+}
+
+double *result_read_cracks(result_file *f, const char *monitor, long *frames, long *most,
+                           char *error, size_t size) {
+  char path[512];
+  snprintf(path, sizeof path, "/cracks/%.500s", monitor);
+  return read_pairs(f, path, monitor, frames, most, error, size);
+}
+
+double *result_read_path(result_file *f, const char *crack, long *frames, long *most, char *error,
+                         size_t size) {
+  char path[600];
+  name_path(crack, path);
+  return read_pairs(f, path, crack, frames, most, error, size);
 }
 
 char *result_read_text(result_file *f, const char *path) {

@@ -5,7 +5,7 @@
 
 #include "runtime/result/hdf5_tools.h"
 
-enum { NAME = 512, LINE = 3 }; /* VTK's number of a cell that is a line */
+enum { NAME = 512, LINE = 3, QUAD = 9 }; /* VTK's numbers of cells that are lines, quadrilaterals */
 
 int views_components(const result_field *f) {
   return f->components == 1 ? 1 : 3;
@@ -41,7 +41,7 @@ int views_arrays(const result_header *h, views_array *arrays, arena *texts) {
   return count;
 }
 
-static long all_bonds(const result_header *h) {
+long views_bonds(const result_header *h) {
   long sum = 0;
   for (int k = 0; k < h->interaction_count; k++)
     sum += h->bonds[k].count;
@@ -49,7 +49,7 @@ static long all_bonds(const result_header *h) {
 }
 
 long views_count(const result_header *h, const result_field *f) {
-  return f->interaction ? all_bonds(h) : h->particle_count;
+  return f->interaction ? views_bonds(h) : h->particle_count;
 }
 
 static const char *place_of(const result_field *f) {
@@ -128,20 +128,39 @@ static bool show_each_frame(hid_t file, const result_header *h, const views_arra
 
 /* --- /VTKHDF ---------------------------------------------------------------------------------- */
 
-static bool write_count(hid_t file, const char *name, long count) {
-  const hsize_t one[1] = {1};
-  const int64_t value = count;
-  return h5_write_list(file, name, &value, 1, one);
+/* One number for each part. */
+static bool write_counts(hid_t file, const char *name, const int64_t *values, int parts) {
+  const hsize_t shape[1] = {(hsize_t)parts};
+  return h5_write_list(file, name, values, 1, shape);
 }
 
-/* Cells that are lines have their points at 0, 2, 4, ... */
-static bool write_lines(hid_t file, long count) {
-  const hsize_t cells[1] = {(hsize_t)count}, ends[1] = {(hsize_t)count + 1};
-  int32_t *offsets = must_alloc(((size_t)count + 1) * sizeof *offsets);
-  unsigned char *types = must_alloc((size_t)count + 1);
-  memset(types, LINE, (size_t)count + 1);
-  for (long k = 0; k <= count; k++)
-    offsets[k] = (int32_t)(2 * k);
+typedef struct grid_parts { /* of the grid, which frames choose from */
+  int count, corners;       /* of a cell: 2 or 4 */
+  int64_t *cells;           /* [count] */
+} grid_parts;
+
+/* Bonds, or where there are none the cells of meshes. */
+static grid_parts parts_of(const result_header *h, const mesh_views *m) {
+  const bool bonds = views_bonds(h) > 0 || m->set_count == 0;
+  grid_parts p = {bonds ? 1 : m->set_count, bonds ? 2 : 4, NULL};
+  p.cells = must_calloc((size_t)p.count, sizeof *p.cells);
+  for (int k = 0; k < p.count; k++)
+    p.cells[k] = bonds ? views_bonds(h) : m->sets[k].count;
+  return p;
+}
+
+/* Cells of one kind have their points at 0, 2, 4, ... of each part. */
+static bool write_kinds(hid_t file, const grid_parts *p) {
+  int64_t all = 0, at = 0;
+  for (int k = 0; k < p->count; k++)
+    all += p->cells[k];
+  const hsize_t cells[1] = {(hsize_t)all}, ends[1] = {(hsize_t)(all + p->count)};
+  int32_t *offsets = must_alloc((size_t)ends[0] * sizeof *offsets);
+  unsigned char *types = must_alloc((size_t)all + 1);
+  memset(types, p->corners == 2 ? LINE : QUAD, (size_t)all + 1);
+  for (int k = 0; k < p->count; k++)
+    for (int64_t c = 0; c <= p->cells[k]; c++)
+      offsets[at++] = (int32_t)(p->corners * c);
   const bool good = h5_write_integers(file, "/VTKHDF/Offsets", offsets, 1, ends) &&
                     h5_write_bytes(file, "/VTKHDF/Types", types, 1, cells);
   free(types);
@@ -151,7 +170,7 @@ static bool write_lines(hid_t file, long count) {
 
 /* The bonds of all interactions, one after the other. */
 static bool show_bonds(hid_t file, const result_header *h) {
-  const hsize_t ends[1] = {2 * (hsize_t)all_bonds(h)};
+  const hsize_t ends[1] = {2 * (hsize_t)views_bonds(h)};
   const size_t most = (size_t)h->interaction_count;
   h5_block *blocks = must_calloc(most, sizeof *blocks);
   char(*sets)[NAME] = must_calloc(most, sizeof *sets);
@@ -170,16 +189,40 @@ static bool show_bonds(hid_t file, const result_header *h) {
   return good;
 }
 
-static bool write_grid(hid_t file, const result_header *h) {
-  const long bonds = all_bonds(h);
+/* The cells of all sets, one after the other. */
+static bool write_cells(hid_t file, const mesh_views *m) {
+  hsize_t ends[1] = {0}, at = 0;
+  for (int k = 0; k < m->set_count; k++)
+    ends[0] += 4 * (hsize_t)m->sets[k].count;
+  int32_t *corners = must_alloc(((size_t)ends[0] + 1) * sizeof *corners);
+  for (int k = 0; k < m->set_count; k++) {
+    const size_t numbers = 4 * (size_t)m->sets[k].count;
+    if (numbers) memcpy(corners + at, m->sets[k].corners, numbers * sizeof *corners);
+    at += numbers;
+  }
+  const bool good = h5_write_integers(file, VIEWS_CONNECTIVITY, corners, 1, ends);
+  free(corners);
+  return good;
+}
+
+static bool write_grid(hid_t file, const result_header *h, const mesh_views *m,
+                       const grid_parts *p) {
   const hsize_t points[2] = {(hsize_t)h->particle_count, 3};
   const h5_block places = {.set = "/particles/reference",
                            .count = {points[0], (hsize_t)h->dimensions}};
-  return write_count(file, "/VTKHDF/NumberOfPoints", h->particle_count) &&
-         write_count(file, "/VTKHDF/NumberOfCells", bonds) &&
-         write_count(file, "/VTKHDF/NumberOfConnectivityIds", 2 * bonds) &&
-         h5_make_view(file, VIEWS_POINTS, 2, points, &places, 1, false) && show_bonds(file, h) &&
-         write_lines(file, bonds);
+  int64_t *numbers = must_calloc(2 * (size_t)p->count, sizeof *numbers), *ids = numbers + p->count;
+  for (int k = 0; k < p->count; k++) {
+    numbers[k] = h->particle_count;
+    ids[k] = p->corners * p->cells[k];
+  }
+  const bool good = write_counts(file, "/VTKHDF/NumberOfPoints", numbers, p->count) &&
+                    write_counts(file, "/VTKHDF/NumberOfCells", p->cells, p->count) &&
+                    write_counts(file, "/VTKHDF/NumberOfConnectivityIds", ids, p->count) &&
+                    h5_make_view(file, VIEWS_POINTS, 2, points, &places, 1, false) &&
+                    (p->corners == 2 ? show_bonds(file, h) : write_cells(file, m)) &&
+                    write_kinds(file, p);
+  free(numbers);
+  return good;
 }
 
 /* For each frame where something begins: `stride` further each time. */
@@ -194,8 +237,26 @@ static bool write_beginnings(hid_t file, const char *name, int rank, long frames
   return good;
 }
 
-/* The grid is the same in all frames: it begins at 0. */
-static bool write_steps(hid_t file, long frames) {
+/* Of the parts of the frames: which one, where its cells begin, and their points. */
+static bool write_parts(hid_t file, const mesh_views *m, const grid_parts *p, long frames) {
+  const hsize_t shape[2] = {(hsize_t)frames, 1};
+  int64_t *part = must_calloc(3 * (size_t)frames, sizeof *part), *cell = part + frames,
+          *id = cell + frames;
+  for (long k = 0; k < frames; k++) {
+    part[k] = p->count > 1 ? m->set_of_frame[k] : 0;
+    for (int64_t n = 0; n < part[k]; n++)
+      cell[k] += p->cells[n];
+    id[k] = p->corners * cell[k];
+  }
+  const bool good = h5_write_list(file, "/VTKHDF/Steps/PartOffsets", part, 1, shape) &&
+                    h5_write_list(file, "/VTKHDF/Steps/CellOffsets", cell, 2, shape) &&
+                    h5_write_list(file, "/VTKHDF/Steps/ConnectivityIdOffsets", id, 2, shape);
+  free(part);
+  return good;
+}
+
+/* The points are the same in all frames: they begin at 0. */
+static bool write_steps(hid_t file, const mesh_views *m, const grid_parts *p, long frames) {
   bool good = h5_make_group(file, "/VTKHDF/Steps");
   const hid_t steps = good ? H5Gopen2(file, "/VTKHDF/Steps", H5P_DEFAULT) : -1;
   if (steps < 0) return false;
@@ -204,11 +265,9 @@ static bool write_steps(hid_t file, long frames) {
   H5Gclose(steps);
   return good && h5_make_group(file, "/VTKHDF/Steps/PointDataOffsets") &&
          h5_make_group(file, "/VTKHDF/Steps/CellDataOffsets") &&
-         write_beginnings(file, "/VTKHDF/Steps/PartOffsets", 1, frames, 0, 0) &&
          write_beginnings(file, "/VTKHDF/Steps/NumberOfParts", 1, frames, 1, 0) &&
          write_beginnings(file, "/VTKHDF/Steps/PointOffsets", 1, frames, 0, 0) &&
-         write_beginnings(file, "/VTKHDF/Steps/CellOffsets", 2, frames, 0, 0) &&
-         write_beginnings(file, "/VTKHDF/Steps/ConnectivityIdOffsets", 2, frames, 0, 0);
+         write_parts(file, m, p, frames);
 }
 
 static bool write_array(hid_t file, const result_header *h, const views_array *a, long frames) {
@@ -234,8 +293,12 @@ static bool begin_groups(hid_t file) {
   return H5Gclose(vtk) >= 0 && good;
 }
 
-bool views_write(hid_t file, const result_header *h, long frames) {
-  bool good = begin_groups(file) && write_grid(file, h) && (!frames || write_steps(file, frames));
+bool views_write(hid_t file, const result_header *h, const mesh_views *m, long frames) {
+  grid_parts parts = parts_of(h, m);
+  bool good = begin_groups(file) && write_grid(file, h, m, &parts) &&
+              (!frames || write_steps(file, m, &parts, frames)) &&
+              mesh_views_write(file, m, frames);
+  free(parts.cells);
   arena *texts = arena_new();
   views_array *arrays = must_calloc((size_t)h->field_count + 1, sizeof *arrays);
   const int count = frames ? views_arrays(h, arrays, texts) : 0;

@@ -5,7 +5,9 @@
    interactions without that field.
 
      /VTKHDF                          for VTK's own reader, by the specification of VTKHDF 2.0: a
-                                      grid with steps, all frames of a field one behind the other
+                                      grid with steps, all frames of a field one behind the other.
+                                      Of a run on meshes alone its cells are theirs that no crack
+                                      crosses, a part for each set of mesh_views.h
      /xdmf/particles/<field>/<frame>  [N] or [N, 3], and
      /xdmf/bonds/<field>/<frame>      [M]: a set for each frame, for the sidecar (xdmf.h)  */
 #ifndef PERILAT_RUNTIME_VIEWS_H
@@ -14,7 +16,7 @@
 #include <hdf5.h>
 
 #include "dsl/base/arena.h"
-#include "runtime/result/result.h"
+#include "runtime/result/mesh_views.h"
 
 #define VIEWS_POINTS       "/VTKHDF/Points"       /* [N, 3] */
 #define VIEWS_CONNECTIVITY "/VTKHDF/Connectivity" /* [2 M] */
@@ -30,7 +32,9 @@ int views_arrays(const result_header *h, views_array *arrays, arena *texts);
 /* Particles, or bonds of all interactions. */
 long views_count(const result_header *h, const result_field *f);
 /* After all else has been written. */
-bool views_write(hid_t file, const result_header *h, long frames);
+bool views_write(hid_t file, const result_header *h, const mesh_views *m, long frames);
+/* Of all interactions. */
+long views_bonds(const result_header *h);
 /* Components in the views: 1 or 3. */
 int views_components(const result_field *f);
 /* The name of the set that shows a frame of an array. */

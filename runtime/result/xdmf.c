@@ -59,35 +59,117 @@ static void print_attribute(FILE *out, const char *file, const result_header *h,
   fputs("</Attribute>\n", out);
 }
 
-static long bonds_of(const result_header *h) {
-  return views_count(h, &(result_field){.interaction = ""});
+static void begin_grid(FILE *out, const char *name, double time) {
+  fprintf(out, "<Grid Name=\"%s\" GridType=\"Uniform\"><Time Value=\"%.17g\"/>\n", name, time);
 }
 
-static void print_frame(FILE *out, const char *file, const result_header *h,
-                        const views_array *arrays, int count, long frame, double time) {
-  fprintf(out,
-          "<Grid Name=\"frame\" GridType=\"Uniform\"><Time Value=\"%.17g\"/>\n"
-          "<Topology TopologyType=\"Polyline\" NodesPerElement=\"2\" NumberOfElements=\"%ld\">",
-          time, bonds_of(h));
-  print_item(out, file, VIEWS_CONNECTIVITY, "Int", 4, bonds_of(h), 2);
-  fputs("</Topology>\n<Geometry GeometryType=\"XYZ\">", out);
-  print_item(out, file, VIEWS_POINTS, "Float", 8, h->particle_count, 3);
+static void print_topology(FILE *out, const char *file, const char *words, const char *set,
+                           long cells, int corners) {
+  fprintf(out, "<Topology TopologyType=\"%s NumberOfElements=\"%ld\">", words, cells);
+  print_item(out, file, set, "Int", 4, cells, corners);
+  fputs("</Topology>\n", out);
+}
+
+static void print_geometry(FILE *out, const char *file, const char *set, long points) {
+  fputs("<Geometry GeometryType=\"XYZ\">", out);
+  print_item(out, file, set, "Float", 8, points, 3);
   fputs("</Geometry>\n", out);
-  for (int k = 0; k < count; k++)
-    print_attribute(out, file, h, frame, &arrays[k]);
-  fputs("</Grid>\n", out);
 }
 
-bool xdmf_write(FILE *out, const result_header *h, const double *times, long frames) {
+/* A part of the document: a series of grids. */
+typedef struct sidecar {
+  FILE *out;
+  const char *file; /* without its folder */
+  const result_header *header;
+  const mesh_views *meshes;
+  const double *times; /* [frames] */
+  long frames;
+  const views_array *arrays;
+  int array_count;
+} sidecar;
+
+static void begin_series(const sidecar *s, const char *name, int length) {
+  char text[512];
+  snprintf(text, sizeof text, "%.*s", length, name);
+  fputs("<Grid Name=\"", s->out);
+  print_text(s->out, text);
+  fputs("\" GridType=\"Collection\" CollectionType=\"Temporal\">\n", s->out);
+}
+
+static void print_attributes(const sidecar *s, long frame, bool of_bonds) {
+  for (int k = 0; k < s->array_count; k++)
+    if (of_bonds || !s->arrays[k].field->interaction)
+      print_attribute(s->out, s->file, s->header, frame, &s->arrays[k]);
+}
+
+static void print_bonds(const sidecar *s, const char *name) {
+  const long bonds = views_bonds(s->header);
+  begin_series(s, name, (int)strlen(name));
+  for (long frame = 0; frame < s->frames; frame++) {
+    begin_grid(s->out, "frame", s->times[frame]);
+    print_topology(s->out, s->file, "Polyline\" NodesPerElement=\"2\"", VIEWS_CONNECTIVITY, bonds,
+                   2);
+    print_geometry(s->out, s->file, VIEWS_POINTS, s->header->particle_count);
+    print_attributes(s, frame, true);
+    fputs("</Grid>\n", s->out);
+  }
+  fputs("</Grid>", s->out);
+}
+
+static void print_cells(const sidecar *s) {
+  begin_series(s, "cells", (int)strlen("cells"));
+  for (long frame = 0; frame < s->frames; frame++) {
+    const int set = s->meshes->set_of_frame[frame];
+    char name[512];
+    mesh_views_set_name(set, name, sizeof name);
+    begin_grid(s->out, "frame", s->times[frame]);
+    print_topology(s->out, s->file, "Quadrilateral\"", name, s->meshes->sets[set].count, 4);
+    print_geometry(s->out, s->file, VIEWS_POINTS, s->header->particle_count);
+    print_attributes(s, frame, false);
+    fputs("</Grid>\n", s->out);
+  }
+  fputs("</Grid>", s->out);
+}
+
+/* One line through all points. */
+static void print_path(const sidecar *s, const mesh_path *p) {
+  begin_series(s, p->field->name, mesh_path_name_length(p));
+  for (long frame = 0; frame < s->frames; frame++) {
+    const long points = mesh_path_count(p, frame);
+    char name[512];
+    mesh_views_path_name(p, frame, name, sizeof name);
+    begin_grid(s->out, "frame", s->times[frame]);
+    fprintf(s->out,
+            "<Topology TopologyType=\"Polyline\" NodesPerElement=\"%ld\" NumberOfElements=\"1\">"
+            "<DataItem Format=\"XML\" NumberType=\"Int\" Dimensions=\"1 %ld\">",
+            points, points);
+    for (long k = 0; k < points; k++)
+      fprintf(s->out, "%s%ld", k ? " " : "", k);
+    fputs("</DataItem></Topology>\n", s->out);
+    print_geometry(s->out, s->file, name, points);
+    fputs("</Grid>\n", s->out);
+  }
+  fputs("</Grid>", s->out);
+}
+
+bool xdmf_write(FILE *out, const result_header *h, const mesh_views *m, const double *times,
+                long frames) {
   arena *texts = arena_new();
   views_array *arrays = arena_alloc(texts, ((size_t)h->field_count + 1) * sizeof *arrays);
-  const int count = views_arrays(h, arrays, texts);
-  fputs("<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain>\n"
-        "<Grid Name=\"frames\" GridType=\"Collection\" CollectionType=\"Temporal\">\n",
-        out);
-  for (long frame = 0; frame < frames; frame++)
-    print_frame(out, base_name(h->path), h, arrays, count, frame, times[frame]);
-  fputs("</Grid></Domain></Xdmf>\n", out);
+  const sidecar s = {.out = out,
+                     .file = base_name(h->path),
+                     .header = h,
+                     .meshes = m,
+                     .times = times,
+                     .frames = frames,
+                     .arrays = arrays,
+                     .array_count = views_arrays(h, arrays, texts)};
+  fputs("<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain>\n", out);
+  if (h->mesh_count == 0 || views_bonds(h) > 0) print_bonds(&s, h->mesh_count ? "bonds" : "frames");
+  if (h->mesh_count > 0) print_cells(&s);
+  for (int k = 0; k < m->path_count; k++)
+    print_path(&s, &m->paths[k]);
+  fputs("</Domain></Xdmf>\n", out);
   arena_free(texts);
   return fflush(out) == 0 && !ferror(out);
 }

@@ -8,12 +8,14 @@ typedef struct frame_field {
   const char *name, *unit;
   bool on_bonds;
   int components;
-  int interaction;       /* of the run; on particles the first that has the field */
-  long count;            /* particles of all bodies, or bonds of that interaction */
-  bool of_law;           /* it, or a parameter, has its name from the law */
-  bool of_cracks;        /* place and width (m) of the cracks across a monitor's line; it has the
-                            monitor's name, and is NaN beyond the last crack */
-  const char *kind;      /* "state", "damage", "output" of the law; "cracks"; else "other" */
+  int interaction;  /* of the run; on particles the first that has the field */
+  long count;       /* particles of all bodies, or bonds of that interaction */
+  bool of_law;      /* it, or a parameter, has its name from the law */
+  bool of_cracks;   /* place and width (m) of the cracks across a monitor's line; it has the
+                            monitor's name, and is NaN beyond the last crack; or places (m) of the
+                            points of a crack of a mesh, "notch/points", NaN beyond the last */
+  const char *mesh; /* of such a crack; else NULL */
+  const char *kind; /* "state", "damage", "output" of the law; "cracks"; "path"; else "other" */
   const char *long_name; /* in words: the law's, where it is of the law */
 } frame_field;
 

@@ -8,6 +8,8 @@
 
 #include "dsl/base/arena.h"
 #include "runtime/analysis/particle_tensors.h"
+#include "runtime/continuum/crack_paths.h"
+#include "runtime/continuum/node_fields.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/output_fields.h"
 #include "runtime/interaction/damage.h"
@@ -43,9 +45,16 @@ typedef struct frame_tensor {
   int64_t found_step; /* step that the values are of; -1: none */
 } frame_tensor;
 
-#define X(name, unit, words) TENSOR_##name,
+#define X(name, unit, words, of_nodes) TENSOR_##name,
 enum { OUTPUT_TENSORS(X) TENSORS };
 #undef X
+
+enum { PATH_NAME = NAMELIST_LONGEST_NAME + sizeof "/points" };
+typedef struct frame_path { /* a crack of a mesh */
+  char name[PATH_NAME];
+  const tips *tips;
+  const deck_crack *of;
+} frame_path;
 
 struct frame_set {
   const deck_output *asked;
@@ -57,6 +66,8 @@ struct frame_set {
   const run_clock *clock;
   bond_forces **forces;  /* [body_count] NULL unless some field needs them */
   frame_tensor *tensors; /* [TENSORS][body_count] */
+  frame_path *paths;     /* [path_count] those of the last fields */
+  int path_count;
   frame_field *fields;
   frame_source *sources; /* [count][law_count]; of bonds only that of their law */
   int count;
@@ -137,8 +148,31 @@ static void values_of_constant(const frames_of *of, const frame_source *from, do
 
 /* --- fields of any law ------------------------------------------------------------------------ */
 
+/* Nodes have parameters of their fields, which are not these themselves. */
+static void node_values(const frames_of *of, double *const *planes, double *values) {
+  const double *const two[2] = {planes[0], planes[1]};
+  node_field_values(of->body->cells, two, values);
+}
+
 static void values_of_displacement(const frames_of *of, const frame_source *from, double *values) {
-  site_values(of, of->body->body->displacement, from->components, values);
+  if (of->body->cells)
+    node_values(of, of->body->body->displacement, values);
+  else
+    site_values(of, of->body->body->displacement, from->components, values);
+}
+
+/* From those of the nodes' parameters, in place. */
+static void smooth_velocity(const frames_of *of, double *values) {
+  const rows *g = of->body->lattice_rows;
+  double *planes[2];
+  for (int c = 0; c < 2; c++) {
+    planes[c] = must_calloc((size_t)g->size, sizeof **planes);
+    for (long p = 0; p < g->particle_count; p++)
+      planes[c][g->particle_site[p]] = values[2 * p + c];
+  }
+  node_values(of, planes, values);
+  free(planes[0]);
+  free(planes[1]);
 }
 
 static void values_of_velocity(const frames_of *of, const frame_source *from, double *values) {
@@ -147,6 +181,7 @@ static void values_of_velocity(const frames_of *of, const frame_source *from, do
     for (int c = 0; c < from->components; c++)
       values[p * from->components + c] = load_steps_velocity(of->body->loads, of->body->state->body,
                                                              c, g->particle_site[p], of->step);
+  if (of->body->cells) smooth_velocity(of, values);
 }
 
 static void values_of_rotation(const frames_of *of, const frame_source *from, double *values) {
@@ -183,6 +218,12 @@ static void values_of_dissipated(const frames_of *of, const frame_source *from, 
 /* --- tensors ---------------------------------------------------------------------------------- */
 
 static void find_stress(const frames_of *of, bond_forces *forces, double *const *values) {
+  if (of->body->cells) {
+    double *const *u = of->body->body->displacement;
+    const double *const two[2] = {u[0], u[1]};
+    node_field_stress(of->body->cells, of->body->laws[0].parameters, two, values);
+    return;
+  }
   bond_forces_find(forces, -1);
   particle_stress(forces, of->body->body, values);
 }
@@ -190,6 +231,11 @@ static void find_stress(const frames_of *of, bond_forces *forces, double *const 
 static void find_strain(const frames_of *of, bond_forces *forces, double *const *values) {
   const body *b = of->body->body;
   (void)forces;
+  if (of->body->cells) {
+    const double *const two[2] = {b->displacement[0], b->displacement[1]};
+    node_field_strain(of->body->cells, two, values);
+    return;
+  }
   for (long p = 0; p < b->lattice->particle_count; p++) {
     const long site = b->lattice->particle_site[p];
     double here[TENSOR_MOST] = {0};
@@ -208,12 +254,12 @@ static void values_of_tensor(const frames_of *of, const frame_source *from, doub
 }
 
 typedef struct tensor_field {
-  const char *name, *unit, *words;
+  const char *name, *unit, *words, *of_nodes;
   tensor_values *find;
 } tensor_field;
 
 static const tensor_field tensor_fields[] = {
-#define X(name, unit, words) {#name, unit, words, find_##name},
+#define X(name, unit, words, of_nodes) {#name, unit, words, of_nodes, find_##name},
     OUTPUT_TENSORS(X)
 #undef X
 };
@@ -382,7 +428,7 @@ static void begin_tensor(frame_set *f, int k, int b) {
   frame_tensor *t = &f->tensors[k * f->body_count + b];
   const tensor_component *component;
   const int count = tensor_components(of->body->dimensions, &component);
-  if (k == TENSOR_stress) f->forces[b] = bond_forces_new(of->state);
+  if (k == TENSOR_stress && !of->cells) f->forces[b] = bond_forces_new(of->state);
   *t = (frame_tensor){.find = tensor_fields[k].find, .forces = f->forces[b], .found_step = -1};
   for (int c = 0; c < count; c++) {
     t->values[c] = must_calloc((size_t)of->lattice_rows->size, sizeof(double));
@@ -410,7 +456,7 @@ static void add_tensor(frame_set *f, int k, int b) {
                                .components = 1,
                                .interaction = first_law(f, b),
                                .kind = "other",
-                               .long_name = from->words};
+                               .long_name = f->bodies[b].cells ? from->of_nodes : from->words};
     add(f, field, values_of_tensor, c)->tensor = t;
   }
 }
@@ -501,9 +547,36 @@ static void add_cracks(frame_set *f, const monitor *m) {
                                         .long_name = "of each crack: place along the line, width"};
 }
 
+/* Of the mesh of that body. */
+static void add_path(frame_set *f, const run_body *of, const deck_crack *c) {
+  frame_path *path = &f->paths[f->path_count++];
+  *path = (frame_path){.tips = of->cells->tips, .of = c};
+  snprintf(path->name, sizeof path->name, "%s/points", c->name);
+  const int64_t steps = f->clock->relaxation ? INT64_MAX : f->clock->step_count;
+  f->fields[f->count++] =
+      (frame_field){.name = path->name,
+                    .unit = "m",
+                    .of_cracks = true,
+                    .mesh = of->name,
+                    .components = 2,
+                    .count = crack_path_most(path->tips, c, steps),
+                    .kind = "path",
+                    .long_name = "points of the crack from its first to its last, with what has "
+                                 "grown at either end"};
+}
+
+static void add_paths(frame_set *f, const deck *k) {
+  f->paths = must_calloc((size_t)k->crack_count + 1, sizeof *f->paths);
+  for (int n = 0; n < k->crack_count; n++)
+    for (int b = 0; b < f->body_count; b++)
+      if (f->bodies[b].cells && strcmp(f->bodies[b].name, k->cracks[n].mesh) == 0)
+        add_path(f, &f->bodies[b], &k->cracks[n]);
+}
+
 frame_set *frames_new(const deck_output *asked, const run_body *bodies, int count,
                       const monitors *watched, const run_clock *clock) {
-  const size_t most = most_fields(bodies, count) + (size_t)watched->count;
+  const size_t most =
+      most_fields(bodies, count) + (size_t)(watched->count + watched->deck->crack_count);
   frame_set *f = must_calloc(1, sizeof *f);
   *f = (frame_set){.asked = asked,
                    .bodies = bodies,
@@ -526,6 +599,7 @@ frame_set *frames_new(const deck_output *asked, const run_body *bodies, int coun
     add_of_law(f, n);
   for (int m = 0; m < watched->count; m++)
     add_cracks(f, &watched->items[m]);
+  add_paths(f, watched->deck);
   return f;
 }
 
@@ -538,6 +612,7 @@ void frames_free(frame_set *f) {
       free(f->tensors[k].values[c]);
   free(f->forces);
   free(f->tensors);
+  free(f->paths);
   free(f->fields);
   free(f->sources);
   free(f);
@@ -572,8 +647,18 @@ static void values_of_cracks(const frame_set *f, const frame_field *field, doubl
   }
 }
 
+static void values_of_path(const frame_path *path, long most, double *values) {
+  const int count = crack_path(path->tips, path->of, (double(*)[2])values, (int)most);
+  for (long k = 2 * (long)count; k < 2 * most; k++)
+    values[k] = NAN;
+}
+
 void frames_values(const frame_set *f, int field, double *values) {
   const frame_field *of = &f->fields[field];
+  if (of->mesh) {
+    values_of_path(&f->paths[field - (f->count - f->path_count)], of->count, values);
+    return;
+  }
   if (of->of_cracks) {
     values_of_cracks(f, of, values);
     return;

@@ -263,11 +263,11 @@ static void cracks_as_table(void **state) {
   expect(w, "info c.h5 --json", 0, "\"cracks\": [");
   expect(w, "compare c.h5 c.h5", 0, "same");
   expect(w, "export c.h5 --cracks closed", 1,
-         "has no cracks of a monitor `closed`; it has those of `opened`");
+         "has no crack, and no cracks of a monitor, `closed`; it has `opened`");
   expect(w, "export c.h5 --cracks opened --frame 1", 1, "cracks are a table of their own");
   make_result(w, "a.h5", plain);
   expect(w, "export a.h5 --cracks opened", 1,
-         "holds them where the deck has one of the kind 'crack_width'");
+         "holds them where the deck has a &crack, or a monitor of the kind 'crack_width'");
 }
 
 /* Histories and fields are given by their names, or by the part of it that says which. */

@@ -128,7 +128,7 @@ static void the_reference_names_every_field(void **state) {
 #define X(name, unit, components, exists, kind, words) assert_non_null(strstr(doc, #name));
   OUTPUT_FIELDS(X)
 #undef X
-#define X(name, unit, words) assert_non_null(strstr(doc, #name));
+#define X(name, unit, words, of_nodes) assert_non_null(strstr(doc, #name));
   OUTPUT_TENSORS(X)
 #undef X
 }

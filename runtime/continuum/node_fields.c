@@ -1,0 +1,104 @@
+#include "runtime/continuum/node_fields.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "runtime/continuum/point_law.h"
+#include "runtime/mesh/mesh_fields.h"
+
+static node_layout layout_of(const cells *c) {
+  return node_layout_of(c->mesh.nodes, c->mesh.support);
+}
+
+/* The cells around a node: their numbers, 4 at most. */
+static int cells_around(const mesh *m, int node, int around[4]) {
+  const int i = node % m->nodes[0], j = node / m->nodes[0];
+  int count = 0;
+  for (int b = j - 1; b <= j; b++)
+    for (int a = i - 1; a <= i; a++) {
+      if (a < 0 || b < 0 || a > m->nodes[0] - 2 || b > m->nodes[1] - 2) continue;
+      const int cell = mesh_cell_at(m, a, b);
+      if (m->cell[cell] != CELL_ABSENT) around[count++] = cell;
+    }
+  return count;
+}
+
+void node_field_values(const cells *c, const double *const planes[2], double *values) {
+  const node_layout l = layout_of(c);
+  for (int n = 0; n < mesh_node_count(&c->mesh); n++) {
+    const int32_t particle = c->nodes->site_particle[node_layout_at(&l, n)];
+    int around[4];
+    double at[2];
+    point_shape s;
+    if (particle < 0) continue;
+    double *value = values + 2 * particle;
+    value[0] = value[1] = NAN;
+    mesh_place(&c->mesh, n, at);
+    if (cells_around(&c->mesh, n, around) == 0) continue;
+    shape_functions(&c->mesh, around[0], at, &s);
+    mesh_field(&s, &l, planes, value, NULL);
+  }
+}
+
+/* An element with one point knows the strain there alone: what its corners do beside is no strain of
+   the law's. */
+static void place_in_cell(const mesh *m, int cell, const double node[2], double at[2]) {
+  int corner[4];
+  memcpy(at, node, 2 * sizeof *at);
+  if (m->cell[cell] != CELL_ELEMENT || m->element_gauss[cell] > 1) return;
+  mesh_corners(m, cell, corner);
+  mesh_place(m, corner[0], at);
+  for (int a = 0; a < 2; a++)
+    at[a] += 0.5 * m->spacing[a];
+}
+
+/* The mean over the cells around the node; false: there are none. */
+static bool strain_at(const cells *c, const node_layout *l, const double *const displacement[2],
+                      int node, double strain[3]) {
+  int around[4];
+  double there[2];
+  const int count = cells_around(&c->mesh, node, around);
+  mesh_place(&c->mesh, node, there);
+  for (int k = 0; k < 3; k++)
+    strain[k] = 0;
+  for (int n = 0; n < count; n++) {
+    point_shape s;
+    double gradient[2][2], here[3], at[2];
+    place_in_cell(&c->mesh, around[n], there, at);
+    shape_functions(&c->mesh, around[n], at, &s);
+    mesh_field(&s, l, displacement, NULL, gradient);
+    mesh_strain(gradient, here);
+    for (int k = 0; k < 3; k++)
+      strain[k] += here[k] / count;
+  }
+  return count > 0;
+}
+
+void node_field_strain(const cells *c, const double *const displacement[2],
+                       double *const strain[3]) {
+  const node_layout l = layout_of(c);
+  for (int n = 0; n < mesh_node_count(&c->mesh); n++) {
+    const long site = node_layout_at(&l, n);
+    double here[3];
+    if (c->nodes->site_particle[site] < 0) continue;
+    const bool known = strain_at(c, &l, displacement, n, here);
+    for (int k = 0; k < 3; k++)
+      strain[k][site] = known ? here[k] : NAN;
+  }
+}
+
+void node_field_stress(const cells *c, const double *parameters,
+                       const double *const displacement[2], double *const stress[3]) {
+  const node_layout l = layout_of(c);
+  const double h = sqrt(c->mesh.spacing[0] * c->mesh.spacing[1]);
+  point_law *law = point_law_new(c->law, parameters);
+  for (int n = 0; n < mesh_node_count(&c->mesh); n++) {
+    const long site = node_layout_at(&l, n);
+    double strain[3], here[4] = {NAN, NAN, NAN, NAN};
+    if (c->nodes->site_particle[site] < 0) continue;
+    if (strain_at(c, &l, displacement, n, strain)) point_law_stress(law, strain, h, here);
+    for (int k = 0; k < 3; k++)
+      stress[k][site] = here[k];
+  }
+  point_law_free(law);
+}

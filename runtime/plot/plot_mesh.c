@@ -1,0 +1,311 @@
+#include "runtime/plot/plot_mesh.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
+#include "runtime/result/result_find.h"
+#include "runtime/result/result_read.h"
+#include "runtime/result/result_sets.h"
+
+enum { CORNERS = 4, MOST_NEAR = 256 };
+
+void plot_meshes_free(plot_meshes *m) {
+  for (int k = 0; k < m->count; k++) {
+    free(m->items[k].cells);
+    crack_lines_close(&m->items[k].lines);
+  }
+  for (int k = 0; k < m->crack_count; k++)
+    free(m->cracks[k].points);
+  free(m->items);
+  free(m->cracks);
+  *m = (plot_meshes){.count = 0};
+}
+
+/* --- reading ---------------------------------------------------------------------------------- */
+
+static bool names_particles(const int32_t *cells, long count, long particles) {
+  for (long k = 0; k < CORNERS * count; k++)
+    if (cells[k] < 0 || cells[k] >= particles) return false;
+  return true;
+}
+
+/* A mesh's first particle, by its attribute. */
+static bool read_first(result_file *f, const char *group, int64_t *first) {
+  const hid_t object = H5Oopen(f->file, group, H5P_DEFAULT);
+  const hid_t a = object >= 0 && H5Aexists(object, "first_particle") > 0
+                      ? H5Aopen(object, "first_particle", H5P_DEFAULT)
+                      : -1;
+  const bool good = a >= 0 && H5Aread(a, H5T_NATIVE_INT64, first) >= 0;
+  if (a >= 0) H5Aclose(a);
+  if (object >= 0) H5Oclose(object);
+  return good;
+}
+
+/* Its cells as particles of the result. */
+static bool read_mesh(plot_mesh *m, result_file *f, const char *name, const double *reference,
+                      long particles) {
+  char group[512], path[560];
+  int columns;
+  int64_t first = 0;
+  snprintf(m->name, sizeof m->name, "%.79s", name);
+  snprintf(group, sizeof group, "/meshes/%.400s", name);
+  snprintf(path, sizeof path, "%s/cells", group);
+  m->cells = result_read_table(f, path, true, CORNERS, CORNERS, &m->cell_count, &columns);
+  if (!m->cells || !read_first(f, group, &first) || first < 0 || first > particles) return false;
+  if (!names_particles(m->cells, m->cell_count, particles - (long)first)) return false;
+  for (long k = 0; k < CORNERS * m->cell_count; k++)
+    m->cells[k] += (int32_t)first;
+  if (m->cell_count > 0) {
+    const double *low = reference + 2 * m->cells[0], *high = reference + 2 * m->cells[2];
+    m->size = sqrt(fabs((high[0] - low[0]) * (high[1] - low[1])));
+  }
+  return true;
+}
+
+static long points_of(const double *points, long most) {
+  long count = 0;
+  while (count < most && isfinite(points[2 * count]) && isfinite(points[2 * count + 1]))
+    count++;
+  return count;
+}
+
+static void read_mesh_name(result_file *f, const char *crack, char *name, size_t size) {
+  char path[512];
+  snprintf(path, sizeof path, "/cracks/%.400s/points", crack);
+  const hid_t set = result_set_open(f, path);
+  *name = 0;
+  if (set < 0) return;
+  h5_read_attribute_text(set, "mesh", name, size);
+  H5Dclose(set);
+}
+
+/* The points of the first frame are among those of later ones, in their order. */
+static void find_beginning(plot_crack *c, const double *began, long count) {
+  c->first = 0;
+  c->last = c->count - 1;
+  for (long k = 0; k + count <= c->count; k++) {
+    if (memcmp(c->points + 2 * k, began, 2 * (size_t)count * sizeof *began) != 0) continue;
+    c->first = k;
+    c->last = k + count - 1;
+    return;
+  }
+}
+
+static bool read_crack(plot_crack *c, result_file *f, const char *name, long frame, char *error,
+                       size_t size) {
+  long frames = 0, most = 0;
+  double *all = result_read_path(f, name, &frames, &most, error, size);
+  const long wanted = frame < 0 ? frames + frame : frame;
+  snprintf(c->name, sizeof c->name, "%.79s", name);
+  read_mesh_name(f, name, c->mesh, sizeof c->mesh);
+  if (all && wanted >= 0 && wanted < frames) {
+    c->points = must_calloc(2 * (size_t)most + 1, sizeof *c->points);
+    memcpy(c->points, all + 2 * most * wanted, 2 * (size_t)most * sizeof *c->points);
+    c->count = points_of(c->points, most);
+    find_beginning(c, all, points_of(all, most));
+  } else if (all)
+    snprintf(error, size, "the crack `%s` has %ld frames, numbered from 0; there is no frame %ld",
+             name, frames, frame);
+  free(all);
+  return c->points != NULL;
+}
+
+static bool read_cracks(plot_meshes *m, result_file *f, long frame, char *error, size_t size) {
+  result_names names = result_list(f, "/cracks");
+  bool good = true;
+  m->cracks = must_calloc((size_t)names.count + 1, sizeof *m->cracks);
+  for (int k = 0; k < names.count && good; k++)
+    if (result_has_path(f, names.items[k]))
+      good = read_crack(&m->cracks[m->crack_count++], f, names.items[k], frame, error, size);
+  result_names_free(&names);
+  return good;
+}
+
+/* Those of a mesh lie in it. */
+static void give_lines(plot_meshes *m) {
+  for (int n = 0; n < m->count; n++)
+    for (int c = 0; c < m->crack_count; c++)
+      for (long k = 1; k < m->cracks[c].count && !strcmp(m->cracks[c].mesh, m->items[n].name); k++)
+        crack_lines_add(&m->items[n].lines, m->cracks[c].points + 2 * k - 2,
+                        m->cracks[c].points + 2 * k);
+}
+
+bool plot_meshes_read(plot_meshes *m, result_file *f, long frame, char *error, size_t size) {
+  *m = (plot_meshes){.count = 0};
+  result_names names = result_list(f, "/meshes");
+  long particles = 0;
+  int dimensions = 0;
+  double *reference = names.count ? result_read_reference(f, &particles, &dimensions) : NULL;
+  bool good = names.count == 0 || (reference && dimensions == 2);
+  m->items = must_calloc((size_t)names.count + 1, sizeof *m->items);
+  for (int k = 0; k < names.count && good; k++)
+    good = read_mesh(&m->items[m->count++], f, names.items[k], reference, particles);
+  if (!good) snprintf(error, size, "`/meshes` of `%s` is damaged", f->path);
+  good = good && (names.count == 0 || read_cracks(m, f, frame, error, size));
+  if (good) give_lines(m);
+  result_names_free(&names);
+  free(reference);
+  return good;
+}
+
+/* --- parts of cells --------------------------------------------------------------------------- */
+
+typedef struct cell_view { /* a cell at the beginning, and the cracks that come near it */
+  const mesh_view *of;
+  const int32_t *corner;
+  const double *low, *high; /* m */
+  const crack_lines *lines;
+  int near[MOST_NEAR], near_count;
+} cell_view;
+
+static cell_view view_of(const plot_mesh *m, const mesh_view *v, long cell) {
+  const int32_t *corner = m->cells + CORNERS * cell;
+  cell_view c = {.of = v,
+                 .corner = corner,
+                 .low = v->reference + 2 * corner[0],
+                 .high = v->reference + 2 * corner[2],
+                 .lines = &m->lines};
+  c.near_count = crack_lines_near(&m->lines, c.low, c.high, c.near, MOST_NEAR);
+  if (c.near_count > MOST_NEAR) c.near_count = MOST_NEAR;
+  return c;
+}
+
+/* Corners that a point sees past the cracks; all, where it sees none. */
+static unsigned seen_from(const cell_view *c, const double at[2]) {
+  unsigned seen = 0;
+  for (int k = 0; k < CORNERS; k++) {
+    bool hidden = false;
+    for (int n = 0; n < c->near_count && !hidden; n++)
+      hidden =
+          crack_piece_hides(&c->lines->pieces[c->near[n]], at, c->of->reference + 2 * c->corner[k]);
+    seen |= hidden ? 0 : 1u << k;
+  }
+  return seen ? seen : 15u;
+}
+
+/* Shares of the corners at the place (x, y) of the cell, 0 to 1: bilinear among those that are
+   seen. */
+static void shares_at(unsigned seen, double x, double y, double share[CORNERS]) {
+  const double all[CORNERS] = {(1 - x) * (1 - y), x * (1 - y), x * y, (1 - x) * y};
+  double sum = 0;
+  int count = 0;
+  for (int k = 0; k < CORNERS; k++) {
+    share[k] = seen >> k & 1u ? all[k] : 0;
+    sum += share[k];
+    count += (int)(seen >> k & 1u);
+  }
+  for (int k = 0; k < CORNERS; k++)
+    share[k] = sum > 1e-9 ? share[k] / sum : seen >> k & 1u ? 1.0 / count : 0;
+}
+
+/* Of a table with `columns` values for each particle. */
+static double mixed(const cell_view *c, const double *table, int columns, int column,
+                    const double share[CORNERS]) {
+  double sum = 0;
+  for (int k = 0; k < CORNERS; k++)
+    if (share[k] > 0) sum += share[k] * table[columns * c->corner[k] + column];
+  return sum;
+}
+
+/* A point of the cell where it has moved to: it goes as what it sees does. */
+static void move_point(const cell_view *c, const double share[CORNERS], double x, double y,
+                       double moved[2]) {
+  const double way[2] = {c->high[0] - c->low[0], c->high[1] - c->low[1]},
+               at[2] = {c->low[0] + x * way[0], c->low[1] + y * way[1]};
+  for (int a = 0; a < 2; a++)
+    moved[a] =
+        at[a] + mixed(c, c->of->moved, 2, a, share) - mixed(c, c->of->reference, 2, a, share);
+}
+
+static void take_part(const cell_view *c, double x, double y, double size, mesh_part *take,
+                      void *context) {
+  static const double around[CORNERS][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  const double middle[2] = {c->low[0] + (x + 0.5 * size) * (c->high[0] - c->low[0]),
+                            c->low[1] + (y + 0.5 * size) * (c->high[1] - c->low[1])};
+  const unsigned seen = seen_from(c, middle);
+  double at[CORNERS][2], value[CORNERS] = {0};
+  for (int k = 0; k < CORNERS; k++) {
+    const double u = x + size * around[k][0], v = y + size * around[k][1];
+    double share[CORNERS];
+    shares_at(seen, u, v, share);
+    move_point(c, share, u, v, at[k]);
+    if (c->of->values) value[k] = mixed(c, c->of->values, 1, 0, share);
+  }
+  take(context, (const double(*)[2])at, value);
+}
+
+void plot_mesh_parts(const plot_mesh *m, const mesh_view *v, int whole, int cut, mesh_part *take,
+                     void *context) {
+  for (long cell = 0; cell < m->cell_count; cell++) {
+    const cell_view c = view_of(m, v, cell);
+    const int parts = c.near_count ? cut : whole;
+    for (int j = 0; j < parts; j++)
+      for (int i = 0; i < parts; i++)
+        take_part(&c, (double)i / parts, (double)j / parts, 1.0 / parts, take, context);
+  }
+}
+
+static bool holds(const mesh_view *v, const int32_t *corner, const double at[2]) {
+  const double *low = v->reference + 2 * corner[0], *high = v->reference + 2 * corner[2];
+  return at[0] >= low[0] && at[0] <= high[0] && at[1] >= low[1] && at[1] <= high[1];
+}
+
+void plot_mesh_face(const plot_mesh *m, const mesh_view *v, const double at[2],
+                    const double side[2], double moved[2]) {
+  const double beside[2] = {at[0] + side[0], at[1] + side[1]};
+  memcpy(moved, at, 2 * sizeof *moved);
+  for (int pass = 0; pass < 2; pass++) /* a face along the edge has no cell on its other side */
+    for (long cell = 0; cell < m->cell_count; cell++) {
+      const double *look = pass ? at : beside;
+      if (!holds(v, m->cells + CORNERS * cell, look)) continue;
+      const cell_view c = view_of(m, v, cell);
+      double share[CORNERS];
+      const double x = (at[0] - c.low[0]) / (c.high[0] - c.low[0]),
+                   y = (at[1] - c.low[1]) / (c.high[1] - c.low[1]);
+      shares_at(seen_from(&c, beside), x, y, share);
+      move_point(&c, share, x, y, moved);
+      return;
+    }
+}
+
+/* --- outline ---------------------------------------------------------------------------------- */
+
+typedef struct cell_side {
+  int32_t a, b; /* ascending */
+  int32_t from, to;
+} cell_side;
+
+static int compare_sides(const void *p, const void *q) {
+  const cell_side *s = p, *t = q;
+  if (s->a != t->a) return s->a < t->a ? -1 : 1;
+  return (s->b > t->b) - (s->b < t->b);
+}
+
+int32_t *plot_mesh_outline(const plot_mesh *m, long *count) {
+  const long all = CORNERS * m->cell_count;
+  cell_side *sides = must_calloc((size_t)all + 1, sizeof *sides);
+  int32_t *outline = must_calloc(2 * (size_t)all + 1, sizeof *outline);
+  for (long k = 0; k < all; k++) {
+    const int32_t i = m->cells[k],
+                  j = m->cells[k / CORNERS * CORNERS + (k % CORNERS + 1) % CORNERS];
+    sides[k] = (cell_side){i < j ? i : j, i < j ? j : i, i, j};
+  }
+  qsort(sides, (size_t)all, sizeof *sides, compare_sides);
+  *count = 0;
+  for (long k = 0; k < all;) {
+    long next = k + 1;
+    while (next < all && compare_sides(&sides[k], &sides[next]) == 0)
+      next++;
+    if (next == k + 1) {
+      outline[2 * *count] = sides[k].from;
+      outline[2 * (*count)++ + 1] = sides[k].to;
+    }
+    k = next;
+  }
+  free(sides);
+  return outline;
+}

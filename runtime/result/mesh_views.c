@@ -1,0 +1,208 @@
+#include "runtime/result/mesh_views.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
+#include "runtime/result/hdf5_tools.h"
+
+enum { NAME = 512, CORNERS = 4 };
+
+void mesh_views_free(mesh_views *v) {
+  for (int k = 0; k < v->path_count; k++)
+    free(v->paths[k].points);
+  for (int k = 0; k < v->set_count; k++)
+    free(v->sets[k].corners);
+  free(v->paths);
+  free(v->sets);
+  free(v->set_of_frame);
+}
+
+long mesh_path_count(const mesh_path *p, long frame) {
+  const double *at = p->points + 2 * p->most * frame;
+  long count = 0;
+  while (count < p->most && !isnan(at[2 * count]))
+    count++;
+  return count;
+}
+
+/* --- cells that no crack crosses --------------------------------------------------------------- */
+
+/* Whether the line a -> b has a part inside the box; a line along its border has none. */
+static bool crosses(const double a[2], const double b[2], const double low[2],
+                    const double high[2]) {
+  double from = 0, to = 1;
+  for (int c = 0; c < 2; c++) {
+    const double way = b[c] - a[c], margin = 1e-9 * (high[c] - low[c]);
+    const double first = low[c] + margin - a[c], last = high[c] - margin - a[c];
+    if (way == 0) {
+      if (first >= 0 || last <= 0) return false;
+      continue;
+    }
+    from = pl_fmax(from, pl_fmin(first / way, last / way));
+    to = pl_fmin(to, pl_fmax(first / way, last / way));
+  }
+  return from < to;
+}
+
+static bool is_crossed(const mesh_path *p, long frame, const double low[2], const double high[2]) {
+  const double *at = p->points + 2 * p->most * frame;
+  bool crossed = false;
+  for (long k = 1; k < p->most && !isnan(at[2 * k]) && !crossed; k++)
+    crossed = crosses(at + 2 * k - 2, at + 2 * k, low, high);
+  return crossed;
+}
+
+static bool is_whole(const mesh_views *v, const result_header *h, const result_mesh *m,
+                     const int32_t *cell, long frame) {
+  const double *low = h->reference + 2 * (m->first_particle + cell[0]),
+               *high = h->reference + 2 * (m->first_particle + cell[2]);
+  for (int k = 0; k < v->path_count; k++)
+    if (strcmp(v->paths[k].mesh, m->name) == 0 && is_crossed(&v->paths[k], frame, low, high))
+      return false;
+  return true;
+}
+
+/* Without frames nothing is known of cracks. */
+static mesh_cells cells_of(const mesh_views *v, const result_header *h, long frame, bool all) {
+  mesh_cells shown = {.count = 0};
+  long most = 0;
+  for (int n = 0; n < h->mesh_count; n++)
+    most += h->meshes[n].cell_count;
+  shown.corners = must_alloc((CORNERS * (size_t)most + 1) * sizeof *shown.corners);
+  for (int n = 0; n < h->mesh_count; n++)
+    for (long c = 0; c < h->meshes[n].cell_count; c++) {
+      const int32_t *cell = h->meshes[n].cells + CORNERS * c;
+      if (!all && !is_whole(v, h, &h->meshes[n], cell, frame)) continue;
+      for (int k = 0; k < CORNERS; k++)
+        shown.corners[CORNERS * shown.count + k] = (int32_t)h->meshes[n].first_particle + cell[k];
+      shown.count++;
+    }
+  return shown;
+}
+
+/* All cracks are as they were a frame before. */
+static bool is_unchanged(const mesh_views *v, long frame) {
+  bool same = frame > 0;
+  for (int k = 0; k < v->path_count && same; k++) {
+    const mesh_path *p = &v->paths[k];
+    const size_t numbers = 2 * (size_t)p->most;
+    const double *now = p->points + numbers * (size_t)frame;
+    same = mesh_path_count(p, frame) == mesh_path_count(p, frame - 1) &&
+           memcmp(now, now - numbers, 2 * (size_t)mesh_path_count(p, frame) * sizeof *now) == 0;
+  }
+  return same;
+}
+
+static bool are_same(const mesh_cells *a, const mesh_cells *b) {
+  return a->count == b->count &&
+         memcmp(a->corners, b->corners, CORNERS * (size_t)a->count * sizeof *a->corners) == 0;
+}
+
+static void add_set(mesh_views *v, mesh_cells shown) {
+  if (v->set_count > 0 && are_same(&shown, &v->sets[v->set_count - 1])) {
+    free(shown.corners);
+    return;
+  }
+  v->sets = must_realloc(v->sets, ((size_t)v->set_count + 1) * sizeof *v->sets);
+  v->sets[v->set_count++] = shown;
+}
+
+void mesh_views_find(mesh_views *v, const result_header *h, long frames) {
+  v->set_of_frame = must_calloc((size_t)frames + 1, sizeof *v->set_of_frame);
+  if (h->mesh_count == 0) return;
+  if (frames == 0) add_set(v, cells_of(v, h, 0, true));
+  for (long k = 0; k < frames; k++) {
+    if (!is_unchanged(v, k)) add_set(v, cells_of(v, h, k, false));
+    v->set_of_frame[k] = v->set_count - 1;
+  }
+}
+
+/* --- writing ---------------------------------------------------------------------------------- */
+
+/* Of a data set or a group. */
+static bool describe(hid_t file, const char *name, const char *words, const char *unit_text) {
+  const hid_t object = H5Oopen(file, name, H5P_DEFAULT);
+  const bool good = object >= 0 && h5_attribute_text(object, "long_name", words) &&
+                    (!unit_text || h5_attribute_text(object, "units", unit_text));
+  if (object >= 0) H5Oclose(object);
+  return good;
+}
+
+static bool tell_of_mesh(hid_t file, const char *name, const result_mesh *m) {
+  const hid_t group = H5Oopen(file, name, H5P_DEFAULT);
+  const bool good = group >= 0 &&
+                    h5_attribute_integer(group, "first_particle", m->first_particle) &&
+                    h5_attribute_double(group, "thickness", m->thickness);
+  if (group >= 0) H5Oclose(group);
+  return good;
+}
+
+static bool write_mesh(hid_t file, const result_header *h, const result_mesh *m) {
+  char group[NAME], name[NAME + 16];
+  const hsize_t nodes[2] = {(hsize_t)m->node_count, 2},
+                cells[2] = {(hsize_t)m->cell_count, CORNERS};
+  snprintf(group, sizeof group, "/meshes/%s", m->name);
+  if (!h5_make_group(file, group) || !tell_of_mesh(file, group, m)) return false;
+  snprintf(name, sizeof name, "%s/nodes", group);
+  bool good = h5_write_doubles(file, name, h->reference + 2 * m->first_particle, 2, nodes, "m") &&
+              describe(file, name, "places of the nodes at the beginning", NULL);
+  snprintf(name, sizeof name, "%s/cells", group);
+  good = good && h5_write_integers(file, name, m->cells, 2, cells) &&
+         describe(file, name, "nodes of each cell, counter-clockwise, numbered from 0", "1");
+  snprintf(name, sizeof name, "%s/method", group);
+  return good && h5_write_integers(file, name, m->method, 1, cells) &&
+         describe(file, name, "of each cell: 1 a finite element, 2 blended, 3 element-free", "1");
+}
+
+bool mesh_views_write_meshes(hid_t file, const result_header *h) {
+  bool good = h->mesh_count == 0 || h5_make_group(file, "/meshes");
+  for (int k = 0; good && k < h->mesh_count; k++)
+    good = write_mesh(file, h, &h->meshes[k]);
+  return good;
+}
+
+int mesh_path_name_length(const mesh_path *p) {
+  return (int)(strrchr(p->field->name, '/') - p->field->name);
+}
+
+void mesh_views_set_name(int set, char *name, size_t size) {
+  snprintf(name, size, "/xdmf/cells/%d", set);
+}
+
+void mesh_views_path_name(const mesh_path *p, long frame, char *name, size_t size) {
+  snprintf(name, size, "/xdmf/cracks/%.*s/%ld", mesh_path_name_length(p), p->field->name, frame);
+}
+
+static bool show_path(hid_t file, const mesh_path *p, long frame) {
+  char name[NAME], set[NAME];
+  const hsize_t count = (hsize_t)mesh_path_count(p, frame), shape[2] = {count, 3};
+  snprintf(set, sizeof set, "/cracks/%s", p->field->name);
+  mesh_views_path_name(p, frame, name, sizeof name);
+  const h5_block points = {.set = set, .start = {(hsize_t)frame}, .count = {1, count, 2}};
+  return h5_make_view(file, name, 2, shape, &points, 1, false);
+}
+
+static bool show_paths(hid_t file, const mesh_path *p, long frames) {
+  char name[NAME];
+  snprintf(name, sizeof name, "/xdmf/cracks/%.*s", mesh_path_name_length(p), p->field->name);
+  bool good = h5_make_group(file, "/xdmf/cracks") && h5_make_group(file, name);
+  for (long k = 0; good && k < frames; k++)
+    good = show_path(file, p, k);
+  return good;
+}
+
+bool mesh_views_write(hid_t file, const mesh_views *v, long frames) {
+  char name[NAME];
+  bool good = v->set_count == 0 || h5_make_group(file, "/xdmf/cells");
+  for (int k = 0; good && k < v->set_count; k++) {
+    const hsize_t shape[2] = {(hsize_t)v->sets[k].count, CORNERS};
+    mesh_views_set_name(k, name, sizeof name);
+    good = h5_write_integers(file, name, v->sets[k].corners, 2, shape);
+  }
+  for (int k = 0; good && k < v->path_count; k++)
+    good = show_paths(file, &v->paths[k], frames);
+  return good;
+}

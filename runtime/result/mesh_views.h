@@ -1,0 +1,51 @@
+/* What a result says of meshes and their cracks: tables of nodes and cells, and what is seen of them
+   frame by frame: the cells that no crack crosses, and the cracks as lines.
+
+     /meshes/<mesh>/{nodes,cells,method}   result.h
+     /xdmf/cells/<k>                       [C, 4] particles: cells of all meshes that no crack
+                                           crosses, for the frames of set k
+     /xdmf/cracks/<crack>/<frame>          [P, 3] points of the crack
+
+   A crack that has come further leaves out more cells: frames in between share a set. */
+#ifndef PERILAT_RUNTIME_MESH_VIEWS_H
+#define PERILAT_RUNTIME_MESH_VIEWS_H
+
+#include <hdf5.h>
+
+#include "runtime/result/result.h"
+
+typedef struct mesh_path { /* a crack, frame by frame */
+  const result_field *field;
+  const char *mesh; /* whose crack it is */
+  long most;        /* points that it has had */
+  double *points;   /* [frames][most][2] m, NaN beyond the last */
+} mesh_path;
+
+typedef struct mesh_cells { /* that no crack crosses */
+  int32_t *corners;         /* [count][4] particles */
+  long count;
+} mesh_cells;
+
+typedef struct mesh_views {
+  mesh_path *paths; /* [path_count] */
+  int path_count;
+  mesh_cells *sets; /* [set_count] one at least where there are meshes */
+  int set_count;
+  int *set_of_frame; /* [frames] */
+} mesh_views;
+
+/* Whose points are known already, with room for `most` of each frame. */
+void mesh_views_find(mesh_views *v, const result_header *h, long frames);
+void mesh_views_free(mesh_views *v);
+/* Points that the path has in a frame. */
+long mesh_path_count(const mesh_path *p, long frame);
+
+bool mesh_views_write_meshes(hid_t file, const result_header *h);
+/* After the frames. */
+bool mesh_views_write(hid_t file, const mesh_views *v, long frames);
+void mesh_views_set_name(int set, char *name, size_t size);
+void mesh_views_path_name(const mesh_path *p, long frame, char *name, size_t size);
+/* "notch" of the field "notch/points". */
+int mesh_path_name_length(const mesh_path *p);
+
+#endif
