@@ -17,6 +17,18 @@
 #include "runtime/crack/interaction_integral.h"
 #include "runtime/deck/deck.h"
 
+/* What ends a tip. */
+typedef enum tip_end {
+  TIP_ALIVE,
+  TIP_HAS_LEFT,
+  TIP_HAS_MET,
+  TIP_AT_ELEMENTS,
+  TIP_HAS_TOO_MANY,
+  TIP_ENDS
+} tip_end;
+/* "has met another crack" */
+extern const char *const tip_end_words[TIP_ENDS];
+
 /* What is known of a tip at the last look. */
 typedef struct tip_state {
   double at[2];        /* m */
@@ -26,7 +38,12 @@ typedef struct tip_state {
   double K[2];         /* Pa m^(1/2) */
   double speed;        /* m/s */
   int64_t segments;    /* legs that have grown */
-  int64_t grown, done; /* it has grown; it grows no more */
+  int64_t grown, done; /* it has grown; tip_end, when it grows no more */
+  double done_time;    /* s */
+  /* How its faces have overlapped: the least K_I of all looks, at most 0, and when that was; K_I
+     and the time as it became negative, by more than a hundredth of that; the largest K_I in size.
+     Pa m^(1/2), s */
+  double least, least_time, first, first_time, largest;
 } tip_state;
 
 /* The law of a crack, with its parameters; NULL: it does not grow. */
@@ -40,6 +57,7 @@ typedef struct mesh_tip {
   bool at_start;                                   /* of the crack's first point */
   int number;                                      /* among the mesh's live tips */
   const pl_law *law;                               /* NULL: it does not grow */
+  double toughness;                                /* Pa m^(1/2): the law's only one; 0: none */
   double *uniforms, *field, *new_field, *observed; /* of the law, each value PL_LANES times */
   tip_state now;
 } mesh_tip;
@@ -60,11 +78,12 @@ typedef struct tips {
   const deck_tips *options;
   double half_size;                        /* m */
   int64_t check_steps, update_steps, step; /* between looks and advances; done */
+  int64_t first_step;                      /* no look before */
   double segment;                          /* m: least length of a leg */
   double lower[2], upper[2];               /* m: where cracks grow */
   double released;                         /* J: by growth, since the start */
-  tip_pieces pieces;                       /* grown, in order */
-  char said[512];                          /* what the user is to know: a tip is finished */
+  double rated;      /* J: the energy release rate over the ways of the tips */
+  tip_pieces pieces; /* grown, in order */
   /* [nodes] of the state that is looked at: m/s, m/s^2; velocities before the last step */
   double *velocity[2], *acceleration[2], *kept[2];
   unsigned char *loaded; /* [nodes] loads or supports act on it */
@@ -115,6 +134,8 @@ extern const char *const tip_series_units[TIP_SERIES_COUNT];
 extern const char *const tip_series_words[TIP_SERIES_COUNT];
 /* values[TIP_SERIES_COUNT] of a tip. */
 void tip_series_values(const tips *t, const mesh_tip *p, double *values);
+/* Whether the faces at a tip have overlapped by more than rounding and noise. */
+bool tip_overlaps(const tip_state *p);
 /* "notch", or "notch/start" of the first point of a crack with two tips. */
 const char *tip_folder(const tips *t, int tip, char *text, size_t size);
 

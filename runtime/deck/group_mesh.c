@@ -70,6 +70,21 @@ static const deck_key_info mesh_keys[] = {
      .most = 8,
      DECK_AT(mesh, parts),
      .doc = "element-free: equal parts of a cell along either axis, each with its own points"},
+    {.name = "basis",
+     .type = DECK_WORD,
+     .choices = "linear|enriched",
+     .fallback = "'linear'",
+     DECK_NOT_KEPT,
+     .doc = "element-free: 1, x, y; around tips of cracks with sqrt(r) of the nearest one, too"},
+    {.name = "enriched_radius",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_POSITIVE,
+     .fallback = "4",
+     DECK_AT(mesh, rich),
+     .doc =
+         "how far from a tip the enriched basis reaches, in spacings along x; from half of it on "
+         "it blends into the linear one"},
     {.name = "ramp",
      .type = DECK_WORD,
      .choices = "linear|smooth",
@@ -122,6 +137,22 @@ static void check_gauss(deck_reader *r, const namelist_group *from, deck_mesh *i
                 "a cell has at least one part");
 }
 
+/* Without tips nothing is enriched: a radius alone would do nothing. */
+static void check_basis(deck_reader *r, const namelist_group *from, deck_mesh *item) {
+  const namelist_key *basis = namelist_find(from, "basis");
+  const bool enriched = basis && basis->values[0].text && basis->values[0].text[0] == 'e';
+  if (!enriched) item->rich = 0;
+  if (!enriched && namelist_find(from, "enriched_radius")) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "enriched_radius"),
+                "a linear basis has no `enriched_radius`");
+    diag_hint(r->d, "basis = 'enriched'");
+  } else if (enriched && item->method == MESH_FINITE_ELEMENTS) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "basis"),
+                "bilinear elements have no basis to enrich");
+    diag_hint(r->d, "method = 'element_free', with a `&zone` of finite elements");
+  }
+}
+
 static void check_mesh(deck_reader *r, const namelist_group *from, void *into) {
   deck_mesh *item = into;
   const namelist_key *ramp = namelist_find(from, "ramp");
@@ -131,6 +162,7 @@ static void check_mesh(deck_reader *r, const namelist_group *from, void *into) {
   deck_check_lattice_name(r, item);
   deck_check_places(r, from, &deck_group_mesh, 2);
   check_gauss(r, from, item);
+  check_basis(r, from, item);
   if (!has_nodes(r, item) || !has_support(r, item)) return;
   const double dx = item->size[0] / (item->nodes[0] - 1), dy = item->size[1] / (item->nodes[1] - 1);
   item->spacing = dx < dy ? dx : dy;
@@ -237,6 +269,13 @@ static const deck_key_info tips_keys[] = {
      DECK_AT(tips, points),
      .doc = "own points of the integral: so many cells of 2 x 2 along either axis of a quadrant of "
             "the box; 0: the mesh's points inside"},
+    {.name = "from",
+     .type = DECK_REAL,
+     .unit = "s",
+     .bound = BOUND_NOT_NEGATIVE,
+     .fallback = "0",
+     DECK_AT(tips, from),
+     .doc = "no look at the tips before that time: until then they stay, and no K is known"},
     {.name = "check_every",
      .type = DECK_REAL,
      .unit = "s",
@@ -306,6 +345,15 @@ static const deck_key_info newmark_keys[] = {
      DECK_AT(newmark, beta_1),
      .doc = "0.5, central differences, to 1; above 0.5 fast waves are damped, by "
             "`(beta_1 - 0.5) omega dt/2` of the critical damping"},
+    {.name = "motion",
+     .type = DECK_CHOICE,
+     .choices = "consistent|velocity_only",
+     .fallback = "'consistent'",
+     DECK_AT(newmark, motion),
+     .doc =
+         "of driven nodes: they go where their velocity takes them; or only that is set, and "
+         "each step moves them by `dt^2 a/2` of the body's forces, too, as some programs do: the "
+         "longer the step, the more they give way"},
 };
 
 static void check_newmark(deck_reader *r, const namelist_group *from, void *into) {
