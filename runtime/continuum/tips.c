@@ -117,6 +117,7 @@ bool tips_new(const deck *k, const char *name, mesh *m, tips **out, diagnostics 
   tips *t = must_calloc(1, sizeof *t);
   bool good = true, any = false;
   t->options = &k->tips;
+  t->beta_1 = k->newmark.beta_1;
   t->half_size = k->tips.half_size * m->spacing[0];
   for (int n = 0; n < k->crack_count; n++)
     if (strcmp(k->cracks[n].mesh, name) == 0) {
@@ -233,7 +234,8 @@ void tips_before(tips *t, const body *w, const node_stencil *k) {
 }
 
 /* Velocities and accelerations of the nodes at the present instant; their places are there. */
-static void find_motion(tips *t, const body *w, const node_stencil *k) {
+static void find_motion(tips *t, const body *w, double *const last_resistance[2],
+                        const node_stencil *k) {
   pool *memory = pool_new();
   double *const force[2] = {pool_doubles(memory, k->layout.size),
                             pool_doubles(memory, k->layout.size)};
@@ -242,10 +244,12 @@ static void find_motion(tips *t, const body *w, const node_stencil *k) {
     for (int n = 0; n < mesh_node_count(k->of); n++) {
       const long site = node_layout_at(&k->layout, n);
       const double before = w->velocity[d][site];
-      const double a = t->loaded[n] ? (before - t->kept[d][n]) / w->time_step
-                                    : -force[d][site] / body_mass(w, d, site);
+      const double mass = body_mass(w, d, site);
+      const double a =
+          t->loaded[n] ? (before - t->kept[d][n]) / w->time_step : -force[d][site] / mass;
+      const double last = t->loaded[n] ? a : -last_resistance[d][site] / mass;
       t->acceleration[d][n] = a;
-      t->velocity[d][n] = before + 0.5 * w->time_step * a;
+      t->velocity[d][n] = before + w->time_step * (0.5 * a + (t->beta_1 - 0.5) * (a - last));
     }
   pool_free(memory);
 }
@@ -501,13 +505,13 @@ static void advance(tips *t, mesh_tip *p, const body *w, mesh *m, node_stencil *
   if (why != TIP_ALIVE) finish(t, p, w, why);
 }
 
-/* u K u/2 of the places at hand. */
+/* u_n K u_(n-1)/2 of the last step. */
 static double stored(const body *w, const node_stencil *k, double *const product[2]) {
   double sum = 0;
   node_stencil_multiply(k, (const double *const *)w->displacement, product, 0, k->layout.nodes[1]);
   for (int d = 0; d < 2; d++)
     for (long q = 0; q < k->layout.size; q++)
-      sum += 0.5 * product[d][q] * w->displacement[d][q];
+      sum += 0.5 * product[d][q] * (w->displacement[d][q] - w->time_step * w->velocity[d][q]);
   return sum;
 }
 
@@ -530,8 +534,9 @@ static void grow(tips *t, const body *w, mesh *m, node_stencil *k) {
   pool_free(memory);
 }
 
-static void look(tips *t, const body *w, const mesh *m, const node_stencil *k) {
-  find_motion(t, w, k);
+static void look(tips *t, const body *w, double *const last_resistance[2], const mesh *m,
+                 const node_stencil *k) {
+  find_motion(t, w, last_resistance, k);
   for (int n = 0; n < t->count; n++) {
     mesh_tip *p = &t->items[n];
     if (p->now.done) continue;
@@ -541,10 +546,11 @@ static void look(tips *t, const body *w, const mesh *m, const node_stencil *k) {
   }
 }
 
-void tips_after(tips *t, const body *w, mesh *m, node_stencil *k) {
+void tips_after(tips *t, const body *w, double *const last_resistance[2], mesh *m,
+                node_stencil *k) {
+  if (t->step > 0 && t->step % t->update_steps == 0 && some_grows(t)) grow(t, w, m, k);
   t->step++;
-  if (is_time(t, t->step)) look(t, w, m, k);
-  if (t->step % t->update_steps == 0 && some_grows(t)) grow(t, w, m, k);
+  if (is_time(t, t->step)) look(t, w, last_resistance, m, k);
 }
 
 void tips_replay(tips *t, mesh *m, node_stencil *k) {

@@ -1,11 +1,21 @@
 /* The tips of a mesh's cracks: their stress intensities at every look, and how they grow.
 
    A look at the state t_n finds K_I and K_II of each tip (interaction_integral.h) from the body's
-   fields there: displacements, velocities v_n = v_(n-1/2) + dt/2 a_n, accelerations a_n by the forces
-   of the present places; of nodes that loads or supports act on by the last two velocities. Looks are
-   at steps n = L, 2L, ...; between two of them growing tips advance `updates` times. What the
-   stiffness loses as a crack advances, with the displacements held, is energy that the crack has
-   released (ledger).
+   fields there: displacements, accelerations a_n by the forces of the present places, and Newmark's
+   velocities
+
+     v_n = v_(n-1/2) + dt/2 a_n + dt (beta_1 - 1/2)(a_n - a_(n-1));
+
+   of nodes that loads or supports act on by the last two velocities. Looks are at steps n = L, 2L,
+   ...; between two of them growing tips advance `updates` times. An advance at t_n comes after the
+   forces there were found: those of t_(n+1) are the first to know of it.
+
+   What the stiffness loses as a crack advances is energy that the crack has released:
+
+     u_(n+1).(K - K_after) u_n/2,
+
+   which the discrete balance of energies wants, and is u.(K - K_after) u/2 up to the length of a
+   step.
 
    An end of a crack inside the mesh is a tip; one on its border is not. */
 #ifndef PERILAT_RUNTIME_TIPS_H
@@ -79,6 +89,7 @@ typedef struct tips {
   double half_size;                        /* m */
   int64_t check_steps, update_steps, step; /* between looks and advances; done */
   int64_t first_step;                      /* no look before */
+  double beta_1;                           /* of Newmark's method */
   double segment;                          /* m: least length of a leg */
   double lower[2], upper[2];               /* m: where cracks grow */
   double released;                         /* J: by growth, since the start */
@@ -101,9 +112,10 @@ void tips_take(tips *t, const deck *k, const plane_stiffness *law, double densit
 
 /* Before a step moves the nodes: what a look will need. */
 void tips_before(tips *t, const body *w, const node_stencil *k);
-/* When the step n-1 -> n has moved them: a look at t_n, if it is time for one, and growth; `m` and `k`
-   are the mesh and its stiffness, which growth changes. */
-void tips_after(tips *t, const body *w, mesh *m, node_stencil *k);
+/* When the step n-1 -> n has moved them: the advance that was due at t_(n-1), then a look at t_n, if it
+   is time for one. `m` and `k` are the mesh and its stiffness, which growth changes;
+   last_resistance[2][layout.size]: K u at t_(n-1), N. */
+void tips_after(tips *t, const body *w, double *const last_resistance[2], mesh *m, node_stencil *k);
 /* After `pieces` was read from a checkpoint: the mesh and its stiffness as they were then. */
 void tips_replay(tips *t, mesh *m, node_stencil *k);
 /* Pieces of a tip so far: points of its path, in order; *at begins with where the tip was at the
