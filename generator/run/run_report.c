@@ -11,6 +11,7 @@
 #include "generator/run/bad_bond.h"
 #include "generator/run/print_quantity.h"
 #include "generator/run/report_mesh.h"
+#include "generator/run/run_cracks.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/uniform_strain.h"
 #include "runtime/deck/lattice_kind.h"
@@ -836,6 +837,7 @@ void conclude(const run *r, double seconds, long steps) {
   for (int k = 0; k < r->deck->contact_count; k++)
     conclude_contact(r, k);
   conclude_energy(r);
+  conclude_cracks(r);
   fflush(stdout);
   warn_of_gain(r);
   warn_of_damping(r);

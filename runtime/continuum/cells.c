@@ -235,7 +235,7 @@ static void turn(sweep *w) {
   }
   e->begun = 1;
   if (e->of->by_points) point_forces_turn(e->of->by_points);
-  if (e->of->tips) tips_after(e->of->tips, w->body, &e->of->mesh, &e->of->stencil);
+  if (e->of->tips) tips_after(e->of->tips, w->body, e->before, &e->of->mesh, &e->of->stencil);
 }
 
 /* Of a linear law. */
