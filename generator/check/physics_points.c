@@ -246,6 +246,10 @@ static void check_stiffness(point *p) {
   set_virgin(p);
   set_strain(p, rest, NULL);
   point_run(p, p->kernel->point_tangent, 1e-6);
+  if (!isfinite(tangent_scale(p))) {
+    say(p, DIAG_STIFFNESS, NULL, "the tangent of the virgin point is not finite");
+    return;
+  }
   const double least = least_stiffness(p);
   if (!(least > 0))
     say(p, DIAG_STIFFNESS, NULL,
@@ -285,7 +289,9 @@ static void check_tangent(point *p) {
     tangent[k] = p->tangent[k][0];
   const double difference = pl_fmin(tangent_gap(p, strain, tangent, 1e-4 * size),
                                     tangent_gap(p, strain, tangent, 1e-5 * size));
-  if (!(difference <= TANGENT_TOLERANCE * scale))
+  if (!isfinite(difference) || !isfinite(scale))
+    say(p, DIAG_NOT_FINITE, strain, "the stress or the tangent of a finite strain is not finite");
+  else if (!(difference <= TANGENT_TOLERANCE * scale))
     say(p, DIAG_TANGENT, strain,
         "the tangent is off the stress's differences by %.3g of its largest entry",
         difference / scale);
@@ -305,7 +311,7 @@ static void check_symmetry(point *p) {
     for (int b = 0; b < a; b++)
       most = pl_fmax(most,
                      fabs(p->tangent[a * p->strains + b][0] - p->tangent[b * p->strains + a][0]));
-  if (!(most <= SYMMETRY_TOLERANCE * scale))
+  if (isfinite(scale) && !(most <= SYMMETRY_TOLERANCE * scale))
     say(p, DIAG_STORED_ENERGY, strain,
         "the stress has no energy: its tangent is not symmetric, by %.3g of its largest entry",
         most / scale);
@@ -329,6 +335,7 @@ static void check_energy_and_stress(point *p) {
   point_run(p, p->kernel->point_step, 1e-6);
   get_stress(p, stress);
   const double done = work(p, stress, change, &size);
+  if (!isfinite(size) || !isfinite(energy[0]) || !isfinite(energy[1])) return; /* said elsewhere */
   if (p->law->fields.count == 0 && !(fabs(energy[1] - energy[0] - done) <= 1e-4 * size))
     say(p, DIAG_ENERGY_FORCE, strain,
         "the stress is not the energy's derivative: a small strain does work of %.6g J/m^3, the "
