@@ -384,6 +384,7 @@ static void put_settings(const page *p) {
     put_code(p, t->settings[i]);
   }
   if (t->setting_count) fputs(".\n", p->out);
+  if (t->anisotropic) fputs("\nIts response depends on the axes.\n", p->out);
 }
 
 static void put_head(const page *p) {

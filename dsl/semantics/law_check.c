@@ -534,12 +534,21 @@ static void publish_types(checker *ck) {
   }
 }
 
+static void check_anisotropic(checker *ck) {
+  const tree *t = ck->tree;
+  if (!t->anisotropic || t->law == LAW_CONTINUUM) return;
+  complain(ck, DIAG_LAW_KIND, t->anisotropic_where,
+           "`anisotropic` is said of laws of a continuum, not of a %s law", law_word(ck));
+  diag_hint(ck->d, "leave it away: bonds have directions, so that nothing asks for it");
+}
+
 static void check_all(checker *ck, const law_choice *choices, int choice_count) {
   declare_names(ck);
   ck->now = ck->statement_count;
   check_choices(ck, choices, choice_count);
   if (has_state(ck)) infer_states(ck);
   check_statements(ck);
+  check_anisotropic(ck);
   check_rules_of_fields(ck);
   if (is_single(ck))
     check_results_given(ck);

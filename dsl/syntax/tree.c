@@ -292,6 +292,7 @@ void tree_dump(const tree *t, FILE *out) {
   for (int i = 0; i < t->setting_count; i++)
     fprintf(out, "%s%s%s", i ? ", " : "  for ", t->settings[i],
             i + 1 == t->setting_count ? "\n" : "");
+  if (t->anisotropic) fputs("  anisotropic\n", out);
   for (const stmt *s = t->first; s; s = s->next)
     dump_stmt(s, out);
 }

@@ -22,6 +22,8 @@ C_LINKAGE_BEGIN
 
 /* `for irregular`, `when irregular`: particles that stand on no lattice. */
 #define LAW_IRREGULAR "irregular"
+/* `for anisotropic`: a law of a continuum that knows the axes. */
+#define LAW_ANISOTROPIC "anisotropic"
 
 typedef enum expr_kind {
   EXPR_NUMBER, /* 30 [GPa] */
@@ -212,6 +214,8 @@ typedef struct tree {
   const char **settings; /* for plane_stress, space */
   span *setting_where;
   int setting_count;
+  bool anisotropic; /* was in the line `for`; it does not stand among the settings */
+  span anisotropic_where;
   stmt *first; /* in the order written, included statements in place */
 } tree;
 
