@@ -347,6 +347,28 @@ static value principal(checker *ck, expr *e) {
   return BROKEN;
 }
 
+/* xx, yy, zz, xy and, where they are not 0, yz, xz. */
+static value tensor_of_components(checker *ck, expr *e) {
+  if (!has_tensors(ck, e)) return BROKEN;
+  value all = {.zero = true};
+  for (int i = 0; i < e->argument_count; i++) {
+    value v = check_number(ck, operand(e, i));
+    all = agree(ck, operand(e, i)->where, operand(e, 0), all, operand(e, i), v,
+                "components of one tensor");
+    if (all.broken) return BROKEN;
+    if (!v.zero && !v.unknown && v.shape != SHAPE_SCALAR)
+      return bad_shape(ck, e, v, "its components are numbers: xx, yy, zz, xy, yz, xz");
+  }
+  if (e->argument_count == 5) {
+    complain(ck, DIAG_ARGUMENTS, e->where, "`tensor` takes 4 or %d components, not 5",
+             TENSOR_COMPONENT_COUNT);
+    diag_hint(ck->d, "they are xx, yy, zz, xy, and out of the plane yz, xz");
+    return BROKEN;
+  }
+  all.unknown = all.zero = false;
+  return with_shape(all, all.dim, SHAPE_TENSOR);
+}
+
 static value (*const calls[FUNCTION_COUNT])(checker *ck, expr *e) = {
 #define X(code, name, least, most, check, ...) check,
     BUILTIN_FUNCTIONS(X)

@@ -65,7 +65,7 @@ static void add_builtins(checker *ck) {
     const builtin_quantity_info *q = &builtin_quantities[i];
     if (is_free_here(ck, q)) continue;
     dimension dim = dimension_of(q->unit);
-    const placement on = ck->tree->law == LAW_CRACK                  ? ON_TIP
+    const placement on = ck->tree->law == LAW_CRACK                 ? ON_TIP
                          : is_single(ck) && q->place == ON_PARTICLE ? ON_BODY
                                                                     : q->place;
     entry *e = names_add(ck, SPACE_QUANTITIES, q->name,

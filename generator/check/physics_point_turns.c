@@ -63,10 +63,11 @@ void physics_check_turns(point_bench *b) {
     stress[k] -= expected[k];
   const double gap = point_bench_largest(stress, b->strains), degrees = 57.295779513082320877;
   if (!isfinite(gap) || !isfinite(scale) || gap <= TURN_TOLERANCE * scale) return;
-  point_bench_say(b, DIAG_OBJECTIVITY, strain,
-                  "write it with what knows no axes (`trace`, `dev`, `norm`, `:`, `principal`), or "
-                  "say that it is meant: `for ..., anisotropic`",
-                  "the law knows the axes: turned by %.0f degrees about z%s, the strain has another "
-                  "stress than the turned one, by %.3g of it",
-                  about_z * degrees, about_x > 0 ? " and also about x" : "", gap / scale);
+  point_bench_say(
+      b, DIAG_OBJECTIVITY, strain,
+      "write it with what knows no axes (`trace`, `dev`, `norm`, `:`, `principal`), or "
+      "say that it is meant: `for ..., anisotropic`",
+      "the law knows the axes: turned by %.0f degrees about z%s, the strain has another "
+      "stress than the turned one, by %.3g of it",
+      about_z * degrees, about_x > 0 ? " and also about x" : "", gap / scale);
 }

@@ -140,7 +140,8 @@ static void check_run(tip_bench *b, int lane) {
   if (b->out[PL_TIP_GROW][lane] == 0) return;
   if (!isfinite(speed) || !isfinite(toward))
     say(b, DIAG_NOT_FINITE, isfinite(speed) ? RESULT_TOWARD : RESULT_SPEED, lane,
-        "keep roots, logarithms and divisors off what they are not defined for, by cases or by `max`",
+        "keep roots, logarithms and divisors off what they are not defined for, by cases or by "
+        "`max`",
         "a growing tip has %s that is not finite", isfinite(speed) ? "a direction" : "a speed");
   else if (speed < 0 || speed >= b->in[PL_TIP_RAYLEIGH_SPEED][lane])
     say(b, DIAG_CRACK_SPEED, RESULT_SPEED, lane,
