@@ -315,8 +315,8 @@ static value hooke(checker *ck, expr *e) {
 
 static bool has_tensors(checker *ck, const expr *e) {
   if (!is_single(ck) || ck->tree->law == LAW_CONTINUUM) return true;
-  complain(ck, DIAG_LAW_KIND, e->where, "`%s` takes a tensor, which a bond law does not have",
-           e->name);
+  complain(ck, DIAG_LAW_KIND, e->where, "`%s` is of tensors, which a %s law does not have", e->name,
+           law_word(ck));
   diag_hint(ck->d, "laws that begin with `law state` or `law continuum` have tensors");
   return false;
 }

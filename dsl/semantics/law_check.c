@@ -175,9 +175,13 @@ static const struct {
     [RESULT_SIGMA] = {"Pa", SHAPE_TENSOR}, [RESULT_GROW] = {"1", SHAPE_LOGICAL},
     [RESULT_TOWARD] = {"1", SHAPE_SCALAR}, [RESULT_SPEED] = {"m/s", SHAPE_SCALAR}};
 
-/* The energy of a continuum is one per volume. */
+/* The energy of a continuum. */
+static bool is_per_volume(const checker *ck) {
+  return ck->tree->law == LAW_CONTINUUM;
+}
+
 static const char *unit_of_result(const checker *ck, int which) {
-  return which == RESULT_W && ck->tree->law == LAW_CONTINUUM ? "J/m^3" : results[which].unit;
+  return which == RESULT_W && is_per_volume(ck) ? "J/m^3" : results[which].unit;
 }
 
 static void check_result(checker *ck, stmt *s) {
@@ -185,7 +189,8 @@ static void check_result(checker *ck, stmt *s) {
   if (!v.broken && !check_family_rule(ck, s, &v)) v = BROKEN;
   int which = s->symbol && s->symbol->kind == SYMBOL_RESULT ? s->symbol->index : RESULT_COUNT;
   if (which < RESULT_COUNT) {
-    const char *what = arena_printf(ck->memory, "`%s %s`", stmt_kind_name(s->kind), s->name);
+    const char *volume = which == RESULT_W && is_per_volume(ck) ? " (J/m^3)" : "";
+    const char *what = arena_printf(ck->memory, "`%s`%s", stmt_words(ck->memory, s), volume);
     dimension dim = dimension_of(unit_of_result(ck, which));
     if (!expect(ck, s->value, v, dim, results[which].shape, what)) v = BROKEN;
     v.dim = dim;

@@ -63,7 +63,7 @@ static const word no_word;
 %type <stmt> only_text declaration parameter flow rule
 %type <expr> default body cases case_lines call arguments
 %type <expr> expression conjunction negation comparison sum addend term factor power primary
-%type <word> text unit index on along axis
+%type <word> text unit index on along
 %type <words> names choices
 %type <bounds> interval
 %type <flag> opening closing jump
@@ -213,11 +213,6 @@ index:
 | '[' NAME ']'                      { $$ = $2; }
 ;
 
-axis:
-  NAME
-| NUMBER                            { $$ = (word){arena_printf(p->memory, "%g", $1), @1}; }
-;
-
 body:
   expression
 | cases
@@ -306,9 +301,9 @@ primary:
   NUMBER                            { $$ = build_number(p, $1, no_word, @$); }
 | NUMBER UNIT                       { $$ = build_number(p, $1, $2, @$); }
 | NAME index                        { $$ = build_name(p, $1, false, $2, $2.text ? @$ : @1); }
-| NAME '[' axis ',' axis ']'        { $$ = build_component(p, build_name(p, $1, false, no_word, @1),
+| NAME '[' NAME ',' NAME ']'        { $$ = build_component(p, build_name(p, $1, false, no_word, @1),
                                                            $3, $5, @$); }
-| NAME '[' NAME ']' '[' axis ',' axis ']'
+| NAME '[' NAME ']' '[' NAME ',' NAME ']'
                                     { $$ = build_component(p, build_name(p, $1, false, $3,
                                                                          span_join(@1, @4)),
                                                            $6, $8, @$); }

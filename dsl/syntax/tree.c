@@ -290,6 +290,11 @@ static void dump_stmt(const stmt *s, FILE *out) {
   dump_labelled("when", s->when, 2, out);
 }
 
+const char *stmt_words(arena *memory, const stmt *s) {
+  const char *kind = stmt_kind_name(s->kind);
+  return strcmp(kind, s->name) == 0 ? kind : arena_printf(memory, "%s %s", kind, s->name);
+}
+
 char tensor_axis(int component, int which) {
 #define X(code, first, second) {first, second},
   static const char axes[TENSOR_COMPONENT_COUNT][2] = {TENSOR_COMPONENTS(X)};

@@ -228,6 +228,8 @@ typedef struct tree {
 
 const char *stmt_kind_name(stmt_kind kind);
 const char *placement_name(placement p);
+/* "force N", "grow": what the line gives; in `memory`. */
+const char *stmt_words(arena *memory, const stmt *s);
 /* The axes of a component, 'x', 'y' or 'z'. */
 char tensor_axis(int component, int which);
 
