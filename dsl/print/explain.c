@@ -231,11 +231,14 @@ static void put_fields(const page *p) {
   begin_table(p, titles, 6);
   for (int i = 0; i < list->count; i++) {
     const symbol *s = list->items[i];
+    if (s->component > 0) continue;
+    if (s->component_of) s = s->component_of;
     put_name_cells(p, s->name);
     put_dimension_cell(p, s->dim);
     fputs(placement_name(s->place), p->out);
     next_cell(p);
-    fprintf(p->out, "%g", s->kind == SYMBOL_DAMAGE ? 0.0 : s->initial);
+    fprintf(p->out, s->shape == SHAPE_TENSOR ? "tensor %g" : "%g",
+            s->kind == SYMBOL_DAMAGE ? 0.0 : s->initial);
     next_cell(p);
     if (s->doc) put_text(p, s->doc);
     if (s->kind == SYMBOL_DAMAGE)
@@ -384,6 +387,7 @@ static void put_settings(const page *p) {
     put_code(p, t->settings[i]);
   }
   if (t->setting_count) fputs(".\n", p->out);
+  if (t->anisotropic) fputs("\nIts response depends on the axes.\n", p->out);
 }
 
 static void put_head(const page *p) {

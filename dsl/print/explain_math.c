@@ -11,15 +11,15 @@
   X("alpha", "alpha")                                                                              \
   X("beta", "beta")                                                                                \
   X("gamma", "gamma")                                                                              \
-  X("delta", "delta") X("eps", "varepsilon") X("epsilon", "epsilon") X("zeta", "zeta")             \
-      X("eta", "eta") X("theta", "theta") X("iota", "iota") X("kappa", "kappa")                    \
-          X("lambda", "lambda") X("mu", "mu") X("nu", "nu") X("xi", "xi") X("pi", "pi")            \
-              X("rho", "rho") X("sigma", "sigma") X("tau", "tau") X("upsilon", "upsilon")          \
-                  X("phi", "varphi") X("chi", "chi") X("psi", "psi") X("omega", "omega")           \
-                      X("Gamma", "Gamma") X("Delta", "Delta") X("Theta", "Theta")                  \
-                          X("Lambda", "Lambda") X("Xi", "Xi") X("Pi", "Pi") X("Sigma", "Sigma")    \
-                              X("Upsilon", "Upsilon") X("Phi", "Phi") X("Psi", "Psi")              \
-                                  X("Omega", "Omega")
+  X("delta", "delta")                                                                              \
+  X("eps", "varepsilon") X("epsilon", "epsilon") X("zeta", "zeta") X("eta", "eta")                 \
+      X("theta", "theta") X("iota", "iota") X("kappa", "kappa") X("lambda", "lambda")              \
+          X("mu", "mu") X("nu", "nu") X("xi", "xi") X("pi", "pi") X("rho", "rho")                  \
+              X("sigma", "sigma") X("tau", "tau") X("upsilon", "upsilon") X("phi", "varphi")       \
+                  X("chi", "chi") X("psi", "psi") X("omega", "omega") X("Gamma", "Gamma")          \
+                      X("Delta", "Delta") X("Theta", "Theta") X("Lambda", "Lambda") X("Xi", "Xi")  \
+                          X("Pi", "Pi") X("Sigma", "Sigma") X("Upsilon", "Upsilon")                \
+                              X("Phi", "Phi") X("Psi", "Psi") X("Omega", "Omega")
 
 static const struct {
   const char *word, *letter;
@@ -244,7 +244,7 @@ static level level_of(const expr *e) {
   case EXPR_NUMBER:
     return e->unit_text || e->number >= 1e6 || is_small(e->number) ? HOLDS_PRODUCT : HOLDS_ATOM;
   case EXPR_UNARY:
-    return e->unary == OP_NOT ? HOLDS_NOT : HOLDS_SIGN;
+    return e->unary == OP_COMPONENT ? HOLDS_ATOM : e->unary == OP_NOT ? HOLDS_NOT : HOLDS_SIGN;
   case EXPR_BINARY:
     switch (e->binary) {
     case OP_OR:
@@ -465,6 +465,12 @@ static void put_call(const law *l, const expr *e, FILE *out) {
   }
 }
 
+static void put_component(const law *l, const expr *e, FILE *out) {
+  fputs("{", out);
+  put(l, e->left, HOLDS_ATOM, out);
+  fprintf(out, "}_{%c%c}", tensor_axis(e->component, 0), tensor_axis(e->component, 1));
+}
+
 static void put_bare(const law *l, const expr *e, FILE *out) {
   static const char *const signs[] = {[OP_NEG] = "-", [OP_PLUS] = "+", [OP_NOT] = "\\text{not }"};
   switch (e->kind) {
@@ -475,6 +481,10 @@ static void put_bare(const law *l, const expr *e, FILE *out) {
     put_name(l, e, out);
     break;
   case EXPR_UNARY:
+    if (e->unary == OP_COMPONENT) {
+      put_component(l, e, out);
+      break;
+    }
     fputs(signs[e->unary], out);
     put(l, e->left, e->unary == OP_NOT ? HOLDS_ATOM : HOLDS_PRODUCT, out);
     break;

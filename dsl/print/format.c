@@ -449,19 +449,31 @@ static void lay_out_statement(layout *f, int from, int end) {
   }
 }
 
-static int indent_of(const layout *f, const line *l, bool in_model) {
+/* `crack` alone begins what a tip does, `end crack` ends it. */
+static bool ends_crack(const layout *f, const line *l) {
+  static const char crack[] = "crack";
+  if (l->kind != LINE_CODE || l->count < 2 || f->tokens[l->first].code != T_END) return false;
+  const token *t = &f->tokens[l->first + 1];
+  return t->end - t->begin == sizeof crack - 1 &&
+         memcmp(f->text + t->begin, crack, sizeof crack - 1) == 0;
+}
+
+static int indent_of(const layout *f, const line *l, bool in_model, bool in_crack) {
   int code = l->kind == LINE_CODE ? f->tokens[l->first].code : T_NAME;
+  if (in_crack) return ends_crack(f, l) ? INDENT : 2 * INDENT;
   return !in_model || code == T_MODEL || code == T_END ? 0 : INDENT;
 }
 
 static void lay_out(layout *f) {
-  bool in_model = false;
+  bool in_model = false, in_crack = false;
   for (int k = 0; k < f->line_count; k++) {
     line *l = &f->lines[k];
-    l->indent = indent_of(f, l, in_model);
+    l->indent = indent_of(f, l, in_model, in_crack);
     if (l->kind != LINE_CODE || !l->begins) continue;
     int code = f->tokens[l->first].code;
-    in_model = f->is_model && code != T_END && (in_model || code == T_MODEL);
+    const bool crack_ends = in_crack && ends_crack(f, l);
+    in_crack = f->is_model && !crack_ends && (in_crack || code == T_CRACK);
+    in_model = f->is_model && (code != T_END || crack_ends) && (in_model || code == T_MODEL);
     describe_tokens(f, l->first, tokens_end(f, k, statement_end(f, k)));
   }
   align_tables(f);

@@ -161,7 +161,10 @@ enum { MOVES, FIXED };
   X(J2, "J2", 1, 1, tensor_to_scalar, NO_VALUE, "J_{2}", "x = J2(virtual_work(F))",                \
     "second invariant of a stress deviator")                                                       \
   X(VON_MISES, "von_mises", 1, 1, tensor_to_scalar, NO_VALUE, "\\operatorname{von\\_Mises}",       \
-    "x = von_mises(virtual_work(F))", "von Mises equivalent of a stress tensor")
+    "x = von_mises(virtual_work(F))", "von Mises equivalent of a stress tensor")                   \
+  X(TENSOR, "tensor", 4, 6, tensor_of_components, NO_VALUE, "\\operatorname{tensor}",              \
+    "x = trace(tensor(1, 1, 1, 0))",                                                               \
+    "symmetric tensor of its components xx, yy, zz, xy and, where they are not 0, yz, xz")
 
 typedef enum builtin_quantity {
 #define X(code, ...) QUANTITY_##code,

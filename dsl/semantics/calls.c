@@ -315,8 +315,8 @@ static value hooke(checker *ck, expr *e) {
 
 static bool has_tensors(checker *ck, const expr *e) {
   if (!is_single(ck) || ck->tree->law == LAW_CONTINUUM) return true;
-  complain(ck, DIAG_LAW_KIND, e->where, "`%s` takes a tensor, which a bond law does not have",
-           e->name);
+  complain(ck, DIAG_LAW_KIND, e->where, "`%s` is of tensors, which a %s law does not have", e->name,
+           law_word(ck));
   diag_hint(ck->d, "laws that begin with `law state` or `law continuum` have tensors");
   return false;
 }
@@ -345,6 +345,28 @@ static value principal(checker *ck, expr *e) {
   complain(ck, DIAG_ARGUMENTS, which->where, "the second argument of `principal` is 1, 2 or 3");
   diag_hint(ck->d, "1 is the largest principal value");
   return BROKEN;
+}
+
+/* xx, yy, zz, xy and, where they are not 0, yz, xz. */
+static value tensor_of_components(checker *ck, expr *e) {
+  if (!has_tensors(ck, e)) return BROKEN;
+  value all = {.zero = true};
+  for (int i = 0; i < e->argument_count; i++) {
+    value v = check_number(ck, operand(e, i));
+    all = agree(ck, operand(e, i)->where, operand(e, 0), all, operand(e, i), v,
+                "components of one tensor");
+    if (all.broken) return BROKEN;
+    if (!v.zero && !v.unknown && v.shape != SHAPE_SCALAR)
+      return bad_shape(ck, e, v, "its components are numbers: xx, yy, zz, xy, yz, xz");
+  }
+  if (e->argument_count == 5) {
+    complain(ck, DIAG_ARGUMENTS, e->where, "`tensor` takes 4 or %d components, not 5",
+             TENSOR_COMPONENT_COUNT);
+    diag_hint(ck->d, "they are xx, yy, zz, xy, and out of the plane yz, xz");
+    return BROKEN;
+  }
+  all.unknown = all.zero = false;
+  return with_shape(all, all.dim, SHAPE_TENSOR);
 }
 
 static value (*const calls[FUNCTION_COUNT])(checker *ck, expr *e) = {

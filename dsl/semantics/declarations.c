@@ -228,8 +228,8 @@ static void report_result_name(checker *ck, const stmt *s) {
 static bool is_given_twice(checker *ck, const stmt *s, int which) {
   const symbol *first = ck->law->results[which];
   if (!first) return false;
-  complain(ck, DIAG_DUPLICATE_NAME, s->name_where, "`%s %s` is given twice",
-           stmt_kind_name(s->kind), s->name);
+  complain(ck, DIAG_DUPLICATE_NAME, s->name_where, "`%s` is given twice",
+           stmt_words(ck->memory, s));
   diag_note(ck->d, first->where, "first given here");
   return true;
 }

@@ -41,6 +41,8 @@ typedef struct symbol {
   double initial;        /* PARAMETER: default, STATE: initial value; SI */
   bool has_default;      /* PARAMETER */
   struct symbol *option; /* CHOICE: its option (NULL for settings) */
+  const struct symbol *component_of; /* STATE: the tensor that it is a component of, or NULL */
+  int component;
   bool old_is_read;      /* STATE, DAMAGE: some rule reads the value of the last step */
   bool used;             /* a force or an output depends on it */
 } symbol;
@@ -91,7 +93,7 @@ typedef struct law {
   arena *memory; /* not owned */
   const source_set *sources;
   symbol_list parameters;
-  symbol_list fields; /* states and damages, in the order declared */
+  symbol_list fields; /* states and damages, in the order declared; of tensors the components */
   symbol_list outputs;
   symbol_list options;
   const char **chosen; /* [options.count] the choice in force (default: the first) */

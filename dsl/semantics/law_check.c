@@ -83,6 +83,19 @@ static bool check_family_rule(checker *ck, const stmt *s, value *v) {
   return true;
 }
 
+/* What begins at a number stays one. */
+static bool refuse_tensor(checker *ck, const stmt *s, const entry *field) {
+  const stmt *declared = field->symbol.declared;
+  if (declared->tensor) return false;
+  complain(ck, DIAG_SHAPE, s->value->where, "the %s `%s` is one number, but this is a tensor",
+           field->symbol.kind == SYMBOL_STATE ? "state" : "damage", s->name);
+  diag_note(ck->d, declared->name_where, "it is declared here");
+  if (field->symbol.kind == SYMBOL_STATE)
+    diag_hint(ck->d, "declare it `state %s on %s = tensor 0`", s->name,
+              placement_name(field->symbol.place));
+  return true;
+}
+
 static void check_field_rule(checker *ck, stmt *s, entry *field, value v) {
   const char *what = arena_printf(ck->memory, "the %s `%s`",
                                   field->symbol.kind == SYMBOL_STATE ? "state" : "damage", s->name);
@@ -100,11 +113,13 @@ static void check_field_rule(checker *ck, stmt *s, entry *field, value v) {
   if (!field->known) {
     if (v.unknown) return; /* perhaps in the next pass */
     v.zero = false;
+    if (field->symbol.declared->tensor) v.shape = SHAPE_TENSOR; /* a rule that is not is refused */
     v.place = field->symbol.place;
     field->type = v;
     field->known = true;
   }
   if (field->type.broken || s->kind == STMT_FLOW) return;
+  if (v.shape == SHAPE_TENSOR && !v.zero && refuse_tensor(ck, s, field)) return;
   if (!expect(ck, s->value, v, field->type.dim, field->type.shape, what)) return;
 }
 
@@ -160,9 +175,13 @@ static const struct {
     [RESULT_SIGMA] = {"Pa", SHAPE_TENSOR}, [RESULT_GROW] = {"1", SHAPE_LOGICAL},
     [RESULT_TOWARD] = {"1", SHAPE_SCALAR}, [RESULT_SPEED] = {"m/s", SHAPE_SCALAR}};
 
-/* The energy of a continuum is one per volume. */
+/* The energy of a continuum. */
+static bool is_per_volume(const checker *ck) {
+  return ck->tree->law == LAW_CONTINUUM;
+}
+
 static const char *unit_of_result(const checker *ck, int which) {
-  return which == RESULT_W && ck->tree->law == LAW_CONTINUUM ? "J/m^3" : results[which].unit;
+  return which == RESULT_W && is_per_volume(ck) ? "J/m^3" : results[which].unit;
 }
 
 static void check_result(checker *ck, stmt *s) {
@@ -170,7 +189,8 @@ static void check_result(checker *ck, stmt *s) {
   if (!v.broken && !check_family_rule(ck, s, &v)) v = BROKEN;
   int which = s->symbol && s->symbol->kind == SYMBOL_RESULT ? s->symbol->index : RESULT_COUNT;
   if (which < RESULT_COUNT) {
-    const char *what = arena_printf(ck->memory, "`%s %s`", stmt_kind_name(s->kind), s->name);
+    const char *volume = which == RESULT_W && is_per_volume(ck) ? " (J/m^3)" : "";
+    const char *what = arena_printf(ck->memory, "`%s`%s", stmt_words(ck->memory, s), volume);
     dimension dim = dimension_of(unit_of_result(ck, which));
     if (!expect(ck, s->value, v, dim, results[which].shape, what)) v = BROKEN;
     v.dim = dim;
@@ -506,6 +526,47 @@ static void list_rules(checker *ck) {
     }
 }
 
+/* --- states that are tensors ------------------------------------------------------------------ */
+
+/* What stores and shows states knows numbers only: a tensor's components are fields of their own,
+   eps_p_xx and so on. The name itself keeps the index of the first. */
+static symbol *component_of(checker *ck, const symbol *whole, int k) {
+  symbol *s = arena_alloc(ck->memory, sizeof *s);
+  *s = *whole;
+  s->name = arena_printf(ck->memory, "%s_%c%c", whole->name, tensor_axis(k, 0), tensor_axis(k, 1));
+  s->shape = SHAPE_SCALAR;
+  s->component_of = whole;
+  s->component = k;
+  const entry *other = names_find(ck, SPACE_QUANTITIES, s->name);
+  if (!other) return s;
+  complain(ck, DIAG_DUPLICATE_NAME, other->symbol.where,
+           "`%s` is what the component of the state `%s` is called in results", s->name,
+           whole->name);
+  diag_note(ck->d, whole->where, "`%s` is declared here", whole->name);
+  return s;
+}
+
+static void split_tensors(checker *ck) {
+  const symbol_list whole = ck->law->fields;
+  int count = 0;
+  for (int i = 0; i < whole.count; i++)
+    count += whole.items[i]->shape == SHAPE_TENSOR ? TENSOR_COMPONENT_COUNT : 1;
+  if (count == whole.count) return;
+  symbol **items = arena_alloc(ck->memory, (size_t)count * sizeof *items);
+  count = 0;
+  for (int i = 0; i < whole.count; i++) {
+    symbol *s = whole.items[i];
+    s->index = count;
+    for (int k = 0; s->shape == SHAPE_TENSOR && k < TENSOR_COMPONENT_COUNT; k++) {
+      items[count] = component_of(ck, s, k);
+      items[count]->index = count;
+      count++;
+    }
+    if (s->shape != SHAPE_TENSOR) items[count++] = s;
+  }
+  ck->law->fields = (symbol_list){items, count};
+}
+
 static void list_statements(checker *ck) {
   for (stmt *s = ck->tree->first; s; s = s->next)
     ck->statement_count++;
@@ -534,12 +595,21 @@ static void publish_types(checker *ck) {
   }
 }
 
+static void check_anisotropic(checker *ck) {
+  const tree *t = ck->tree;
+  if (!t->anisotropic || t->law == LAW_CONTINUUM) return;
+  complain(ck, DIAG_LAW_KIND, t->anisotropic_where,
+           "`anisotropic` is said of laws of a continuum, not of a %s law", law_word(ck));
+  diag_hint(ck->d, "leave it away: bonds have directions, so that nothing asks for it");
+}
+
 static void check_all(checker *ck, const law_choice *choices, int choice_count) {
   declare_names(ck);
   ck->now = ck->statement_count;
   check_choices(ck, choices, choice_count);
   if (has_state(ck)) infer_states(ck);
   check_statements(ck);
+  check_anisotropic(ck);
   check_rules_of_fields(ck);
   if (is_single(ck))
     check_results_given(ck);
@@ -562,6 +632,7 @@ law *law_check(arena *memory, tree *t, const source_set *sources, const law_choi
     mark_used(&ck);
     report_unused(&ck);
     list_rules(&ck);
+    split_tensors(&ck);
   }
   names_end(&ck);
   return d->errors == errors ? l : NULL;

@@ -65,7 +65,7 @@ static void add_builtins(checker *ck) {
     const builtin_quantity_info *q = &builtin_quantities[i];
     if (is_free_here(ck, q)) continue;
     dimension dim = dimension_of(q->unit);
-    const placement on = ck->tree->law == LAW_CRACK                  ? ON_TIP
+    const placement on = ck->tree->law == LAW_CRACK                 ? ON_TIP
                          : is_single(ck) && q->place == ON_PARTICLE ? ON_BODY
                                                                     : q->place;
     entry *e = names_add(ck, SPACE_QUANTITIES, q->name,
@@ -134,7 +134,6 @@ static const char *law_that_has(int kinds) {
                         : kinds & IN_STATE     ? LAW_STATE
                         : kinds & IN_SLIP      ? LAW_SLIP_BOND
                         : kinds & IN_CONTINUUM ? LAW_CONTINUUM
-                        : kinds & IN_CRACK     ? LAW_CRACK
                                                : LAW_CENTRAL_BOND;
   return law_kind_name(kind);
 }
@@ -148,7 +147,10 @@ static void report_other_kind(checker *ck, const expr *e, const builtin_quantity
                                      [LAW_CRACK] = "a law of cracks"};
   complain(ck, DIAG_LAW_KIND, e->name_where, "%s does not have `%s` (%s)", laws[ck->tree->law],
            e->name, q->meaning);
-  diag_hint(ck->d, "a law that begins with `law %s` has it", law_that_has(q->kinds));
+  if (q->kinds == IN_CRACK)
+    diag_hint(ck->d, "what a tip does, between `crack` and `end crack`, may read it");
+  else
+    diag_hint(ck->d, "a law that begins with `law %s` has it", law_that_has(q->kinds));
 }
 
 static void report_unknown(checker *ck, const expr *e) {

@@ -94,7 +94,21 @@ static value check_name(checker *ck, expr *e) {
   return check_family_name(ck, e, v);
 }
 
+static value check_component(checker *ck, expr *e) {
+  value v = check_value(ck, e->left);
+  if (v.broken || v.unknown) return v;
+  if (v.shape == SHAPE_TENSOR) {
+    v.shape = SHAPE_SCALAR;
+    return v;
+  }
+  complain(ck, DIAG_SHAPE, e->where, "`%s` is %s and has no component `%c,%c`", e->left->name,
+           shape_words(v.shape), tensor_axis(e->component, 0), tensor_axis(e->component, 1));
+  diag_hint(ck->d, "components are those of stresses, strains and other tensors");
+  return BROKEN;
+}
+
 static value check_unary(checker *ck, expr *e) {
+  if (e->unary == OP_COMPONENT) return check_component(ck, e);
   if (e->unary != OP_NOT) return check_number(ck, e->left);
   value v = check_guard(ck, e->left);
   return v;

@@ -125,7 +125,7 @@ void line_law(parsing *p, word first, word second, span where) {
 
 void line_settings(parsing *p, const words *list, span where) {
 #define X(code, word) word,
-  static const char *const known[] = {LAW_SETTINGS(X) LAW_IRREGULAR};
+  static const char *const known[] = {LAW_SETTINGS(X) LAW_IRREGULAR, LAW_ANISOTROPIC};
 #undef X
   if (refuse_in_include(p, where) || !inside_model(p, where)) return;
   if (p->setting_seen) {
@@ -140,11 +140,20 @@ void line_settings(parsing *p, const words *list, span where) {
     if (found || !first_complaint(p)) continue;
     diag_report(p->messages, DIAG_SYNTAX, list->where[i], "there is no setting `%s`",
                 list->items[i]);
-    diag_hint(p->messages, "the settings are plane_stress, plane_strain, space and " LAW_IRREGULAR);
+    diag_hint(p->messages, "the settings are plane_stress, plane_strain, space, " LAW_IRREGULAR
+                           " and " LAW_ANISOTROPIC);
   }
   p->model->settings = list->items;
   p->model->setting_where = list->where;
-  p->model->setting_count = list->count;
+  for (int i = 0; i < list->count; i++) {
+    if (strcmp(list->items[i], LAW_ANISOTROPIC) == 0) {
+      p->model->anisotropic = true;
+      p->model->anisotropic_where = list->where[i];
+      continue;
+    }
+    list->items[p->model->setting_count] = list->items[i];
+    list->where[p->model->setting_count++] = list->where[i];
+  }
 }
 
 bool line_statement(parsing *p, stmt *s, word text, span where) {

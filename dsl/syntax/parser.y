@@ -111,6 +111,12 @@ declaration:
 | NAME index '=' body               { $$ = build_stmt(p, STMT_DEFINITION, $1, $2, $4, @$); }
 | STATE NAME index on '=' body      { $$ = build_stmt(p, STMT_STATE, $2, $3, $6, @$);
                                       build_placement(p, $$, $4); }
+| STATE NAME index on '=' NAME NUMBER unit
+                                    { $$ = build_stmt(p, STMT_STATE, $2, $3,
+                                                      build_number(p, $7, $8, span_join(@7, @8)),
+                                                      @$);
+                                      build_placement(p, $$, $4);
+                                      build_tensor_state(p, $$, $6); }
 | DAMAGE NAME index on              { $$ = build_stmt(p, STMT_DAMAGE, $2, $3, NULL, @$);
                                       build_placement(p, $$, $4); }
 | DAMAGE NAME index on '=' body     { $$ = build_stmt(p, STMT_DAMAGE, $2, $3, $6, @$);
@@ -295,6 +301,12 @@ primary:
   NUMBER                            { $$ = build_number(p, $1, no_word, @$); }
 | NUMBER UNIT                       { $$ = build_number(p, $1, $2, @$); }
 | NAME index                        { $$ = build_name(p, $1, false, $2, $2.text ? @$ : @1); }
+| NAME '[' NAME ',' NAME ']'        { $$ = build_component(p, build_name(p, $1, false, no_word, @1),
+                                                           $3, $5, @$); }
+| NAME '[' NAME ']' '[' NAME ',' NAME ']'
+                                    { $$ = build_component(p, build_name(p, $1, false, $3,
+                                                                         span_join(@1, @4)),
+                                                           $6, $8, @$); }
 | PRIMED index                      { $$ = build_name(p, $1, true, $2, $2.text ? @$ : @1); }
 | call ')'                          { $$ = $1; $$->where = @$; }
 | '(' expression ')'                { $$ = $2; $$->where = @$; }

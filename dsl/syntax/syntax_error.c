@@ -180,8 +180,8 @@ static bool name_missing(parsing *p, const trouble *t) {
 
 static bool index_wrong(parsing *p, const trouble *t) {
   if (p->lex.before_last != '[' || !t->expected[T_NAME] || value_expected(t)) return false;
-  say(p, t->where, "square brackets hold `j`, the neighbour, and nothing else");
-  hint(p, "write x[j]; units stand after numbers only");
+  say(p, t->where, "square brackets hold `j`, the neighbour, or two axes of a tensor");
+  hint(p, "write x[j] or sigma[x,y]; units stand after numbers only");
   return true;
 }
 
@@ -211,11 +211,29 @@ static bool bracket_empty(parsing *p, const trouble *t) {
   return true;
 }
 
+/* sigma[x,y] = ... */
+static bool component_set(parsing *p, const trouble *t) {
+  const int first = p->lex.first;
+  const bool of_name = t->token == ',' && t->expected[']'] && first == T_NAME,
+             of_tensor = t->token == '[' && (first == T_STRESS || first == T_STRAIN);
+  if (p->lex.equals > 0 || (!of_name && !of_tensor)) return false;
+  say(p, t->where, "the components of a tensor are given all at once");
+  hint(p, "write `= tensor(xx, yy, zz, xy)`, and behind these yz and xz where they are not 0");
+  return true;
+}
+
+/* Whether [x,y] stands there. */
+static bool is_component(const parsing *p, span bracket) {
+  const char *at = p->lex.text + bracket.end;
+  return bracket.end + 1 < p->lex.length && strchr("xyz", at[0]) && at[1] == ',';
+}
+
 static bool unit_misplaced(parsing *p, const trouble *t) {
   if (t->token != '[' || !is_value_end(p->lex.before_last)) return false;
   say(p, t->where, "a square bracket cannot stand here");
-  hint(p, p->lex.before_last == ')' ? "a unit belongs to a number: 3 [mm]*(a + b)"
-                                    : "units stand after numbers, [j] after names");
+  hint(p, is_component(p, t->where)   ? "give the tensor a name, and take its component from that"
+          : p->lex.before_last == ')' ? "a unit belongs to a number: 3 [mm]*(a + b)"
+                                      : "units stand after numbers, [j] after names");
   return true;
 }
 
@@ -509,8 +527,9 @@ void syntax_error(parsing *p, int token, span where, const bool expected[TOKEN_C
       decimal_comma,      bounds_wrong,       bracket_not_open,   bracket_empty,
       case_without_guard, case_misplaced,     word_as_name,       name_missing,
       index_wrong,        bracket_not_closed, guard_without_case, chained_comparison,
-      two_values,         unit_misplaced,     text_not_last,      text_missing,
-      line_begins_wrong,  value_missing,      equal_missing,      anything_else};
+      component_set,      two_values,         unit_misplaced,     text_not_last,
+      text_missing,       line_begins_wrong,  value_missing,      equal_missing,
+      anything_else};
   if (!first_complaint(p)) return;
   trouble t = {token, where, expected};
   for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)

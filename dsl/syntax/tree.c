@@ -20,7 +20,7 @@ static const char *binary_op_text(binary_op op) {
 }
 
 const char *placement_name(placement p) {
-  static const char *const names[] = {"nothing", "body",     "point", "tip",
+  static const char *const names[] = {"nothing",  "body", "point",    "tip",
                                       "particle", "bond", "neighbour"};
   return names[p];
 }
@@ -108,6 +108,7 @@ static level level_of(const expr *e, level context) {
   case EXPR_BINARY:
     return levels_of(e->binary).own;
   case EXPR_UNARY:
+    if (e->unary == OP_COMPONENT) return LEVEL_PRIMARY;
     if (e->unary == OP_NOT) return LEVEL_NOT;
     return context == LEVEL_FACTOR ? LEVEL_FACTOR : LEVEL_ADDEND;
   case EXPR_CASES:
@@ -115,6 +116,11 @@ static level level_of(const expr *e, level context) {
   default:
     return LEVEL_PRIMARY;
   }
+}
+
+static void print_component(const expr *e, FILE *out) {
+  print_at(e->left, LEVEL_PRIMARY, out);
+  fprintf(out, "[%c,%c]", tensor_axis(e->component, 0), tensor_axis(e->component, 1));
 }
 
 static void print_bare(const expr *e, level own, FILE *out) {
@@ -127,6 +133,10 @@ static void print_bare(const expr *e, level own, FILE *out) {
     fprintf(out, "%s%s%s", e->name, e->primed ? "'" : "", e->indexed ? "[j]" : "");
     break;
   case EXPR_UNARY:
+    if (e->unary == OP_COMPONENT) {
+      print_component(e, out);
+      break;
+    }
     fputs(e->unary == OP_NOT ? "not " : e->unary == OP_NEG ? "-" : "+", out);
     print_at(e->left, own, out);
     break;
@@ -186,7 +196,7 @@ static void dump_arguments(const expr *e, int depth, FILE *out) {
 }
 
 static void dump_expr(const expr *e, int depth, FILE *out) {
-  static const char *const unary[] = {"negative", "positive", "not"};
+  static const char *const unary[] = {"negative", "positive", "not", "component"};
   indent(depth, out);
   switch (e->kind) {
   case EXPR_NUMBER:
@@ -200,7 +210,10 @@ static void dump_expr(const expr *e, int depth, FILE *out) {
     fputc('\n', out);
     break;
   case EXPR_UNARY:
-    fprintf(out, "%s\n", unary[e->unary]);
+    fputs(unary[e->unary], out);
+    if (e->unary == OP_COMPONENT)
+      fprintf(out, " %c,%c", tensor_axis(e->component, 0), tensor_axis(e->component, 1));
+    fputc('\n', out);
     dump_expr(e->left, depth + 1, out);
     break;
   case EXPR_BINARY:
@@ -273,8 +286,20 @@ static void dump_stmt(const stmt *s, FILE *out) {
     fprintf(out, "text \"%s\"\n", s->text);
   }
   dump_bounds(&s->in, 2, out);
-  dump_labelled("value", s->value, 2, out);
+  dump_labelled(s->tensor ? "tensor" : "value", s->value, 2, out);
   dump_labelled("when", s->when, 2, out);
+}
+
+const char *stmt_words(arena *memory, const stmt *s) {
+  const char *kind = stmt_kind_name(s->kind);
+  return strcmp(kind, s->name) == 0 ? kind : arena_printf(memory, "%s %s", kind, s->name);
+}
+
+char tensor_axis(int component, int which) {
+#define X(code, first, second) {first, second},
+  static const char axes[TENSOR_COMPONENT_COUNT][2] = {TENSOR_COMPONENTS(X)};
+#undef X
+  return axes[component][which];
 }
 
 const char *law_kind_name(law_kind kind) {
@@ -292,6 +317,7 @@ void tree_dump(const tree *t, FILE *out) {
   for (int i = 0; i < t->setting_count; i++)
     fprintf(out, "%s%s%s", i ? ", " : "  for ", t->settings[i],
             i + 1 == t->setting_count ? "\n" : "");
+  if (t->anisotropic) fputs("  anisotropic\n", out);
   for (const stmt *s = t->first; s; s = s->next)
     dump_stmt(s, out);
 }

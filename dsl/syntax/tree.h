@@ -22,6 +22,8 @@ C_LINKAGE_BEGIN
 
 /* `for irregular`, `when irregular`: particles that stand on no lattice. */
 #define LAW_IRREGULAR "irregular"
+/* `for anisotropic`: a law of a continuum that knows the axes. */
+#define LAW_ANISOTROPIC "anisotropic"
 
 typedef enum expr_kind {
   EXPR_NUMBER, /* 30 [GPa] */
@@ -59,7 +61,7 @@ typedef enum binary_op {
       OP_BINARY_COUNT
 } binary_op;
 
-typedef enum unary_op { OP_NEG, OP_PLUS, OP_NOT } unary_op;
+typedef enum unary_op { OP_NEG, OP_PLUS, OP_NOT, OP_COMPONENT } unary_op;
 
 /* What a value is, beside its dimension. A bending quantity has one component in 2D, two in 3D. */
 typedef enum shape { SHAPE_SCALAR, SHAPE_LOGICAL, SHAPE_BENDING, SHAPE_VECTOR, SHAPE_TENSOR } shape;
@@ -75,6 +77,11 @@ typedef enum placement {
   ON_BOND,
   ON_NEIGHBOUR
 } placement;
+
+/* Components of a symmetric tensor, in this order. X(code, first axis, second axis) */
+#define TENSOR_COMPONENTS(X)                                                                       \
+  X(XX, 'x', 'x') X(YY, 'y', 'y') X(ZZ, 'z', 'z') X(XY, 'x', 'y') X(YZ, 'y', 'z') X(XZ, 'x', 'z')
+enum { TENSOR_COMPONENT_COUNT = 6 };
 
 struct symbol; /* law.h */
 struct function_builtin;
@@ -112,6 +119,7 @@ struct expr {
   bool primed;  /* NAME: ' follows the name (the neighbour's value toward me) */
 
   unary_op unary;
+  int component; /* UNARY of OP_COMPONENT: which of the tensor's */
   binary_op binary;
   expr *left, *right; /* BINARY; UNARY uses left */
 
@@ -169,6 +177,7 @@ struct stmt {
   int word_count;
   expr *when;       /* FLOW: guard */
   bool returned;    /* FLOW along ... returned */
+  bool tensor;      /* STATE: begins at `tensor 0` */
   const char *text; /* quoted text: description, reason, or included file */
   span text_where;
   const char *doc; /* lines of !> before it, joined by newline; NULL without */
@@ -212,11 +221,17 @@ typedef struct tree {
   const char **settings; /* for plane_stress, space */
   span *setting_where;
   int setting_count;
+  bool anisotropic; /* was in the line `for`; it does not stand among the settings */
+  span anisotropic_where;
   stmt *first; /* in the order written, included statements in place */
 } tree;
 
 const char *stmt_kind_name(stmt_kind kind);
 const char *placement_name(placement p);
+/* "force N", "grow": what the line gives; in `memory`. */
+const char *stmt_words(arena *memory, const stmt *s);
+/* The axes of a component, 'x', 'y' or 'z'. */
+char tensor_axis(int component, int which);
 
 /* Prints the tree as indented text, one node a line, without spans, as golden tests have it. */
 void tree_dump(const tree *t, FILE *out);

@@ -53,6 +53,27 @@ expr *build_name(parsing *p, word name, bool primed, word index, span where) {
   return e;
 }
 
+static int find_component(const char *first, const char *second) {
+  for (int k = 0; k < TENSOR_COMPONENT_COUNT; k++)
+    for (int turned = 0; turned < 2; turned++)
+      if (first[0] == tensor_axis(k, turned) && second[0] == tensor_axis(k, 1 - turned) &&
+          !first[1] && !second[1])
+        return k;
+  return -1;
+}
+
+expr *build_component(parsing *p, expr *tensor, word first, word second, span where) {
+  expr *e = build_unary(p, OP_COMPONENT, tensor, where);
+  const int found = find_component(first.text, second.text);
+  e->component = found < 0 ? 0 : found;
+  if (found >= 0 || !first_complaint(p)) return e;
+  diag_report(p->messages, DIAG_SYNTAX, span_join(first.where, second.where),
+              "a tensor has no component `%s,%s`", first.text, second.text);
+  diag_hint(p->messages, "components are named by the axes x, y and z, as in `%s[x,y]`",
+            tensor->name);
+  return e;
+}
+
 expr *build_unary(parsing *p, unary_op op, expr *operand, span where) {
   expr *e = node(p, EXPR_UNARY, where);
   e->unary = op;
@@ -179,6 +200,18 @@ void build_placement(parsing *p, stmt *s, word on) {
   diag_report(p->messages, DIAG_SYNTAX, on.where, "a %s cannot live on `%s`",
               stmt_kind_name(s->kind), on.text);
   diag_hint(p->messages, "write `on bond`, `on particle`, `on neighbour`, `on point` or `on tip`");
+}
+
+void build_tensor_state(parsing *p, stmt *s, word tensor) {
+  s->tensor = true;
+  if (strcmp(tensor.text, "tensor") != 0) {
+    if (!first_complaint(p)) return;
+    diag_report(p->messages, DIAG_SYNTAX, tensor.where, "`%s` is not understood here", tensor.text);
+    diag_hint(p->messages, "a state that is a tensor begins with `= tensor 0`");
+  } else if (s->value->number != 0 && first_complaint(p)) {
+    diag_report(p->messages, DIAG_SYNTAX, s->value->where, "a tensor begins at 0");
+    diag_hint(p->messages, "write `tensor 0`");
+  }
 }
 
 void build_force_state(parsing *p, word state, stmt *s, word direction) {

@@ -6,6 +6,8 @@
 
 expr *build_number(parsing *p, double number, word written_unit, span where);
 expr *build_name(parsing *p, word name, bool primed, word index, span where);
+/* sigma[x,y]: `first` and `second` name axes. */
+expr *build_component(parsing *p, expr *tensor, word first, word second, span where);
 expr *build_unary(parsing *p, unary_op op, expr *operand, span where);
 expr *build_binary(parsing *p, binary_op op, expr *left, expr *right, span where);
 expr *build_call(parsing *p, word name);
@@ -19,6 +21,8 @@ bounds build_bounds(parsing *p, bool lower_open, expr *lower, expr *upper, bool 
 /* index.text is NULL for a name without [j]. */
 stmt *build_stmt(parsing *p, stmt_kind kind, word name, word index, expr *value, span where);
 void build_placement(parsing *p, stmt *s, word on);
+/* A state that begins at `tensor 0`; `tensor` is the word that stands there. */
+void build_tensor_state(parsing *p, stmt *s, word tensor);
 /* What a law of cracks gives: `grow`, `toward`, `speed`, which are their names, too. */
 stmt *build_tip_stmt(parsing *p, stmt_kind kind, span name_where, expr *value, span where);
 void build_words_of(stmt *s, const words *list);

@@ -1,415 +1,385 @@
 #include "generator/check/physics_points.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "generator/check/physics_parameters.h"
-#include "generator/interpreter/interpreted.h"
+#include "generator/check/physics_point_bench.h"
+#include "generator/check/physics_point_turns.h"
 #include "generator/ir/random_values.h"
 #include "runtime/base/eigen.h"
 
-enum { LANES = PL_LANES, MOST = PL_MAX_STRAINS, USUAL_SEED = 20 };
+enum { MOST = POINT_MOST, USUAL_SEED = 20 };
 
 static const double REST_TOLERANCE = 1e-12;    /* of the stress at a strain of 1e-3 */
 static const double TANGENT_TOLERANCE = 1e-5;  /* of its largest entry, against differences */
 static const double SYMMETRY_TOLERANCE = 1e-9; /* of its largest entry */
 static const double PATH_TOLERANCE = 1e-6;     /* of the work of the absolute stresses */
-static const double CELL = 0.01;               /* m, size of the cell */
+static const double TIME_STEP = 1e-6;          /* s */
 
-/* One point on the interpreter; kernels take PL_LANES points, of which the first counts. */
-typedef struct point {
-  const law *law;
-  kernel_plan *plan;
-  pl_law *kernel;
-  diagnostics *said;
-  physics_report *report;
-  uint64_t seed;
-  double *parameters, *uniforms;
-  bool failed[DIAG_COUNT];
-  int strains, stresses;
-  double strain[MOST][LANES], rate[MOST][LANES], size[LANES];
-  double stress[MOST][LANES], tangent[MOST * MOST][LANES], lost[PL_LOSSES][LANES];
-  double *space, **old_field, **new_field, **observed;
-  const double *strain_at[MOST], *rate_at[MOST];
-  double *stress_at[MOST], *tangent_at[MOST * MOST], *lost_at[PL_LOSSES];
-} point;
+static const char MEND_ENERGY[] =
+    "give an `energy W` instead, of which the stress is the derivative, or write "
+    "`nonconservative \"why\"`";
 
-/* --- the bench -------------------------------------------------------------------------------- */
+/* --- at rest ---------------------------------------------------------------------------------- */
 
-static double **planes(double **space, int count) {
-  double **all = must_calloc((size_t)count + 1, sizeof *all);
-  for (int k = 0; k < count; k++, *space += LANES)
-    all[k] = *space;
-  return all;
-}
-
-static bool point_open(point *p, const law *l, const physics_options *o, diagnostics *d) {
-  p->law = l;
-  p->said = d;
-  p->seed = o->seed ? o->seed : USUAL_SEED;
-  p->plan = plan_kernel(l, d);
-  if (!p->plan) return false;
-  p->kernel = plan_interpreted(p->plan);
-  const int fields = l->fields.count, observed = 1 + l->outputs.count;
-  p->strains = PL_STRAINS(p->kernel->dimensions);
-  p->stresses = PL_STRESSES(p->kernel->dimensions);
-  p->parameters = must_calloc((size_t)l->parameters.count + 1, sizeof(double));
-  p->uniforms = must_calloc((size_t)p->kernel->uniform_count + 1, sizeof(double));
-  double *space = p->space = must_calloc((size_t)((2 * fields + observed) * LANES), sizeof(double));
-  p->old_field = planes(&space, fields);
-  p->new_field = planes(&space, fields);
-  p->observed = planes(&space, observed);
-  for (int k = 0; k < MOST; k++) {
-    p->strain_at[k] = p->strain[k];
-    p->rate_at[k] = p->rate[k];
-    p->stress_at[k] = p->stress[k];
-  }
-  for (int k = 0; k < MOST * MOST; k++)
-    p->tangent_at[k] = p->tangent[k];
-  for (int k = 0; k < PL_LOSSES; k++)
-    p->lost_at[k] = p->lost[k];
-  for (int k = 0; k < LANES; k++)
-    p->size[k] = CELL;
-  return true;
-}
-
-static void point_close(point *p) {
-  plan_interpreted_free(p->kernel);
-  plan_free(p->plan);
-  free(p->parameters);
-  free(p->uniforms);
-  free(p->space);
-  free(p->old_field);
-  free(p->new_field);
-  free(p->observed);
-}
-
-static void point_run(point *p, pl_point_function function, double time_step) {
-  const pl_points given = {.size = sizeof given,
-                           .count = LANES,
-                           .strain = p->strain_at,
-                           .strain_rate = p->rate_at,
-                           .cell_size = p->size,
-                           .old_field = (const double *const *)p->old_field,
-                           .new_field = p->new_field,
-                           .stress = p->stress_at,
-                           .tangent = p->tangent_at,
-                           .observed = p->observed,
-                           .lost = p->lost_at,
-                           .time_step = time_step};
-  function(p->kernel, p->uniforms, &given);
-  p->report->states += LANES;
-}
-
-static void take_parameters(point *p, const physics_options *o, bool usual) {
-  if (o->parameters)
-    memcpy(p->parameters, o->parameters, (size_t)p->law->parameters.count * sizeof(double));
-  else
-    physics_draw_parameters(p->law, usual ? NULL : &p->seed, p->parameters);
-  const pl_bond_class none = {.size = sizeof none};
-  p->kernel->prepare(p->kernel, p->parameters, &none, p->uniforms);
-}
-
-static void set_virgin(point *p) {
-  for (int k = 0; k < p->law->fields.count; k++)
-    for (int lane = 0; lane < LANES; lane++)
-      p->old_field[k][lane] = p->law->fields.items[k]->initial;
-}
-
-static void set_strain(point *p, const double *strain, const double *rate) {
-  for (int k = 0; k < p->strains; k++)
-    for (int lane = 0; lane < LANES; lane++) {
-      p->strain[k][lane] = strain[k];
-      p->rate[k][lane] = rate ? rate[k] : 0;
-    }
-}
-
-static double draw_direction(point *p, double size, double *strain) {
-  double length = 0;
-  for (int k = 0; k < p->strains; k++) {
-    strain[k] = draw_uniform(&p->seed, -1, 1);
-    length += strain[k] * strain[k];
-  }
-  for (int k = 0; k < p->strains; k++)
-    strain[k] *= size / sqrt(length);
-  return size;
-}
-
-static double draw_strain(point *p, double *strain) {
-  return draw_direction(p, pl_pow(10, draw_uniform(&p->seed, -7, -2)), strain);
-}
-
-static bool is_shear(const point *p, int k) {
-  return k >= p->strains / 2 + (p->strains == 3);
-}
-
-/* Work of a stress over a small change of strain: shears count twice. */
-static double work(const point *p, const double *stress, const double *change, double *size) {
-  double sum = 0;
-  for (int k = 0; k < p->strains; k++) {
-    const double part = stress[k] * change[k] * (is_shear(p, k) ? 2 : 1);
-    sum += part;
-    *size += fabs(part);
-  }
-  return sum;
-}
-
-static void get_stress(const point *p, double *stress) {
-  for (int k = 0; k < p->strains; k++)
-    stress[k] = p->stress[k][0];
-}
-
-static double largest(const double *v, int count) {
-  double most = 0;
-  for (int k = 0; k < count; k++)
-    if (!(fabs(v[k]) <= most)) most = fabs(v[k]);
-  return most;
-}
-
-/* --- what is said ----------------------------------------------------------------------------- */
-
-static const char *component_name(const point *p, int k) {
-  static const char *const plane[] = {"xx", "yy", "xy"}, *const space[] = {"xx", "yy", "zz",
-                                                                           "xy", "yz", "xz"};
-  return p->strains == 3 ? plane[k] : space[k];
-}
-
-/* One a kind, with the strain that shows it (NULL: rest). */
-static void say(point *p, diag_code code, const double *strain, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
-static void say(point *p, diag_code code, const double *strain, const char *format, ...) {
-  if (p->failed[code]) return;
-  p->failed[code] = true;
-  char message[512], state[256] = "";
-  va_list values;
-  va_start(values, format);
-  vsnprintf(message, sizeof message, format, values);
-  va_end(values);
-  const symbol *s =
-      p->law->results[RESULT_SIGMA] ? p->law->results[RESULT_SIGMA] : p->law->results[RESULT_W];
-  diag_report(p->said, code, s->rule->where, "%s", message);
-  for (int k = 0; strain && k < p->strains; k++) {
-    const size_t used = strlen(state);
-    snprintf(state + used, sizeof state - used, "%s%s = %.4g", k ? ", " : "", component_name(p, k),
-             strain[k]);
-  }
-  if (strain) diag_note(p->said, (span){0, 0, UINT16_MAX}, "found at the strain %s", state);
-}
-
-/* --- the checks ------------------------------------------------------------------------------- */
-
-static void check_rest(point *p) {
+static void check_rest(point_bench *b) {
   double strain[MOST] = {0}, stress[MOST];
-  set_virgin(p);
-  draw_direction(p, 1e-3, strain);
-  set_strain(p, strain, NULL);
-  point_run(p, p->kernel->point_step, 1e-6);
-  get_stress(p, stress);
-  const double scale = largest(stress, p->strains);
+  point_bench_virgin(b);
+  point_bench_direction(b, 1e-3, strain);
+  point_bench_stress(b, strain, stress);
+  const double scale = point_bench_largest(stress, b->strains);
   memset(strain, 0, sizeof strain);
-  set_strain(p, strain, NULL);
-  point_run(p, p->kernel->point_step, 1e-6);
-  get_stress(p, stress);
-  const double found = largest(stress, p->strains);
-  if (!(found <= REST_TOLERANCE * scale) || !(scale > 0))
-    say(p, DIAG_REST_FORCE, NULL,
-        scale > 0 ? "the virgin point at rest has a stress of %.6g Pa"
-                  : "the virgin point has no stress when it is strained",
-        found);
-}
-
-static double tangent_scale(const point *p) {
-  double most = 0;
-  for (int k = 0; k < p->strains * p->strains; k++)
-    if (!(fabs(p->tangent[k][0]) <= most)) most = fabs(p->tangent[k][0]);
-  return most;
+  point_bench_stress(b, strain, stress);
+  const double found = point_bench_largest(stress, b->strains);
+  if (!(scale > 0) && isfinite(found))
+    point_bench_say(b, DIAG_STIFFNESS, strain, "let the stress depend on `strain`",
+                    "the virgin point has no stress when it is strained");
+  else if (!(found <= REST_TOLERANCE * scale) && isfinite(scale))
+    point_bench_say(b, DIAG_REST_FORCE, NULL, "take the stress of rest away from it",
+                    "the virgin point at rest has a stress of %.6g Pa", found);
 }
 
 /* The smallest eigenvalue of the tangent's symmetric part. */
-static double least_stiffness(const point *p) {
+static double least_stiffness(const point_bench *b) {
   double matrix[EIGEN_MOST][EIGEN_MOST], value[EIGEN_MOST], vectors[EIGEN_MOST][EIGEN_MOST];
-  for (int a = 0; a < p->strains; a++)
-    for (int b = 0; b < p->strains; b++)
-      matrix[a][b] = 0.5 * (p->tangent[a * p->strains + b][0] + p->tangent[b * p->strains + a][0]);
-  eigen_symmetric(p->strains, matrix, value, vectors);
+  for (int i = 0; i < b->strains; i++)
+    for (int k = 0; k < b->strains; k++)
+      matrix[i][k] = 0.5 * (b->tangent[i * b->strains + k][0] + b->tangent[k * b->strains + i][0]);
+  eigen_symmetric(b->strains, matrix, value, vectors);
   double least = value[0];
-  for (int k = 1; k < p->strains; k++)
+  for (int k = 1; k < b->strains; k++)
     if (!(value[k] >= least)) least = value[k];
   return least;
 }
 
-static void check_stiffness(point *p) {
+static void check_stiffness(point_bench *b) {
   const double rest[MOST] = {0};
-  set_virgin(p);
-  set_strain(p, rest, NULL);
-  point_run(p, p->kernel->point_tangent, 1e-6);
-  const double least = least_stiffness(p);
+  if (b->failed[DIAG_REST_FORCE]) return;
+  point_bench_virgin(b);
+  point_bench_strain(b, rest, NULL);
+  point_bench_run(b, b->kernel->point_tangent, TIME_STEP);
+  if (!isfinite(point_bench_tangent_size(b))) {
+    point_bench_say(b, DIAG_STIFFNESS, NULL,
+                    "a root or a power of a strain that is 0 has no slope: keep it off 0",
+                    "the stiffness of the virgin point is not finite");
+    return;
+  }
+  const double least = least_stiffness(b);
   if (!(least > 0))
-    say(p, DIAG_STIFFNESS, NULL,
-        "the virgin point has a strain against which it is not stiff (%.4g Pa): it would fly apart",
+    point_bench_say(
+        b, DIAG_STIFFNESS, NULL,
+        "look at signs, and at bounds of parameters such as `nu in [0, 0.5)`",
+        "the virgin point has a strain against which it is not stiff (%.4g Pa): not all "
+        "of its waves run, it would fly apart",
         least);
 }
 
+/* --- the stress's slope ----------------------------------------------------------------------- */
+
 /* The largest difference between the tangent and the stress's central differences. */
-static double tangent_gap(point *p, const double *strain, const double *tangent, double by) {
+static double tangent_gap(point_bench *b, const double *strain, const double *tangent, double by) {
   double moved[MOST], high[MOST], low[MOST], difference = 0;
-  for (int b = 0; b < p->strains; b++) {
+  for (int k = 0; k < b->strains; k++) {
     for (int side = 0; side < 2; side++) {
       memcpy(moved, strain, sizeof moved);
-      moved[b] += side ? -by : by;
-      set_strain(p, moved, NULL);
-      point_run(p, p->kernel->point_step, 1e-6);
-      get_stress(p, side ? low : high);
+      moved[k] += side ? -by : by;
+      point_bench_stress(b, moved, side ? low : high);
     }
-    for (int a = 0; a < p->strains; a++) {
-      const double slope = (high[a] - low[a]) / (2 * by) * (is_shear(p, b) ? 0.5 : 1);
-      difference = pl_fmax(difference, fabs(slope - tangent[a * p->strains + b]));
+    for (int i = 0; i < b->strains; i++) {
+      const double slope = (high[i] - low[i]) / (2 * by) * (point_bench_is_shear(b, k) ? 0.5 : 1);
+      difference = pl_fmax(difference, fabs(slope - tangent[i * b->strains + k]));
     }
   }
   return difference;
 }
 
+/* The tangent of a drawn strain in `tangent`, the strain in `strain`; returns the strain's size. */
+static double draw_tangent(point_bench *b, double *strain, double *tangent) {
+  const double size = point_bench_any_strain(b, strain);
+  point_bench_virgin(b);
+  point_bench_strain(b, strain, NULL);
+  point_bench_run(b, b->kernel->point_tangent, TIME_STEP);
+  for (int k = 0; k < b->strains * b->strains; k++)
+    tangent[k] = b->tangent[k][0];
+  return size;
+}
+
 /* Across a kink differences say nothing; smaller ones are asked then. */
-static void check_tangent(point *p) {
+static void check_tangent(point_bench *b) {
   double strain[MOST], tangent[MOST * MOST];
-  const double size = draw_strain(p, strain);
-  if (p->law->fields.count > 0) return;
-  set_virgin(p);
-  set_strain(p, strain, NULL);
-  point_run(p, p->kernel->point_tangent, 1e-6);
-  const double scale = tangent_scale(p);
-  for (int k = 0; k < p->strains * p->strains; k++)
-    tangent[k] = p->tangent[k][0];
-  const double difference = pl_fmin(tangent_gap(p, strain, tangent, 1e-4 * size),
-                                    tangent_gap(p, strain, tangent, 1e-5 * size));
-  if (!(difference <= TANGENT_TOLERANCE * scale))
-    say(p, DIAG_TANGENT, strain,
-        "the tangent is off the stress's differences by %.3g of its largest entry",
-        difference / scale);
+  const double size = draw_tangent(b, strain, tangent), scale = point_bench_tangent_size(b);
+  const double difference = pl_fmin(tangent_gap(b, strain, tangent, 1e-4 * size),
+                                    tangent_gap(b, strain, tangent, 1e-5 * size));
+  if (!isfinite(difference) || !isfinite(scale))
+    point_bench_say(b, DIAG_NOT_FINITE, strain,
+                    "keep roots, logarithms and divisors off what they "
+                    "are not defined for, by cases or by `max`",
+                    "the stress or its slope is not finite at a finite strain");
+  else if (!b->failed[DIAG_CONTINUITY] && !b->failed[DIAG_NOT_FINITE] &&
+           !(difference <= TANGENT_TOLERANCE * scale))
+    point_bench_say(b, DIAG_TANGENT, strain, NULL,
+                    "the tangent is off the stress's differences by %.3g of its largest entry",
+                    difference / scale);
 }
 
 /* Of laws without states, whose tangent is that of the stress with nothing else changing. */
-static void check_symmetry(point *p) {
-  double strain[MOST];
-  if (p->law->nonconservative || p->law->fields.count > 0 || p->kernel->reads_rates) return;
-  draw_strain(p, strain);
-  set_virgin(p);
-  set_strain(p, strain, NULL);
-  point_run(p, p->kernel->point_tangent, 1e-6);
-  double most = 0;
-  const double scale = tangent_scale(p);
-  for (int a = 0; a < p->strains; a++)
-    for (int b = 0; b < a; b++)
-      most = pl_fmax(most,
-                     fabs(p->tangent[a * p->strains + b][0] - p->tangent[b * p->strains + a][0]));
-  if (!(most <= SYMMETRY_TOLERANCE * scale))
-    say(p, DIAG_STORED_ENERGY, strain,
-        "the stress has no energy: its tangent is not symmetric, by %.3g of its largest entry",
+static void check_symmetry(point_bench *b) {
+  double strain[MOST], tangent[MOST * MOST], most = 0;
+  if (b->law->nonconservative || b->law->fields.count > 0 || b->kernel->reads_rates) return;
+  draw_tangent(b, strain, tangent);
+  const double scale = point_bench_tangent_size(b);
+  for (int i = 0; i < b->strains; i++)
+    for (int k = 0; k < i; k++)
+      most = pl_fmax(most, fabs(tangent[i * b->strains + k] - tangent[k * b->strains + i]));
+  if (isfinite(scale) && !(most <= SYMMETRY_TOLERANCE * scale))
+    point_bench_say(
+        b, DIAG_STORED_ENERGY, strain, MEND_ENERGY,
+        "the stress has no energy: its tangent is not symmetric, by %.3g of its largest "
+        "entry",
         most / scale);
 }
 
+/* --- energies --------------------------------------------------------------------------------- */
+
+static double energy_at(point_bench *b, const double *strain) {
+  point_bench_strain(b, strain, NULL);
+  point_bench_run(b, b->kernel->point_observe, TIME_STEP);
+  return b->observed[0][0];
+}
+
+/* The virgin point stores more than at rest. */
+static void check_stored(point_bench *b) {
+  double strain[MOST], stress[MOST];
+  const double rest[MOST] = {0};
+  if (b->law->nonconservative || b->failed[DIAG_STIFFNESS] || b->failed[DIAG_REST_FORCE]) return;
+  point_bench_any_strain(b, strain);
+  point_bench_virgin(b);
+  double size = 0;
+  point_bench_stress(b, strain, stress);
+  point_bench_work(b, stress, strain, &size);
+  const double stored = energy_at(b, strain) - energy_at(b, rest);
+  if (isfinite(size) && stored < -1e-9 * size)
+    point_bench_say(b, DIAG_STORED_ENERGY, strain,
+                    "energy that a strain sets free drives motion "
+                    "without end: look at signs and powers",
+                    "the virgin point stores less than at rest, by %.6g J/m^3", -stored);
+}
+
 /* Where both are given: the work over a small straight change of strain is that of the energy. */
-static void check_energy_and_stress(point *p) {
-  if (!p->law->results[RESULT_SIGMA] || !p->law->results[RESULT_W]) return;
+static void check_energy_and_stress(point_bench *b) {
+  if (!b->law->results[RESULT_SIGMA] || !b->law->results[RESULT_W]) return;
   double strain[MOST], moved[MOST], change[MOST], stress[MOST], energy[2], size = 0;
-  const double length = draw_strain(p, strain);
-  draw_direction(p, 1e-3 * length, change);
-  set_virgin(p);
+  const double length = point_bench_any_strain(b, strain);
+  point_bench_direction(b, 1e-3 * length, change);
+  point_bench_virgin(b);
   for (int side = 0; side < 2; side++) {
-    for (int k = 0; k < p->strains; k++)
+    for (int k = 0; k < b->strains; k++)
       moved[k] = strain[k] + (side ? 0.5 : -0.5) * change[k];
-    set_strain(p, moved, NULL);
-    point_run(p, p->kernel->point_observe, 1e-6);
-    energy[side] = p->observed[0][0];
+    energy[side] = energy_at(b, moved);
   }
-  set_strain(p, strain, NULL);
-  point_run(p, p->kernel->point_step, 1e-6);
-  get_stress(p, stress);
-  const double done = work(p, stress, change, &size);
-  if (p->law->fields.count == 0 && !(fabs(energy[1] - energy[0] - done) <= 1e-4 * size))
-    say(p, DIAG_ENERGY_FORCE, strain,
-        "the stress is not the energy's derivative: a small strain does work of %.6g J/m^3, the "
-        "energy changes by %.6g J/m^3",
-        done, energy[1] - energy[0]);
+  point_bench_stress(b, strain, stress);
+  const double done = point_bench_work(b, stress, change, &size);
+  if (!isfinite(size) || !isfinite(energy[0]) || !isfinite(energy[1])) return; /* said elsewhere */
+  if (b->law->fields.count == 0 && !(fabs(energy[1] - energy[0] - done) <= 1e-4 * size))
+    point_bench_say(b, DIAG_ENERGY_FORCE, strain,
+                    "give the `energy W` alone, and the stress follows from it",
+                    "the stress is not the energy's derivative: a small strain does work of %.6g "
+                    "J/m^3, the energy changes by %.6g J/m^3",
+                    done, energy[1] - energy[0]);
 }
 
-/* Around a random polygon of strains and back, in small steps: what is done must be at least what is
-   stored and lost. */
-static void check_paths(point *p) {
-  enum { CORNERS = 5, STEPS = 200 };
-  double corner[CORNERS + 1][MOST] = {{0}}, change[MOST], before[MOST], after[MOST];
-  double strain[MOST] = {0}, total = 0, size = 0, lost_least = 0;
-  double worst[MOST] = {0};
-  const double length = pl_pow(10, draw_uniform(&p->seed, -5, -2)), time_step = 1e-6;
-  for (int k = 1; k < CORNERS; k++)
-    draw_direction(p, length, corner[k]);
-  set_virgin(p);
-  set_strain(p, strain, NULL);
-  point_run(p, p->kernel->point_step, time_step);
-  get_stress(p, before);
-  for (int k = 0; k < CORNERS; k++)
-    for (int step = 1; step <= STEPS; step++) {
-      double rate[MOST];
-      for (int c = 0; c < p->strains; c++) {
-        const double next = corner[k][c] + (corner[k + 1][c] - corner[k][c]) * step / STEPS;
-        change[c] = next - strain[c];
-        strain[c] = next;
-        rate[c] = change[c] / time_step;
-      }
-      set_strain(p, strain, p->kernel->reads_rates ? rate : NULL);
-      memset(p->lost, 0, sizeof p->lost);
-      point_run(p, p->kernel->point_ledger, time_step);
-      get_stress(p, after);
-      for (int c = 0; c < p->strains; c++)
-        before[c] = 0.5 * (before[c] + after[c]);
-      total += work(p, before, change, &size);
-      memcpy(before, after, sizeof before);
-      for (int f = 0; f < p->law->fields.count; f++)
-        memcpy(p->old_field[f], p->new_field[f], LANES * sizeof(double));
-      for (int k2 = 0; k2 < PL_LOSSES; k2++)
-        if (p->lost[k2][0] < lost_least) {
-          lost_least = p->lost[k2][0];
-          memcpy(worst, strain, sizeof worst);
-        }
-      if (!isfinite(total))
-        say(p, DIAG_NOT_FINITE, strain, "the stress of a finite strain is not finite");
+/* --- jumps ------------------------------------------------------------------------------------ */
+
+static bool holds_jump(const expr *e) {
+  if (!e) return false;
+  bool found = holds_jump(e->left) || holds_jump(e->right);
+  for (int k = 0; k < e->argument_count && !found; k++)
+    found = holds_jump(e->arguments[k].value);
+  for (int k = 0; k < e->case_count && !found; k++)
+    found = e->cases[k].jump || holds_jump(e->cases[k].value);
+  return found;
+}
+
+static bool means_jumps(const law *l) {
+  for (const stmt *s = l->tree->first; s; s = s->next)
+    if (holds_jump(s->value)) return true;
+  return false;
+}
+
+static void between(const point_bench *b, const double *from, const double *to, double at,
+                    double *strain) {
+  for (int k = 0; k < b->strains; k++)
+    strain[k] = from[k] + at * (to[k] - from[k]);
+}
+
+/* The largest change of the stress's components. */
+static double change_of(const point_bench *b, const double *one, const double *other) {
+  double most = 0;
+  for (int k = 0; k < b->strains; k++)
+    most = pl_fmax(most, fabs(one[k] - other[k]));
+  return most;
+}
+
+/* Between two strains, always into the half with the larger change: what is left of it is a jump. */
+static void check_continuity(point_bench *b, bool meant) {
+  enum { PIECES = 32, HALVES = 36 };
+  double from[MOST], to[MOST], here[MOST], low[MOST], high[MOST], next[MOST], scale = 0;
+  double begin = 0, most = -1;
+  if (meant || b->failed[DIAG_CONTINUITY]) return;
+  point_bench_any_strain(b, from);
+  point_bench_any_strain(b, to);
+  point_bench_virgin(b);
+  point_bench_stress(b, from, low);
+  for (int k = 1; k <= PIECES; k++, memcpy(low, high, sizeof low)) {
+    between(b, from, to, (double)k / PIECES, here);
+    point_bench_stress(b, here, high);
+    scale = pl_fmax(scale, point_bench_largest(high, b->strains));
+    if (!(change_of(b, low, high) > most)) continue;
+    most = change_of(b, low, high);
+    begin = (double)(k - 1) / PIECES;
+  }
+  double width = 1.0 / PIECES;
+  between(b, from, to, begin, here);
+  point_bench_stress(b, here, low);
+  between(b, from, to, begin + width, here);
+  point_bench_stress(b, here, high);
+  for (int k = 0; k < HALVES; k++) {
+    width /= 2;
+    between(b, from, to, begin + width, here);
+    point_bench_stress(b, here, next);
+    const bool second = change_of(b, next, high) > change_of(b, low, next);
+    if (second) begin += width;
+    memcpy(second ? low : high, next, sizeof next);
+  }
+  if (isfinite(scale) && change_of(b, low, high) > 1e-4 * scale)
+    point_bench_say(
+        b, DIAG_CONTINUITY, here,
+        "let the values of the cases meet where one ends, or write `jump` at the end of "
+        "the line if the jump is meant",
+        "the stress jumps by %.6g Pa", change_of(b, low, high));
+}
+
+/* --- closed paths ----------------------------------------------------------------------------- */
+
+typedef struct round_trip {
+  double strain[MOST], stress[MOST], first[MOST], worst[MOST];
+  double total, size, lost_least;
+} round_trip;
+
+static void go(point_bench *b, round_trip *t, const double *next) {
+  double change[MOST], rate[MOST], after[MOST];
+  for (int k = 0; k < b->strains; k++) {
+    change[k] = next[k] - t->strain[k];
+    rate[k] = change[k] / TIME_STEP;
+    t->strain[k] = next[k];
+  }
+  point_bench_strain(b, next, b->kernel->reads_rates ? rate : NULL);
+  memset(b->lost, 0, sizeof b->lost);
+  point_bench_run(b, b->kernel->point_ledger, TIME_STEP);
+  for (int k = 0; k < b->strains; k++) {
+    after[k] = b->stress[k][0];
+    t->stress[k] = 0.5 * (t->stress[k] + after[k]);
+  }
+  t->total += point_bench_work(b, t->stress, change, &t->size);
+  memcpy(t->stress, after, sizeof after);
+  point_bench_keep(b);
+  for (int k = 0; k < PL_LOSSES; k++)
+    if (b->lost[k][0] < t->lost_least) {
+      t->lost_least = b->lost[k][0];
+      memcpy(t->worst, next, sizeof t->worst);
     }
-  const bool conserves = p->law->fields.count == 0 && !p->kernel->reads_rates;
-  if (!p->law->nonconservative && conserves && fabs(total) > 1e-3 * size)
-    say(p, DIAG_CLOSED_PATH, corner[1],
-        "around a closed path of strain the point %s %.3g of the work",
-        total < 0 ? "gains" : "loses", fabs(total) / size);
-  if (!conserves && total < -1e-3 * size)
-    say(p, DIAG_CLOSED_PATH, corner[1],
-        "around a closed path of strain the point gains %.3g of the work", -total / size);
-  if (!p->law->nonconservative && lost_least < -PATH_TOLERANCE * size / (CORNERS * STEPS))
-    say(p, DIAG_DISSIPATION, worst, "a step of strain loses a negative energy, %.3g J/m^3",
-        lost_least);
 }
 
+/* Around a random polygon of strains and back, in small steps. */
+static void go_around(point_bench *b, round_trip *t, int steps) {
+  enum { CORNERS = 5 };
+  double corner[CORNERS + 1][MOST] = {{0}}, next[MOST];
+  const double length = pl_pow(10, draw_uniform(&b->seed, -5, -2));
+  for (int k = 1; k < CORNERS; k++)
+    point_bench_direction(b, length, corner[k]);
+  memcpy(t->first, corner[1], sizeof t->first);
+  point_bench_virgin(b);
+  point_bench_stress(b, t->strain, t->stress);
+  for (int k = 0; k < CORNERS; k++)
+    for (int step = 1; step <= steps; step++) {
+      between(b, corner[k], corner[k + 1], (double)step / steps, next);
+      go(b, t, next);
+    }
+}
+
+/* What is done must be at least what is stored and lost. */
+static void check_paths(point_bench *b) {
+  enum { STEPS = 200 };
+  round_trip t = {.total = 0};
+  go_around(b, &t, STEPS);
+  const bool conserves = b->law->fields.count == 0 && !b->kernel->reads_rates;
+  if (!isfinite(t.total)) return; /* said elsewhere */
+  const char *mend = conserves ? MEND_ENERGY
+                               : "let what a state or a rate adds to the stress take work, never "
+                                 "give it: softer on the way back than on the way out";
+  const bool may_gain = conserves && b->law->nonconservative; /* one way around, then */
+  if (!may_gain && t.total < -1e-3 * t.size)
+    point_bench_say(b, DIAG_CLOSED_PATH, t.first, mend,
+                    "around a closed path of strain the point gains %.3g of the work that is done",
+                    -t.total / t.size);
+  else if (conserves && !b->law->nonconservative && t.total > 1e-3 * t.size)
+    point_bench_say(b, DIAG_CLOSED_PATH, t.first, mend,
+                    "around a closed path of strain the point loses %.3g of the work that is done",
+                    t.total / t.size);
+  if (!b->law->nonconservative && !b->failed[DIAG_CLOSED_PATH] &&
+      t.lost_least < -PATH_TOLERANCE * t.size / STEPS)
+    point_bench_say(b, DIAG_DISSIPATION, t.worst, mend,
+                    "a step of strain loses a negative energy, %.3g J/m^3", t.lost_least);
+}
+
+/* --- a law ------------------------------------------------------------------------------------ */
+
+static void check_setting(point_bench *b, const physics_options *o, int sets) {
+  enum { ROUNDS = 40, PATHS = 4 };
+  const double effort = o->effort > 0 ? o->effort : 1;
+  const bool jumps = means_jumps(b->law);
+  for (int set = 0; set < sets; set++) {
+    point_bench_parameters(b, o, set == 0);
+    check_rest(b);
+    check_stiffness(b);
+    for (int round = 0; round < PATHS * effort; round++)
+      check_continuity(b, jumps);
+    for (int round = 0; round < ROUNDS * effort; round++) {
+      check_tangent(b);
+      check_symmetry(b);
+      check_stored(b);
+      check_energy_and_stress(b);
+      physics_check_turns(b);
+    }
+    for (int round = 0; round < PATHS * effort; round++)
+      check_paths(b);
+  }
+}
+
+static bool is_meant_for(const law *l, law_setting setting) {
+  for (int k = 0; k < l->tree->setting_count; k++)
+    if (strcmp(l->tree->settings[k], law_setting_name(setting)) == 0) return true;
+  return l->tree->setting_count == 0;
+}
+
+/* A deck's law is judged in the deck's setting alone, and where others do not ask for less, every
+   law in those that it names, most of all in the first. */
 void physics_check_points(const law *l, const physics_options *o, diagnostics *d,
                           physics_report *report) {
-  enum { SETS = 6, ROUNDS = 40 };
-  point *p = must_calloc(1, sizeof *p);
-  p->report = report;
-  if (point_open(p, l, o, d)) {
-    const double effort = o->effort > 0 ? o->effort : 1;
-    for (int set = 0; set < SETS; set++) {
-      take_parameters(p, o, set == 0);
-      check_rest(p);
-      check_stiffness(p);
-      for (int round = 0; round < ROUNDS * effort; round++) {
-        check_tangent(p);
-        check_symmetry(p);
-        check_energy_and_stress(p);
-      }
-      for (int round = 0; round < 4 * effort; round++)
-        check_paths(p);
-    }
-    point_close(p);
+  static const law_setting settings[] = {SETTING_PLANE_STRESS, SETTING_PLANE_STRAIN, SETTING_SPACE};
+  enum { COUNT = sizeof settings / sizeof *settings, SETS = 6, FEWER_SETS = 2 };
+  const int errors = d->errors;
+  point_bench *b = must_calloc(1, sizeof *b);
+  *b = (point_bench){.law = l, .said = d, .report = report, .seed = o->seed ? o->seed : USUAL_SEED};
+  if (point_bench_open(b, l->setting)) check_setting(b, o, SETS);
+  point_bench_close(b);
+  for (int k = 0; k < COUNT && !o->parameters && d->errors == errors; k++) {
+    if (settings[k] == l->setting || !is_meant_for(l, settings[k])) continue;
+    if (point_bench_open(b, settings[k])) check_setting(b, o, FEWER_SETS);
+    point_bench_close(b);
   }
-  free(p);
+  free(b);
 }

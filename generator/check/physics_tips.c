@@ -58,9 +58,10 @@ static void look(tip_bench *b) {
   b->kernel->tip_look(b->kernel, b->uniforms, &tips);
 }
 
-static void say(tip_bench *b, diag_code code, law_result which, int lane, const char *format, ...)
-    __attribute__((format(printf, 5, 6)));
-static void say(tip_bench *b, diag_code code, law_result which, int lane, const char *format, ...) {
+static void say(tip_bench *b, diag_code code, law_result which, int lane, const char *mend,
+                const char *format, ...) __attribute__((format(printf, 6, 7)));
+static void say(tip_bench *b, diag_code code, law_result which, int lane, const char *mend,
+                const char *format, ...) {
   if (b->failed[code]) return;
   b->failed[code] = true;
   char message[512];
@@ -72,8 +73,9 @@ static void say(tip_bench *b, diag_code code, law_result which, int lane, const 
   diag_note(b->said, (span){0, 0, UINT16_MAX},
             "found at K_I = %.4g, K_II = %.4g Pa*m^(1/2), speed_now = %.4g m/s, rayleigh_speed = "
             "%.4g m/s",
-            b->in[PL_TIP_K_I][lane], b->in[PL_TIP_K_II][lane], b->in[PL_TIP_SPEED][lane],
-            b->in[PL_TIP_RAYLEIGH_SPEED][lane]);
+            b->in[PL_TIP_K_I][lane] + 0.0, b->in[PL_TIP_K_II][lane] + 0.0,
+            b->in[PL_TIP_SPEED][lane], b->in[PL_TIP_RAYLEIGH_SPEED][lane]);
+  diag_hint(b->said, "%s", mend);
 }
 
 /* Pairs of lanes: a tip, and the same with -K_II. */
@@ -104,7 +106,9 @@ static void check_rest(tip_bench *b) {
   look(b);
   for (int lane = 0; lane < LANES; lane++)
     if (b->out[PL_TIP_GROW][lane] != 0)
-      say(b, DIAG_REST_FORCE, RESULT_GROW, lane, "a tip without stress grows");
+      say(b, DIAG_REST_FORCE, RESULT_GROW, lane,
+          "let it grow where a stress intensity reaches a toughness that is above 0",
+          "a tip without stress grows");
 }
 
 static bool are_alike(double a, double b) {
@@ -114,16 +118,18 @@ static bool are_alike(double a, double b) {
 static void check_mirror(tip_bench *b, int lane) {
   const bool here = b->out[PL_TIP_GROW][lane] != 0, there = b->out[PL_TIP_GROW][lane + 1] != 0;
   if (here != there)
-    say(b, DIAG_MIRROR, RESULT_GROW, lane, "the tip grows, but its mirror image (-K_II) does not");
+    say(b, DIAG_MIRROR, RESULT_GROW, lane, "read K_II as `abs(K_II)` or `K_II**2`",
+        "the tip grows, but its mirror image (-K_II) does not");
   if (!here || !there) return;
   const double *toward = b->out[PL_TIP_TOWARD] + lane, *speed = b->out[PL_TIP_RUN] + lane;
+  if (!isfinite(toward[0] + toward[1] + speed[0] + speed[1])) return; /* said elsewhere */
   if (!are_alike(toward[0], -toward[1]))
-    say(b, DIAG_MIRROR, RESULT_TOWARD, lane,
+    say(b, DIAG_MIRROR, RESULT_TOWARD, lane, "an odd function of K_II, such as `atan2(-K_II, K_I)`",
         "the mirror image of a tip (-K_II) turns to %.6g rad, not to %.6g: `toward` must be odd in "
         "K_II",
         toward[1], -toward[0]);
   if (!are_alike(speed[0], speed[1]))
-    say(b, DIAG_MIRROR, RESULT_SPEED, lane,
+    say(b, DIAG_MIRROR, RESULT_SPEED, lane, "read K_II as `abs(K_II)` or `K_II**2`",
         "the mirror image of a tip (-K_II) runs at %.6g m/s, not at %.6g: `speed` must be even in "
         "K_II",
         speed[1], speed[0]);
@@ -134,9 +140,12 @@ static void check_run(tip_bench *b, int lane) {
   if (b->out[PL_TIP_GROW][lane] == 0) return;
   if (!isfinite(speed) || !isfinite(toward))
     say(b, DIAG_NOT_FINITE, isfinite(speed) ? RESULT_TOWARD : RESULT_SPEED, lane,
+        "keep roots, logarithms and divisors off what they are not defined for, by cases or by "
+        "`max`",
         "a growing tip has %s that is not finite", isfinite(speed) ? "a direction" : "a speed");
   else if (speed < 0 || speed >= b->in[PL_TIP_RAYLEIGH_SPEED][lane])
     say(b, DIAG_CRACK_SPEED, RESULT_SPEED, lane,
+        "keep it between the two: `max(..., 0)`, `min(..., 0.9*rayleigh_speed)`",
         speed < 0 ? "the tip runs backward, at %.4g m/s"
                   : "the tip runs at %.4g m/s, not slower than the Rayleigh speed",
         speed);

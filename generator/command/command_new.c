@@ -20,6 +20,20 @@ enum {
   PATH_SIZE = LONGEST_NAME + 16
 };
 
+/* What there is to begin with, by --kind. */
+typedef struct new_kind {
+  const char *kind, *law, *drive, *deck; /* drive: NULL where no path drives such a law */
+  const char *plot;                      /* what to draw of the specimen */
+} new_kind;
+
+static const new_kind kinds[] = {
+    {"central", template_central, template_drive, template_deck, "--x opening --y load"},
+    {"micropolar", template_micropolar, template_drive, template_deck, "--x opening --y load"},
+    {"continuum", template_continuum, template_continuum_drive, template_continuum_deck,
+     "--x displacement --y load"},
+    {"crack", template_crack, NULL, template_crack_deck, "--map displacement"}};
+enum { KIND_COUNT = sizeof kinds / sizeof *kinds };
+
 typedef struct new_file {
   char path[PATH_SIZE];
   char *text; /* malloc'ed */
@@ -64,7 +78,7 @@ static bool is_law(const new_file *f, const char *name) {
 
 static bool spares_all(const new_file *files) {
   for (int k = 0; k < FILE_COUNT; k++)
-    if (access(files[k].path, F_OK) == 0) {
+    if (files[k].text && access(files[k].path, F_OK) == 0) {
       say_error(
           "there is already a `%s`; nothing was written\n  take another name, or move it away",
           files[k].path);
@@ -89,6 +103,7 @@ static bool write_all(new_file *files) {
   bool good = true;
   for (int k = 0; k < FILE_COUNT && good; k++) {
     new_file *f = &files[k];
+    if (!f->text) continue;
     FILE *out = fopen(f->path, "wbx"); /* never over what another program has just made */
     f->written = out != NULL;
     good = out && fputs(f->text, out) >= 0;
@@ -100,39 +115,45 @@ static bool write_all(new_file *files) {
   return good;
 }
 
-static int make_new(const char *name, const char *law_text) {
-  new_file files[FILE_COUNT] = {{.text = fill_in(law_text, name)},
-                                {.text = fill_in(template_drive, name)},
-                                {.text = fill_in(template_deck, name)}};
+static void say_made(const new_file *files, const char *name, const new_kind *kind) {
+  const char *plm = files[0].path, *path = files[1].path, *nml = files[2].path;
+  printf("written %s, ", plm);
+  if (kind->drive) printf("%s, ", path);
+  printf("%s\n  perilat check %s\n", nml, plm);
+  if (kind->drive) printf("  perilat drive %s\n", path);
+  printf("  perilat run %s\n  perilat plot %s.h5 %s\n", nml, name, kind->plot);
+}
+
+static int make_new(const char *name, const new_kind *kind) {
+  new_file files[FILE_COUNT] = {{.text = fill_in(kind->law, name)},
+                                {.text = kind->drive ? fill_in(kind->drive, name) : NULL},
+                                {.text = fill_in(kind->deck, name)}};
   static const char *const endings[FILE_COUNT] = {".plm", "_drive.nml", ".nml"};
   for (int k = 0; k < FILE_COUNT; k++)
     snprintf(files[k].path, sizeof files[k].path, "%s%s", name, endings[k]);
   int status = is_law(&files[0], name) && spares_all(files) ? 0 : INPUT_WRONG;
   if (!status) warn_of_hidden(name);
   if (!status && !write_all(files)) status = NEW_FAILED;
-  if (!status)
-    printf("written %s, %s, %s\n  perilat check %s\n  perilat drive %s\n  perilat run %s\n"
-           "  perilat plot %s.h5 --x opening --y load\n",
-           files[0].path, files[1].path, files[2].path, files[0].path, files[1].path, files[2].path,
-           name);
+  if (!status) say_made(files, name, kind);
   for (int k = 0; k < FILE_COUNT; k++)
     free(files[k].text);
   return status;
 }
 
-static const char *law_of_kind(const char *kind) {
-  if (!strcmp(kind, "central")) return template_central;
-  if (!strcmp(kind, "micropolar")) return template_micropolar;
-  say_error("--kind takes central or micropolar, not `%s`", kind);
+static const new_kind *find_kind(const char *kind) {
+  for (int k = 0; k < KIND_COUNT; k++)
+    if (!strcmp(kind, kinds[k].kind)) return &kinds[k];
+  say_error("--kind takes central, micropolar, continuum or crack, not `%s`", kind);
   return NULL;
 }
 
 int command_new(int argc, char **argv) {
-  const char *name = NULL, *law_text = template_central, *value;
+  const char *name = NULL, *value;
+  const new_kind *kind = &kinds[0];
   int bad = 0;
   for (int at = 0; at < argc && !bad;) {
     if ((value = option_value(argc, argv, &at, "--kind", &bad)))
-      bad = bad || !(law_text = law_of_kind(value));
+      bad = bad || !(kind = find_kind(value));
     else if (argv[at][0] == '-')
       bad = option_unknown("new", argv[at]);
     else if (name) {
@@ -145,5 +166,5 @@ int command_new(int argc, char **argv) {
     say_error("`perilat new` needs a name\n  perilat new my_law");
     bad = 1;
   }
-  return bad || !is_name(name) ? INPUT_WRONG : make_new(name, law_text);
+  return bad || !is_name(name) ? INPUT_WRONG : make_new(name, kind);
 }

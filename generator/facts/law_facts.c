@@ -30,7 +30,8 @@ static long arrays_of_segment(const kernel_plan *p, const segment *a) {
   const ir *g = p->graph;
   const bool strip = p->form == FORM_STRIPS;
   unsigned char *needed = segment_needed(g, a);
-  long count = 1; /* the bits of the bonds */
+  const bool bonds = p->form != FORM_POINTS && p->form != FORM_TIPS;
+  long count = bonds; /* their bits */
   for (int k = 0; k < a->root_count; k++) {
     const segment_target target = a->roots[k].target;
     count += (target == TO_FIELD) * (strip ? 2 : 1) + (target == TO_SHARED || target == TO_FORCE);

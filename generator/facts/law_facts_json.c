@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "dsl/semantics/law_limits.h"
+#include "generator/facts/point_facts.h"
 
 static void put_pair(json *j, const char *name, const double pair[2]) {
   json_put_array(j, name);
@@ -126,6 +127,28 @@ static void put_implied(json *j, const law_facts *f) {
   json_object_end(j);
 }
 
+/* null for what is not isotropic, or has no mass */
+static void put_points(json *j, const law_facts *f) {
+  point_facts found[POINT_SETTINGS];
+  const int count = point_facts_of(f->model.law, f->values, found);
+  json_put_array(j, "points");
+  for (int k = 0; k < count; k++) {
+    const point_facts *p = &found[k];
+    const bool waves = p->isotropic && p->has_mass;
+    json_object(j);
+    json_put_text(j, "setting", law_setting_name(p->setting));
+    json_put_bool(j, "linear", p->linear);
+    json_put_bool(j, "isotropic", p->isotropic);
+    json_put_number(j, "E", p->isotropic ? p->E : NAN);
+    json_put_number(j, "nu", p->isotropic ? p->nu : NAN);
+    json_put_number(j, "dilatational_speed", waves ? p->c_d : NAN);
+    json_put_number(j, "shear_speed", waves ? p->c_s : NAN);
+    json_put_number(j, "rayleigh_speed", waves ? p->c_R : NAN);
+    json_object_end(j);
+  }
+  json_array_end(j);
+}
+
 void law_facts_put(json *j, const law_facts *f) {
   const law *l = f->model.law;
   json_put_text(j, "model", l->tree->name);
@@ -138,4 +161,5 @@ void law_facts_put(json *j, const law_facts *f) {
   json_put_text(j, "nonconservative", l->nonconservative);
   put_cost(j, f);
   if (law_facts_has_implied(f)) put_implied(j, f);
+  if (l->tree->law == LAW_CONTINUUM && !f->missing) put_points(j, f);
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/semantics/law_limits.h"
+#include "generator/facts/point_facts.h"
 
 static void print_parameter(const law_facts *f, int p) {
   const law *l = f->model.law;
@@ -48,16 +49,48 @@ static void print_options(const law *l) {
   }
 }
 
+/* "plane stress" of plane_stress. */
+static void print_setting(const char *name) {
+  for (; *name; name++)
+    putchar(*name == '_' ? ' ' : *name);
+}
+
 static void print_cost(const law_facts *f) {
   const kernel_plan *p = f->model.plan;
   const int passes = law_facts_passes(p);
-  printf(
-      "Cost per bond%s and step: %.0f operations, %.0f of them divisions or roots; %ld bytes; %d "
-      "pass%s; %d value%s computed once "
-      "per lattice\n",
-      p->form != FORM_STRIPS ? " of either side" : "", p->flops_per_bond + p->divisions_per_bond,
-      p->divisions_per_bond, law_facts_bytes(p), passes, passes == 1 ? "" : "es", p->uniform_count,
-      p->uniform_count == 1 ? "" : "s");
+  const bool points = p->form == FORM_POINTS, tips = p->form == FORM_TIPS;
+  const char *whose = points                   ? "point and step"
+                      : tips                   ? "look at a tip"
+                      : p->form == FORM_STRIPS ? "bond and step"
+                                               : "bond of either side and step";
+  printf("Cost per %s: %.0f operations, %.0f of them divisions or roots; %ld bytes; ", whose,
+         p->flops_per_bond + p->divisions_per_bond, p->divisions_per_bond, law_facts_bytes(p));
+  if (!points && !tips) printf("%d pass%s; ", passes, passes == 1 ? "" : "es");
+  printf("%d value%s computed once per %s\n", p->uniform_count, p->uniform_count == 1 ? "" : "s",
+         points ? "mesh"
+         : tips ? "crack"
+                : "lattice");
+}
+
+static void print_point(const point_facts *f) {
+  fputs("At rest, in ", stdout);
+  print_setting(law_setting_name(f->setting));
+  if (!f->isotropic) {
+    printf(": depends on the axes; %slinear\n", f->linear ? "" : "not ");
+    return;
+  }
+  printf(": E = %.6g GPa, nu = %.6g; ", 1e-9 * f->E, f->nu);
+  if (f->has_mass)
+    printf("waves: dilatational %.6g m/s, shear %.6g m/s, Rayleigh %.6g m/s; ", f->c_d, f->c_s,
+           f->c_R);
+  printf("%slinear\n", f->linear ? "" : "not ");
+}
+
+static void print_points(const law_facts *f) {
+  point_facts found[POINT_SETTINGS];
+  const int count = point_facts_of(f->model.law, f->values, found);
+  for (int k = 0; k < count; k++)
+    print_point(&found[k]);
 }
 
 static void print_strength(const implied *i) {
@@ -118,12 +151,6 @@ static void print_dynamics(const implied *i, bool rotations) {
   printf(")\n");
 }
 
-/* "plane stress" of plane_stress. */
-static void print_setting(const char *name) {
-  for (; *name; name++)
-    putchar(*name == '_' ? ' ' : *name);
-}
-
 static void print_lattice(const law_facts *f) {
   const deck_lattice *d = &f->lattice;
   printf("On a%s %s%s", strcmp(d->kind, "fcc") == 0 ? "n" : "", d->kind,
@@ -182,4 +209,6 @@ void law_facts_print(const law_facts *f) {
            f->missing);
   else if (law_facts_has_implied(f))
     print_implied(f);
+  else if (l->tree->law == LAW_CONTINUUM)
+    print_points(f);
 }

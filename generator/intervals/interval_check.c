@@ -149,7 +149,9 @@ static void look_at_law(analysis *a) {
 void interval_check(const law *l, diagnostics *d) {
   static const physics_options usual = {0};
   bench b;
-  if (l->tree->law == LAW_STATE || !bench_open(&b, l, &usual, d)) return;
+  const law_kind kind = l->tree->law;
+  if (kind == LAW_STATE || kind == LAW_CONTINUUM || kind == LAW_CRACK) return;
+  if (!bench_open(&b, l, &usual, d)) return;
   analysis a = {.bench = &b, .graph = b.graph, .law = l, .said = d, .memory = arena_new()};
   if (find_bounds(&a)) look_at_law(&a);
   arena_free(a.memory);

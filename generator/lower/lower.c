@@ -88,27 +88,41 @@ static bool moves_a_sum(const ir *g, ir_node over, ir_node lambda) {
   return found;
 }
 
+/* old + lambda direction */
+static components along(ir *g, components old, ir_node lambda, components direction) {
+  for (int k = 0; k < old.count; k++)
+    old.of[k] = ir_add(g, old.of[k], ir_mul(g, lambda, direction.of[k]));
+  return old;
+}
+
+static components chosen(ir *g, ir_node when, components a, components b) {
+  for (int k = 0; k < a.count; k++)
+    a.of[k] = ir_select(g, when, a.of[k], b.of[k]);
+  return a;
+}
+
 /* `flow x along direction returned when f >= 0`: x = old + lambda direction with f(x) = 0, what
    neighbours have being frozen. Newton's method from lambda = 0 in a fixed number of steps: the
    returns of the usual convex yield functions have converged to rounding long before; the `flow`
    check of a law says so where one has not. */
-static ir_node flow_returned(lowering *c, const stmt *rule, ir_node old, ir_node direction) {
+static components flow_returned(lowering *c, const stmt *rule, components old,
+                                components direction) {
   enum { NEWTON_STEPS = 8 };
   ir *g = c->graph;
   ir_node over = overstress_of(c, rule->when);
   if (over == IR_NONE)
-    return lower_fail(c, rule->where,
-                      "a returned flow goes back to where its guard is an equality: write "
-                      "`returned when f >= 0`");
+    return lower_failed_value(c, rule->where,
+                              "a returned flow goes back to where its guard is an equality: write "
+                              "`returned when f >= 0`");
   ir_node when = lower_expr(c, rule->when), *what, *stand_in;
   note_flow(c, rule, when);
   const int frozen = freeze_neighbours(c, &over, &what, &stand_in);
   ir_node lambda = ir_input(g, IR_FROM_FIELD, 2 * c->law->fields.count, "lambda",
                             !ir_is_uniform(g, over) ? ir_place(g, over) : ON_BOND);
-  ir_node moved = ir_add(g, old, ir_mul(g, lambda, direction));
-  ir_substitute(g, &over, 1, &old, &moved, 1, &over);
+  components moved = along(g, old, lambda, direction);
+  ir_substitute(g, &over, 1, old.of, moved.of, old.count, &over);
   if (ir_place(g, over) > ON_PARTICLE && moves_a_sum(g, over, lambda))
-    return lower_fail(
+    return lower_failed_value(
         c, rule->where,
         "the flow toward one neighbour would change the guards of all others: a guard "
         "that goes over the family must be one for the whole particle");
@@ -121,20 +135,20 @@ static ir_node flow_returned(lowering *c, const stmt *rule, ir_node old, ir_node
   for (int k = 0; k < NEWTON_STEPS && !c->failed; k++) {
     ir_substitute(g, &next, 1, &lambda, &found, 1, &found);
     if (ir_count(g) > MOST_NODES)
-      return lower_fail(c, rule->where,
-                        "with its return written out the law is too large to compile");
+      return lower_failed_value(c, rule->where,
+                                "with its return written out the law is too large to compile");
   }
   ir_substitute(g, &found, 1, stand_in, what, frozen, &found);
-  return ir_select(g, when, ir_add(g, old, ir_mul(g, found, direction)), old);
+  return chosen(g, when, along(g, old, found, direction), old);
 }
 
 /* `flow x by expr when guard`: one increment a step. */
-static ir_node flow_once(lowering *c, const stmt *rule, ir_node old, ir_node increment) {
+static components flow_once(lowering *c, const stmt *rule, components old, components increment) {
   if (rule->returned) return flow_returned(c, rule, old, increment);
-  ir_node flown = ir_add(c->graph, old, increment);
+  const components flown = along(c->graph, old, ir_constant(c->graph, 1), increment);
   ir_node when = rule->when ? lower_expr(c, rule->when) : IR_NONE;
   note_flow(c, rule, when);
-  return rule->when ? ir_select(c->graph, when, flown, old) : flown;
+  return rule->when ? chosen(c->graph, when, flown, old) : flown;
 }
 
 /* A field on bonds has one value, which both ends must find: of a parameter that differs from
@@ -161,11 +175,30 @@ static ir_node of_both_ends(lowering *c, ir_node value) {
   return value;
 }
 
+/* The inputs at hand, what leaves the plane among them. */
+static components old_of(const lowering *c, const symbol *s) {
+  components old = {s->shape == SHAPE_TENSOR ? TENSOR_COUNT : 1, {0}};
+  for (int k = 0; k < old.count; k++)
+    old.of[k] = lower_field(c->graph, c->law, s->index + k);
+  return old;
+}
+
+static void set_rule(lowering *c, const stmt *rule, int field, ir_node old, ir_node value) {
+  const symbol *s = c->law->fields.items[field];
+  if (s->component_of && lower_is_none(c->law, s->component)) value = ir_constant(c->graph, 0);
+  if (s->place == ON_BOND && lower_is_state_law(c)) value = of_both_ends(c, value);
+  if (c->mode == LOWER_STEP) c->text.rules[field] = value;
+  if (s->kind == SYMBOL_DAMAGE) value = clamp_damage(c, s->place, old, value);
+  lower_name_node(c->graph, value, s->name, rule->where);
+  c->rule[field] = value;
+  c->rule_order[c->rule_count++] = field;
+}
+
 static void lower_field_rule(lowering *c, const stmt *rule) {
   const symbol *s = rule->symbol;
   if (c->mode == LOWER_FROZEN) return;
-  if (s->shape == SHAPE_TENSOR || s->shape == SHAPE_VECTOR) {
-    lower_fail(c, s->where, "states that are tensors or vectors cannot be compiled yet");
+  if (s->shape == SHAPE_VECTOR) {
+    lower_fail(c, s->where, "a state cannot be a vector: keep its parts");
     return;
   }
   if (s->shape == SHAPE_BENDING && c->law->bends_in_space) {
@@ -174,15 +207,15 @@ static void lower_field_rule(lowering *c, const stmt *rule) {
                "in space: that cannot be compiled; keep a number, such as its `norm`");
     return;
   }
-  ir_node old = lower_field(c->graph, c->law, s->index);
-  ir_node value = lower_expr(c, rule->value);
+  const components old = old_of(c, s);
+  components value = lower_value(c, rule->value);
+  if (!c->failed && value.count != old.count && value.count != 1)
+    lower_fail(c, rule->where, "this rule gives something else than what the state is");
+  for (; value.count < old.count; value.count++) /* 0 is a tensor of zeros, too */
+    value.of[value.count] = value.of[0];
   if (rule->kind == STMT_FLOW) value = flow_once(c, rule, old, value);
-  if (s->place == ON_BOND && lower_is_state_law(c)) value = of_both_ends(c, value);
-  if (c->mode == LOWER_STEP) c->text.rules[s->index] = value;
-  if (s->kind == SYMBOL_DAMAGE) value = clamp_damage(c, s->place, old, value);
-  lower_name_node(c->graph, value, s->name, rule->where);
-  c->rule[s->index] = value;
-  c->rule_order[c->rule_count++] = s->index;
+  for (int k = 0; k < old.count && !c->failed; k++)
+    set_rule(c, rule, s->index + k, old.of[k], value.of[k]);
 }
 
 static void lower_rule(lowering *c, const stmt *rule) {

@@ -234,6 +234,12 @@ components lower_family_call(lowering *c, const expr *e, const components *a) {
     return scalar(tensor_J2(g, a[0]));
   case FUNCTION_VON_MISES:
     return scalar(ir_unary(g, IR_SQRT, ir_mul(g, ir_constant(g, 3), tensor_J2(g, a[0]))));
+  case FUNCTION_TENSOR: {
+    components v = {TENSOR_COUNT, {0}};
+    for (int k = 0; k < TENSOR_COUNT; k++)
+      v.of[k] = k < e->argument_count ? a[k].of[0] : ir_constant(g, 0);
+    return v;
+  }
   default:
     return lower_failed_value(c, e->where, "this function cannot be compiled here");
   }

@@ -22,6 +22,11 @@ static inline int lower_dimensions(const law *l) {
   return l->setting == SETTING_SPACE ? 3 : 2;
 }
 
+/* Component k of a symmetric tensor (xx, yy, zz, xy, yz, xz) is 0 by its plane. */
+static inline bool lower_is_none(const law *l, int k) {
+  return lower_dimensions(l) == 2 && k >= 4;
+}
+
 /* Volume of the particle, m^3: one for all on a lattice, each its own in irregular bodies. */
 ir_node lower_volume(ir *g, const law *l);
 /* Of families: 1 where the bonds of the particle resolve all strains, else 0. */

@@ -58,10 +58,18 @@ static components lower_defined_name(lowering *c, const expr *e) {
   return v;
 }
 
-static ir_node lower_field_name(lowering *c, const expr *e) {
-  int k = e->symbol->index;
-  if (e->reads_old || c->mode == LOWER_FROZEN) return lower_field(c->graph, c->law, k);
-  return c->new_value[k];
+static ir_node lower_one_field(const lowering *c, int k, bool old) {
+  return old || c->mode == LOWER_FROZEN ? lower_field(c->graph, c->law, k) : c->new_value[k];
+}
+
+/* Of a tensor in the plane what leaves it is 0. */
+static components lower_field_value(const lowering *c, const symbol *s, bool old) {
+  if (s->shape != SHAPE_TENSOR) return scalar(lower_one_field(c, s->index, old));
+  components v = {TENSOR_COUNT, {0}};
+  for (int k = 0; k < TENSOR_COUNT; k++)
+    v.of[k] =
+        lower_is_none(c->law, k) ? ir_constant(c->graph, 0) : lower_one_field(c, s->index + k, old);
+  return v;
 }
 
 static ir_node lower_choice_name(lowering *c, const expr *e) {
@@ -80,7 +88,7 @@ static components lower_own_name(lowering *c, const expr *e) {
     return scalar(lower_own_parameter(c, e->symbol->index));
   case SYMBOL_STATE:
   case SYMBOL_DAMAGE:
-    return scalar(lower_field_name(c, e));
+    return lower_field_value(c, e->symbol, e->reads_old);
   case SYMBOL_CHOICE:
     return scalar(lower_choice_name(c, e));
   default:
@@ -157,6 +165,7 @@ static components lower_binary(lowering *c, const expr *e) {
 
 static components lower_unary(lowering *c, const expr *e) {
   components a = lower_value(c, e->left);
+  if (e->unary == OP_COMPONENT) return scalar(a.of[a.count == 1 ? 0 : e->component]);
   if (e->unary == OP_NOT) return scalar(ir_unary(c->graph, IR_NOT, a.of[0]));
   for (int k = 0; k < a.count && e->unary == OP_NEG; k++)
     a.of[k] = ir_neg(c->graph, a.of[k]);
@@ -181,6 +190,13 @@ static ir_node keep_nan(lowering *c, ir_node guard, ir_node value) {
   return value;
 }
 
+/* 0 stands for a vector or a tensor of zeros. */
+static components widened(components v, int count) {
+  for (; v.count < count; v.count++)
+    v.of[v.count] = v.of[0];
+  return v;
+}
+
 /* From the last line up, so that the first true line wins. */
 static components lower_cases(lowering *c, const expr *e) {
   components value = {0};
@@ -194,7 +210,9 @@ static components lower_cases(lowering *c, const expr *e) {
     if (value.count == 0)
       return lower_failed_value(c, line->where, "the last line of cases must be `otherwise`");
     ir_node guard = lower_expr(c, line->guard);
-    for (int q = 0; q < value.count && q < here.count; q++)
+    value = widened(value, here.count);
+    here = widened(here, value.count);
+    for (int q = 0; q < value.count; q++)
       value.of[q] = ir_select(c->graph, guard, here.of[q], value.of[q]);
   }
   for (int k = 0; k < e->case_count && value.count; k++) {
@@ -259,12 +277,12 @@ static components lower_user_call(lowering *c, const expr *e) {
 }
 
 /* previous(x): the value at the end of the last step, of x[j] and x'[j] the neighbour's. */
-static ir_node lower_previous(lowering *c, const expr *e) {
+static components lower_previous(lowering *c, const expr *e) {
   const expr *name = e->arguments[0].value;
   const symbol *s = name->symbol;
   if (!s || (s->kind != SYMBOL_STATE && s->kind != SYMBOL_DAMAGE))
-    return lower_fail(c, e->where, "`previous` asks for a state or a damage");
-  return of_whom(c, name, scalar(lower_field(c->graph, c->law, s->index))).of[0];
+    return lower_failed_value(c, e->where, "`previous` asks for a state or a damage");
+  return of_whom(c, name, lower_field_value(c, s, true));
 }
 
 /* diff(f, x): x is a parameter, a quantity, a state or a damage, all of them inputs here. */
@@ -282,15 +300,22 @@ static ir_node lower_slope(lowering *c, const expr *e, ir_node f, ir_node x) {
   return ir_derivative(c->graph, f, x);
 }
 
-/* By or of a vector component by component. */
+/* By or of a vector component by component. A shear stands twice in a tensor. */
 static components lower_diff(lowering *c, const expr *e) {
   components f = lower_value(c, e->arguments[0].value), x = lower_value(c, e->arguments[1].value);
   if (f.count > 1 && x.count > 1)
     return lower_failed_value(c, e->where,
-                              "in space a bending quantity has no one derivative by another");
+                              x.count == TENSOR_COUNT
+                                  ? "a tensor has no derivative by a tensor here: take that of a "
+                                    "component, such as `sigma[x,y]`"
+                                  : "in space a bending quantity has no one derivative by another");
   components v = {f.count > x.count ? f.count : x.count, {0}};
-  for (int k = 0; k < v.count; k++)
-    v.of[k] = lower_slope(c, e, f.of[f.count > 1 ? k : 0], x.of[x.count > 1 ? k : 0]);
+  for (int k = 0; k < v.count; k++) {
+    const bool none = x.count == TENSOR_COUNT && lower_is_none(c->law, k);
+    v.of[k] = none ? ir_constant(c->graph, 0)
+                   : lower_slope(c, e, f.of[f.count > 1 ? k : 0], x.of[x.count > 1 ? k : 0]);
+    if (x.count == TENSOR_COUNT && k >= TENSOR_XY) v.of[k] = half(c->graph, v.of[k]);
+  }
   return v;
 }
 
@@ -303,7 +328,6 @@ static ir_node soft_sign(ir *g, ir_node x) {
 static ir_node lower_builtin_call(lowering *c, const expr *e) {
   ir *g = c->graph;
   builtin_function f = (builtin_function)e->builtin;
-  if (f == FUNCTION_PREVIOUS) return lower_previous(c, e);
   ir_op op = operation_named(builtin_functions[f].name);
   if (op == IR_OP_COUNT && f != FUNCTION_SOFT_SIGN && f != FUNCTION_MACAULAY)
     return lower_fail(c, e->where, "this function cannot be compiled here");
@@ -319,7 +343,7 @@ static ir_node lower_builtin_call(lowering *c, const expr *e) {
 /* Arguments come first: what goes over a family knows no text. Which principal value is asked for
    is no value. */
 static components lower_of_family(lowering *c, const expr *e) {
-  enum { MOST_ARGUMENTS = 3 };
+  enum { MOST_ARGUMENTS = TENSOR_COUNT };
   components a[MOST_ARGUMENTS] = {lower_value(c, e->arguments[0].value)};
   const int count = e->builtin == FUNCTION_PRINCIPAL ? 1 : e->argument_count;
   for (int k = 1; k < count && !c->failed; k++)
@@ -330,6 +354,7 @@ static components lower_of_family(lowering *c, const expr *e) {
 static components lower_call(lowering *c, const expr *e) {
   if (e->builtin < 0) return lower_user_call(c, e);
   if (e->builtin == FUNCTION_DIFF) return lower_diff(c, e);
+  if (e->builtin == FUNCTION_PREVIOUS) return lower_previous(c, e);
   return lower_is_family_call(e) ? lower_of_family(c, e) : scalar(lower_builtin_call(c, e));
 }
 

@@ -83,7 +83,7 @@ ir_cost plan_cost(const kernel_plan *p, const segment *a, placement at_least) {
 
 /* Of families what is done once for both ends counts half. */
 void plan_count_cost(kernel_plan *p) {
-  const bool strips = p->form == FORM_STRIPS || p->form == FORM_POINTS;
+  const bool strips = p->form == FORM_STRIPS || p->form == FORM_POINTS || p->form == FORM_TIPS;
   const kernel_program *step = &p->programs[PROGRAM_STEP];
   for (int k = 0; k < step->pass_count; k++)
     for (int s = 0; s < step->passes[k].segment_count; s++) {
