@@ -15,17 +15,19 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* Parameters of the line, 0 .. 1, at which it leaves a cell; with its ends. */
-static int cut_line(const mesh *m, const double from[2], const double to[2], double *cut) {
-  int count = 0;
-  cut[count++] = 0;
+/* Parameters of the line, 0 .. 1, at which it leaves a cell or meets a hole; with its ends. To be
+   freed. */
+static int cut_line(const mesh *m, const double from[2], const double to[2], double **cuts) {
+  double *cut;
+  int count = holes_cuts(&m->holes, from, to, &cut);
+  cut = must_realloc(cut, ((size_t)(count + m->nodes[0]) + (size_t)m->nodes[1]) * sizeof *cut);
   for (int a = 0; a < 2; a++)
     for (int k = 0; k < m->nodes[a]; k++) {
       const double u = (mesh_at(m, a, k) - from[a]) / (to[a] - from[a]);
       if (u > 0 && u < 1) cut[count++] = u;
     }
-  cut[count++] = 1;
   qsort(cut, (size_t)count, sizeof *cut, ascending);
+  *cuts = cut;
   return count;
 }
 
@@ -46,8 +48,8 @@ double line_load(const mesh *m, const double from[2], const double to[2], line_t
                  void *context, double *const force[2]) {
   const double length = pl_hypot(to[0] - from[0], to[1] - from[1]);
   double place[MESH_MOST_GAUSS], weight[MESH_MOST_GAUSS], loaded = 0;
-  double *cut = must_alloc(((size_t)m->nodes[0] + (size_t)m->nodes[1] + 2) * sizeof *cut);
-  const int count = cut_line(m, from, to, cut);
+  double *cut;
+  const int count = cut_line(m, from, to, &cut);
   point_shape s;
   gauss_rule(POINTS, place, weight);
   for (int k = 0; k + 1 < count; k++)
@@ -57,7 +59,7 @@ double line_load(const mesh *m, const double from[2], const double to[2], line_t
       const double part = 0.5 * weight[q] * (cut[k + 1] - cut[k]) * length;
       const int cell = cell_beside(m, at);
       double t[2];
-      if (cell < 0) continue;
+      if (cell < 0 || holes_hold(&m->holes, at)) continue;
       traction(context, at, t);
       shape_functions(m, cell, at, &s);
       loaded += part;

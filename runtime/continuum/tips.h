@@ -7,7 +7,7 @@
    stiffness loses as a crack advances, with the displacements held, is energy that the crack has
    released (ledger).
 
-   An end of a crack inside the mesh is a tip; one on its border is not. */
+   An end of a crack inside the mesh is a tip; one on its border, or on or in a hole, is not. */
 #ifndef PERILAT_RUNTIME_TIPS_H
 #define PERILAT_RUNTIME_TIPS_H
 
@@ -50,7 +50,7 @@ typedef struct tip_pieces {
   int64_t count;
   crack_piece *items; /* [TIPS_MOST_PIECES] */
   int32_t *tip;       /* [TIPS_MOST_PIECES] whose */
-  unsigned char *leg; /* [TIPS_MOST_PIECES] 1: a leg begins with it */
+  unsigned char *leg; /* [TIPS_MOST_PIECES] 1: a leg begins with it; 2: no path, but in a hole */
 } tip_pieces;
 
 typedef struct tips {

@@ -17,21 +17,27 @@ void mesh_open(mesh *m, const int nodes[2], const double corner[2], const double
   const size_t count = (size_t)mesh_node_count(m), cells = (size_t)mesh_cell_count(m);
   m->element_free = must_alloc(count);
   m->moving = must_calloc(count, 1);
+  m->gone = must_calloc(count, 1);
+  m->cut = must_calloc(cells, 1);
   m->cell = must_alloc(cells);
   m->element_gauss = must_alloc(cells);
   memset(m->element_free, 1, count);
   memset(m->cell, CELL_ELEMENT_FREE, cells);
   memset(m->element_gauss, 2, cells);
   crack_lines_open(&m->cracks);
+  holes_open(&m->holes);
   mesh_settle(m);
 }
 
 void mesh_close(mesh *m) {
   free(m->element_free);
   free(m->moving);
+  free(m->gone);
+  free(m->cut);
   free(m->cell);
   free(m->element_gauss);
   crack_lines_close(&m->cracks);
+  holes_close(&m->holes);
 }
 
 void mesh_settle(mesh *m) {
@@ -47,7 +53,7 @@ void mesh_settle(mesh *m) {
                                  : free_corners == 4 ? CELL_ELEMENT_FREE
                                                      : CELL_INTERFACE);
     for (int k = 0; k < 4 && free_corners > 0; k++)
-      m->moving[corner[k]] = 1;
+      m->moving[corner[k]] = !m->gone[corner[k]];
   }
 }
 

@@ -17,10 +17,9 @@
 
 #include "dsl/base/c_linkage.h"
 #include "runtime/mesh/crack_lines.h"
+#include "runtime/mesh/holes.h"
 
 C_LINKAGE_BEGIN
-
-enum { MESH_MOST_GAUSS = 6 };
 
 typedef enum mesh_cell { CELL_ABSENT, CELL_ELEMENT, CELL_INTERFACE, CELL_ELEMENT_FREE } mesh_cell;
 
@@ -35,6 +34,9 @@ typedef struct mesh {
   /* Radius about the nearest live tip (m) within which sqrt(r) is in the basis; 0: nowhere */
   double enriched;
   crack_lines cracks;
+  mesh_holes holes;             /* see cut_cells.h */
+  unsigned char *gone;          /* [nodes] 1: in a hole, no node of the mesh */
+  unsigned char *cut;           /* [cells] 1: a hole takes a part of it */
   unsigned char *element_free;  /* [nodes] 1: element-free, 0: of finite elements */
   unsigned char *moving;        /* [nodes] 1: has a moving least squares function */
   unsigned char *cell;          /* [cells] mesh_cell */

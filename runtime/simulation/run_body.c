@@ -244,7 +244,7 @@ static bool moves_elements_alone(const run_body *b, const deck_item *item, int r
                                  diagnostics *d) {
   const region_sites *at = region >= 0 ? &b->loads->regions[region] : NULL;
   for (long p = 0; at && p < at->count; p++) {
-    const int32_t node = at->particles[p];
+    const int node = cells_node(b->cells, at->particles[p]);
     double at_node[2];
     if (!b->cells->mesh.element_free[node]) continue;
     mesh_place(&b->cells->mesh, node, at_node);
@@ -252,10 +252,13 @@ static bool moves_elements_alone(const run_body *b, const deck_item *item, int r
         d, DIAG_CONFLICT, deck_where(item, "region"),
         "the node at (%.6g, %.6g) mm is element-free: its displacement cannot be prescribed",
         1e3 * at_node[0], 1e3 * at_node[1]);
-    diag_hint(d,
-              "make the nodes of the region finite elements: &zone mesh = '%s' method = "
-              "'finite_elements' ...",
-              b->name);
+    if (holes_near(&b->cells->mesh.holes, at_node, 2 * b->lattice_rows->spacing))
+      diag_hint(d, "cells that a hole cuts are element-free: hold nodes that are farther from it");
+    else
+      diag_hint(d,
+                "make the nodes of the region finite elements: &zone mesh = '%s' method = "
+                "'finite_elements' ...",
+                b->name);
     return false;
   }
   return true;
@@ -284,12 +287,14 @@ static void unit_traction(void *context, const double at[2], double traction[2])
 /* What each node bears of a unit stress on the line: m^2. False where the line misses the mesh. */
 static bool add_traction(run_body *b, const deck *k, int number, diagnostics *d) {
   const deck_traction *f = &k->forces[number];
-  const long nodes = b->lattice_rows->particle_count;
+  const int nodes = mesh_node_count(&b->cells->mesh);
   double *share[2] = {must_calloc((size_t)nodes, sizeof(double)),
                       must_calloc((size_t)nodes, sizeof(double))};
   const double loaded = line_load(&b->cells->mesh, f->from, f->to, unit_traction, NULL, share);
-  for (long n = 0; n < nodes; n++)
-    if (share[0][n] != 0) loads_add_share(b->loads, (int32_t)n, f->component, number, share[0][n]);
+  for (int n = 0; n < nodes; n++)
+    if (share[0][n] != 0)
+      loads_add_share(b->loads, (int32_t)cells_particle(b->cells, n), f->component, number,
+                      share[0][n]);
   free(share[0]);
   free(share[1]);
   if (loaded > 0) return true;
@@ -373,9 +378,10 @@ static void open_state(run_body *b, const deck *k, double step) {
 static void mark_loaded(run_body *b) {
   tips *t = b->cells ? b->cells->tips : NULL;
   for (long n = 0; t && n < b->loads->constraint_count; n++)
-    t->loaded[b->lattice_rows->site_particle[b->loads->constraints[n].site]] = 1;
+    t->loaded[cells_node(b->cells, b->lattice_rows->site_particle[b->loads->constraints[n].site])] =
+        1;
   for (long n = 0; t && n < b->loads->force_count; n++)
-    t->loaded[b->lattice_rows->site_particle[b->loads->forces[n].site]] = 1;
+    t->loaded[cells_node(b->cells, b->lattice_rows->site_particle[b->loads->forces[n].site])] = 1;
 }
 
 bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d) {
