@@ -11,6 +11,7 @@
 #include "runtime/continuum/frequency_limit.h"
 #include "runtime/continuum/mesh_build.h"
 #include "runtime/continuum/node_masses.h"
+#include "runtime/continuum/point_law.h"
 #include "runtime/mesh/shape_functions.h"
 
 /* Power iteration finds the highest frequency from below. */
@@ -18,14 +19,18 @@ static const double KEPT_BACK = 0.98;
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
-long cells_particle(const cells *c, int node) {
+long cells_site(const cells *c, int node) {
   const node_layout l = node_layout_of(c->mesh.nodes, c->mesh.support);
-  return c->nodes->site_particle[node_layout_at(&l, node)];
+  return node_layout_at(&l, node);
 }
 
-int cells_node(const cells *c, long particle) {
+int cells_node(const cells *c, long site) {
   const node_layout l = node_layout_of(c->mesh.nodes, c->mesh.support);
-  return node_layout_node(&l, c->nodes->particle_site[particle]);
+  return node_layout_node(&l, site);
+}
+
+int32_t cells_particle(const cells *c, int node) {
+  return c->nodes->site_particle[cells_site(c, node)];
 }
 
 /* The weights of few nodes beside a hole may outweigh each other. */
@@ -52,7 +57,7 @@ static bool find_volumes(const deck *k, const cells *c, rows *nodes, diagnostics
   for (long q = 0; q < nodes->size; q++)
     nodes->site_volume[q] = nodes->volume; /* of absent sites, so that nothing is divided by 0 */
   for (long p = 0; p < nodes->particle_count && good; p++) {
-    const int node = cells_node(c, p);
+    const int node = cells_node(c, nodes->particle_site[p]);
     good = volume[node] > 0;
     if (good)
       nodes->site_volume[nodes->particle_site[p]] = volume[node];
@@ -95,39 +100,11 @@ void cells_free(cells *c) {
 
 /* The law's tangent at rest. */
 static plane_stiffness tangent_at_rest(const pl_law *law, const double *parameters) {
-  enum { STRAINS = 3, TANGENTS = STRAINS * STRAINS };
-  double zero[PL_LANES] = {0}, size[PL_LANES], out[TANGENTS][PL_LANES];
-  const double *strain[STRAINS] = {zero, zero, zero};
-  double *tangent[TANGENTS];
-  double **field = must_calloc((size_t)law->field_count + 1, sizeof *field);
-  double *uniforms = must_calloc((size_t)law->uniform_count + 1, sizeof *uniforms);
-  const pl_bond_class none = {.size = sizeof none};
+  const double rest[3] = {0};
   plane_stiffness k;
-  for (int f = 0; f < law->field_count; f++) {
-    field[f] = must_calloc(PL_LANES, sizeof **field);
-    for (int lane = 0; lane < PL_LANES; lane++)
-      field[f][lane] = law->fields[f].initial;
-  }
-  for (int n = 0; n < TANGENTS; n++)
-    tangent[n] = out[n];
-  for (int lane = 0; lane < PL_LANES; lane++)
-    size[lane] = 1;
-  law->prepare(law, parameters, &none, uniforms);
-  const pl_points points = {.size = sizeof points,
-                            .count = PL_LANES,
-                            .strain = strain,
-                            .strain_rate = strain,
-                            .cell_size = size,
-                            .old_field = (const double *const *)field,
-                            .tangent = tangent};
-  law->point_tangent(law, uniforms, &points);
-  for (int a = 0; a < STRAINS; a++)
-    for (int b = 0; b < STRAINS; b++)
-      k.D[a][b] = out[STRAINS * a + b][0];
-  for (int f = 0; f < law->field_count; f++)
-    free(field[f]);
-  free(field);
-  free(uniforms);
+  point_law *p = point_law_new(law, parameters);
+  point_law_tangent(p, rest, 1, k.D);
+  point_law_free(p);
   return k;
 }
 
@@ -143,7 +120,7 @@ void cells_step_limit(const cells *c, const unsigned char *held, step_limit *lim
   double *mass = must_calloc(nodes, sizeof *mass); /* none of nodes that are gone */
   unsigned char *held_nodes = must_calloc(2 * nodes, 1);
   for (long p = 0; p < c->nodes->particle_count; p++) {
-    const int node = cells_node(c, p);
+    const int node = cells_node(c, c->nodes->particle_site[p]);
     mass[node] = c->nodes->site_mass[c->nodes->particle_site[p]];
     memcpy(held_nodes + 2 * node, held + 2 * p, 2);
   }
@@ -327,6 +304,11 @@ sweep *cells_sweep(cells *c, const deck *k, const double *parameters, const tip_
                              .free = free_own,
                              .own = e};
   return w;
+}
+
+void cells_look(const sweep *w) {
+  const cells *c = own(w)->of;
+  if (c->tips) tips_at_rest(c->tips, w->body, &c->stencil);
 }
 
 cells_memory cells_remembered(const sweep *w) {

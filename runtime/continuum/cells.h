@@ -35,9 +35,10 @@ typedef struct cells {
 cells *cells_new(const deck *k, int lattice, rows *nodes, diagnostics *d);
 void cells_free(cells *c);
 
-/* Particle of a node, -1 of one in a hole; node of a particle. */
-long cells_particle(const cells *c, int node);
-int cells_node(const cells *c, long particle);
+/* Where a node stands in memory, and which node stands there; its particle, -1 of one in a hole. */
+long cells_site(const cells *c, int node);
+int cells_node(const cells *c, long site);
+int32_t cells_particle(const cells *c, int node);
 
 /* The law with its parameters. */
 void cells_take_law(cells *c, const pl_law *law, const double *parameters);
@@ -48,6 +49,9 @@ void cells_step_limit(const cells *c, const unsigned char *held, step_limit *lim
    cracks. */
 sweep *cells_sweep(cells *c, const deck *k, const double *parameters, const tip_law *cracks,
                    double time_step, int threads, body_ledger ledger);
+
+/* Stress intensities at the tips, where the body stands still. */
+void cells_look(const sweep *w);
 
 /* What the engine remembers from step to step, for checkpoints; and after one was read. */
 enum { CELLS_PLANES = 6 };

@@ -7,7 +7,9 @@
    stiffness loses as a crack advances, with the displacements held, is energy that the crack has
    released (ledger).
 
-   An end of a crack inside the mesh is a tip; one on its border, or on or in a hole, is not. */
+   An end of a crack inside the mesh is a tip; one on its border, or on or in a hole, is not. A crack
+   on an edge of the mesh, where this is half of a body and its mirror image, hides nothing: it is a free face, and its tip has
+   the half of the box that lies in the mesh, which counts twice for K_I; K_II is 0. */
 #ifndef PERILAT_RUNTIME_TIPS_H
 #define PERILAT_RUNTIME_TIPS_H
 
@@ -85,6 +87,8 @@ void tips_before(tips *t, const body *w, const node_stencil *k);
 /* When the step n-1 -> n has moved them: a look at t_n, if it is time for one, and growth; `m` and `k`
    are the mesh and its stiffness, which growth changes. */
 void tips_after(tips *t, const body *w, mesh *m, node_stencil *k);
+/* A look at a body that stands still (static_solution.h). */
+void tips_at_rest(tips *t, const body *w, const node_stencil *k);
 /* After `pieces` was read from a checkpoint: the mesh and its stiffness as they were then. */
 void tips_replay(tips *t, mesh *m, node_stencil *k);
 /* Pieces of a tip so far: points of its path, in order; *at begins with where the tip was at the

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/geometry/quadrilateral.h"
 #include "runtime/lattice/rows_select.h"
 #include "runtime/mesh/cut_cells.h"
 #include "runtime/mesh/node_layout.h"
@@ -49,11 +50,25 @@ static bool takes_something(const deck_notch *n, const mesh *m, diagnostics *d) 
   return true;
 }
 
+/* None is gone: cells that are cut have to be rectangles. */
+static unsigned char *nodes_of_quadrilateral(const deck *k, const deck_mesh *l, const int nodes[2],
+                                             diagnostics *d) {
+  for (int n = 0; n < k->notch_count; n++) {
+    if (!is_hole_of(&k->notchs[n], l->name)) continue;
+    diag_report(d, DIAG_NOT_SUPPORTED, k->notchs[n].item.where,
+                "`%s` is a quadrilateral: a hole needs a mesh that is a rectangle", l->name);
+    diag_hint(d, "give `corner` and `size` of the mesh in place of `corners`");
+    return NULL;
+  }
+  return must_calloc((size_t)nodes[0] * (size_t)nodes[1], 1);
+}
+
 /* [nodes] 1: no node, as a hole has taken it. NULL after a message. */
 static unsigned char *nodes_gone(const deck *k, const deck_mesh *l, const int nodes[2],
                                  diagnostics *d) {
   mesh m;
   bool good = true;
+  if (l->corners) return nodes_of_quadrilateral(k, l, nodes, d);
   mesh_open(&m, nodes, l->corner, l->size, l->thickness, l->support);
   const int left = mesh_rows_cut(k, l->name, &m);
   const deck_notch *last = NULL;
@@ -77,6 +92,21 @@ static unsigned char *nodes_gone(const deck *k, const deck_mesh *l, const int no
 
 /* --- rows ------------------------------------------------------------------------------------- */
 
+/* Where the quadrilateral's map puts the node. */
+static void place_mapped(rows *w, const deck_mesh *m, const node_layout *l, int n) {
+  const double u[2] = {(double)(n % l->nodes[0]) / (l->nodes[0] - 1),
+                       (double)(n / l->nodes[0]) / (l->nodes[1] - 1)};
+  double at[2], slope[2][2];
+  quadrilateral_map((const double(*)[2])m->corners, u, at, slope);
+  w->x[node_layout_at(l, n)] = at[0];
+  w->y[node_layout_at(l, n)] = at[1];
+}
+
+/* m^2 */
+static double area_of(const deck_mesh *m) {
+  return m->corners ? quadrilateral_area((const double(*)[2])m->corners) : m->size[0] * m->size[1];
+}
+
 static void place_nodes(rows *w, const deck_mesh *m, const node_layout *l,
                         const unsigned char *gone) {
   long count = 0;
@@ -92,6 +122,10 @@ static void place_nodes(rows *w, const deck_mesh *m, const node_layout *l,
       w->site_particle[site] = (int32_t)count;
       w->particle_site[count++] = (int32_t)site;
     }
+    if (m->corners) {
+      place_mapped(w, m, l, n);
+      continue;
+    }
     w->x[site] = m->corner[0] + m->size[0] * (n % l->nodes[0]) / (l->nodes[0] - 1);
     w->y[site] = m->corner[1] + m->size[1] * (n / l->nodes[0]) / (l->nodes[1] - 1);
   }
@@ -103,7 +137,7 @@ rows *mesh_rows(const deck *k, int lattice, diagnostics *d) {
   const node_layout l = node_layout_of(nodes, m->support);
   unsigned char *gone = nodes_gone(k, m, nodes, d);
   if (!gone) return NULL;
-  const double area = m->size[0] * m->size[1] / ((nodes[0] - 1.0) * (nodes[1] - 1.0));
+  const double area = area_of(m) / ((nodes[0] - 1.0) * (nodes[1] - 1.0));
   rows *w = must_calloc(1, sizeof *w);
   *w = (rows){.infinite = {.dimensions = 2, .spacing = m->spacing},
               .dimensions = 2,

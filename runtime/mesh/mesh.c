@@ -57,14 +57,44 @@ void mesh_settle(mesh *m) {
   }
 }
 
-int mesh_cell_of(const mesh *m, const double at[2]) {
-  int place[2];
+void mesh_open_mapped(mesh *m, const int nodes[2], const double corners[4][2], double thickness,
+                      double support) {
+  double lower[2], upper[2];
+  quadrilateral_box(corners, lower, upper);
+  const double size[2] = {upper[0] - lower[0], upper[1] - lower[1]};
+  mesh_open(m, nodes, lower, size, thickness, support);
+  m->mapped = true;
+  memcpy(m->corners, corners, sizeof m->corners);
+  memset(m->element_free, 0, (size_t)mesh_node_count(m));
+  mesh_settle(m);
+}
+
+/* On a border of the absent cell at `place` another one may hold the point; u: in cells. */
+static int cell_across(const mesh *m, const int place[2], const double u[2]) {
+  const double near = 1e-6;
+  int low[2], high[2];
   for (int a = 0; a < 2; a++) {
-    const double cells = m->nodes[a] - 1, u = (at[a] - m->corner[a]) / m->spacing[a];
-    if (!(u >= -1e-9 * cells && u <= cells * (1 + 1e-9))) return -1;
-    place[a] = (int)floor(u);
+    low[a] = u[a] - place[a] < near && place[a] > 0 ? place[a] - 1 : place[a];
+    high[a] = place[a] + 1 - u[a] < near && place[a] < m->nodes[a] - 2 ? place[a] + 1 : place[a];
+  }
+  for (int j = low[1]; j <= high[1]; j++)
+    for (int i = low[0]; i <= high[0]; i++)
+      if (m->cell[mesh_cell_at(m, i, j)] != CELL_ABSENT) return mesh_cell_at(m, i, j);
+  return mesh_cell_at(m, place[0], place[1]);
+}
+
+int mesh_cell_of(const mesh *m, const double at[2]) {
+  double unit[2], u[2];
+  int place[2];
+  if (m->mapped) quadrilateral_unmap(m->corners, at, unit);
+  for (int a = 0; a < 2; a++) {
+    const double cells = m->nodes[a] - 1;
+    u[a] = m->mapped ? unit[a] * cells : (at[a] - m->corner[a]) / m->spacing[a];
+    if (!(u[a] >= -1e-9 * cells && u[a] <= cells * (1 + 1e-9))) return -1;
+    place[a] = (int)floor(u[a]);
     if (place[a] < 0) place[a] = 0;
     if (place[a] > m->nodes[a] - 2) place[a] = m->nodes[a] - 2;
   }
-  return mesh_cell_at(m, place[0], place[1]);
+  const int cell = mesh_cell_at(m, place[0], place[1]);
+  return m->cell[cell] == CELL_ABSENT ? cell_across(m, place, u) : cell;
 }

@@ -239,12 +239,13 @@ static bool open_materials(run_body *b, const deck *k, rows *const *built, diagn
   return planes && mass && find_limit(b, k, d);
 }
 
-/* The value of an element-free node is a parameter, not its displacement: it cannot be held. */
+/* The value of an element-free node is a parameter, not its displacement: it cannot be held, but by
+   what bears nothing in a static run (mesh_rest.h). */
 static bool moves_elements_alone(const run_body *b, const deck_item *item, int region,
                                  diagnostics *d) {
   const region_sites *at = region >= 0 ? &b->loads->regions[region] : NULL;
   for (long p = 0; at && p < at->count; p++) {
-    const int node = cells_node(b->cells, at->particles[p]);
+    const int node = cells_node(b->cells, b->lattice_rows->particle_site[at->particles[p]]);
     double at_node[2];
     if (!b->cells->mesh.element_free[node]) continue;
     mesh_place(&b->cells->mesh, node, at_node);
@@ -266,7 +267,7 @@ static bool moves_elements_alone(const run_body *b, const deck_item *item, int r
 
 static bool holds_elements_alone(const run_body *b, const deck *k, diagnostics *d) {
   bool good = true;
-  for (int n = 0; n < k->support_count && b->loads; n++)
+  for (int n = 0; n < k->support_count && b->loads && !k->relaxation.solved; n++)
     good = moves_elements_alone(b, &k->supports[n].item, deck_find_region(k, k->supports[n].region),
                                 d) &&
            good;
@@ -277,27 +278,40 @@ static bool holds_elements_alone(const run_body *b, const deck *k, diagnostics *
   return good;
 }
 
-static void unit_traction(void *context, const double at[2], double traction[2]) {
-  (void)context;
-  (void)at;
-  traction[0] = 1;
-  traction[1] = 0;
+/* A traction as it is taken over: what each node bears of a unit stress on the line, m^2. */
+typedef struct taken_traction {
+  run_body *b;
+  const deck_traction *from;
+  int number;
+  double *share; /* [nodes]; NULL of one that differs from place to place */
+  bool good;
+  diagnostics *d;
+} taken_traction;
+
+static void take_point(void *context, const double at[2], double area, const point_shape *s) {
+  taken_traction *t = context;
+  const double here[3] = {at[0], at[1], 0};
+  for (int n = 0; n < s->count && t->share; n++)
+    t->share[s->node[n]] += area * s->n[n];
+  if (t->share || !t->good) return;
+  t->good = loads_add_place(t->b->loads, here, t->number, t->d);
+  for (int n = 0; n < s->count && t->good; n++)
+    loads_add_share_there(t->b->loads, cells_particle(t->b->cells, s->node[n]), t->from->component,
+                          t->number, area * s->n[n]);
 }
 
-/* What each node bears of a unit stress on the line: m^2. False where the line misses the mesh. */
+/* False where the line misses the mesh. */
 static bool add_traction(run_body *b, const deck *k, int number, diagnostics *d) {
   const deck_traction *f = &k->forces[number];
   const int nodes = mesh_node_count(&b->cells->mesh);
-  double *share[2] = {must_calloc((size_t)nodes, sizeof(double)),
-                      must_calloc((size_t)nodes, sizeof(double))};
-  const double loaded = line_load(&b->cells->mesh, f->from, f->to, unit_traction, NULL, share);
-  for (int n = 0; n < nodes; n++)
-    if (share[0][n] != 0)
-      loads_add_share(b->loads, (int32_t)cells_particle(b->cells, n), f->component, number,
-                      share[0][n]);
-  free(share[0]);
-  free(share[1]);
-  if (loaded > 0) return true;
+  taken_traction t = {.b = b, .from = f, .number = number, .good = true, .d = d};
+  if (!time_function_varies(&f->force)) t.share = must_calloc((size_t)nodes, sizeof(double));
+  const double loaded = line_visit(&b->cells->mesh, f->from, f->to, take_point, &t);
+  for (int n = 0; n < nodes && t.share; n++)
+    if (t.share[n] != 0)
+      loads_add_share(b->loads, cells_particle(b->cells, n), f->component, number, t.share[n]);
+  free(t.share);
+  if (loaded > 0) return t.good;
   diag_report(d, DIAG_EMPTY_REGION, deck_where(&f->item, "from"),
               "the line that is loaded lies outside the mesh `%s`", b->name);
   return false;
@@ -378,10 +392,9 @@ static void open_state(run_body *b, const deck *k, double step) {
 static void mark_loaded(run_body *b) {
   tips *t = b->cells ? b->cells->tips : NULL;
   for (long n = 0; t && n < b->loads->constraint_count; n++)
-    t->loaded[cells_node(b->cells, b->lattice_rows->site_particle[b->loads->constraints[n].site])] =
-        1;
+    t->loaded[cells_node(b->cells, b->loads->constraints[n].site)] = 1;
   for (long n = 0; t && n < b->loads->force_count; n++)
-    t->loaded[cells_node(b->cells, b->lattice_rows->site_particle[b->loads->forces[n].site])] = 1;
+    t->loaded[cells_node(b->cells, b->loads->forces[n].site)] = 1;
 }
 
 bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d) {
@@ -395,6 +408,7 @@ bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d) {
   b->body = b->state->body;
   loads_point_masses(b->loads, b->body);
   if (k->gravity_count > 0) body_add_gravity(b->body);
+  if (b->cells && k->relaxation.solved) b->rest = mesh_rest_new(b->cells, b->loads, b->body);
   return loads_initial_motion(b->loads, b->body, d);
 }
 
@@ -406,6 +420,7 @@ damage_law *run_body_damages(const run_body *b) {
 }
 
 void run_body_free(run_body *b) {
+  mesh_rest_free(b->rest);
   loads_free(b->loads);
   sweep_free(b->state);
   for (int n = 0; n < b->law_count; n++) {
