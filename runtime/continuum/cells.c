@@ -21,18 +21,53 @@ static const double KEPT_BACK = 0.98;
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
+long cells_site(const cells *c, int node) {
+  const node_layout l = node_layout_of(c->mesh.nodes, c->mesh.support);
+  return node_layout_at(&l, node);
+}
+
+int cells_node(const cells *c, long site) {
+  const node_layout l = node_layout_of(c->mesh.nodes, c->mesh.support);
+  return node_layout_node(&l, site);
+}
+
+int32_t cells_particle(const cells *c, int node) {
+  return c->nodes->site_particle[cells_site(c, node)];
+}
+
+/* The weights of few nodes beside a hole may outweigh each other. */
+static void report_massless(const deck *k, const cells *c, int node, diagnostics *d) {
+  double at[2];
+  int n = 0;
+  while (n + 1 < k->notch_count && !(k->notchs[n].mesh))
+    n++;
+  mesh_place(&c->mesh, node, at);
+  diag_report(d, DIAG_NOT_SUPPORTED, k->notch_count > 0 ? k->notchs[n].item.where : (span){0},
+              "the node at (%.6g, %.6g) mm has no mass", 1e3 * at[0], 1e3 * at[1]);
+  diag_hint(d, "the material left around it is too little: move the hole by a fraction of a "
+               "spacing, or take more nodes or a smaller `support`");
+}
+
 /* Volumes of the nodes by the row sums, M = rho V: they sum to the mesh's. */
-static void find_volumes(const cells *c, rows *nodes) {
+static bool find_volumes(const deck *k, const cells *c, rows *nodes, diagnostics *d) {
   const double density = 1;
-  double *volume = must_calloc((size_t)nodes->particle_count, sizeof *volume);
+  double *volume = must_calloc((size_t)mesh_node_count(&c->mesh), sizeof *volume);
+  bool good = true;
   node_masses(&c->mesh, &c->points, &density, NULL, volume);
   nodes->site_volume = rows_array(nodes->size, sizeof(double));
   nodes->site_mass = rows_array(nodes->size, sizeof(double));
   for (long q = 0; q < nodes->size; q++)
     nodes->site_volume[q] = nodes->volume; /* of absent sites, so that nothing is divided by 0 */
-  for (long p = 0; p < nodes->particle_count; p++)
-    if (volume[p] > 0) nodes->site_volume[nodes->particle_site[p]] = volume[p];
+  for (long p = 0; p < nodes->particle_count && good; p++) {
+    const int node = cells_node(c, nodes->particle_site[p]);
+    good = volume[node] > 0;
+    if (good)
+      nodes->site_volume[nodes->particle_site[p]] = volume[node];
+    else
+      report_massless(k, c, node, d);
+  }
   free(volume);
+  return good;
 }
 
 cells *cells_new(const deck *k, int lattice, rows *nodes, diagnostics *d) {
@@ -51,8 +86,9 @@ cells *cells_new(const deck *k, int lattice, rows *nodes, diagnostics *d) {
     return NULL;
   }
   integration_points_open(&c->points, &c->mesh);
-  find_volumes(c, nodes);
-  return c;
+  if (find_volumes(k, c, nodes, d)) return c;
+  cells_free(c);
+  return NULL;
 }
 
 void cells_free(cells *c) {
@@ -106,14 +142,19 @@ static double longest_step(double beta_1, double omega, double c) {
 
 void cells_step_limit(const cells *c, const double *parameters, const unsigned char *held,
                       step_limit *limit) {
-  double *mass = must_calloc((size_t)c->nodes->particle_count, sizeof *mass), damping = 0;
-  for (long p = 0; p < c->nodes->particle_count; p++)
-    mass[p] = c->nodes->site_mass[c->nodes->particle_site[p]];
-  const double omega = c->has_stencil ? frequency_limit(&c->stencil, mass, held)
-                                      : highest(c, &c->stiffness, mass, held);
+  const size_t nodes = (size_t)mesh_node_count(&c->mesh);
+  double *mass = must_calloc(nodes, sizeof *mass), damping = 0; /* none of nodes that are gone */
+  unsigned char *held_nodes = must_calloc(2 * nodes, 1);
+  for (long p = 0; p < c->nodes->particle_count; p++) {
+    const int node = cells_node(c, c->nodes->particle_site[p]);
+    mass[node] = c->nodes->site_mass[c->nodes->particle_site[p]];
+    memcpy(held_nodes + 2 * node, held + 2 * p, 2);
+  }
+  const double omega = c->has_stencil ? frequency_limit(&c->stencil, mass, held_nodes)
+                                      : highest(c, &c->stiffness, mass, held_nodes);
   if (c->law->reads_rates) {
     const plane_stiffness viscosity = tangent_at_rest(c, parameters, true);
-    const double root = highest(c, &viscosity, mass, held);
+    const double root = highest(c, &viscosity, mass, held_nodes);
     damping = root * root;
   }
   *limit = (step_limit){.omega_max = omega, .mode = "translation"};
@@ -122,6 +163,7 @@ void cells_step_limit(const cells *c, const double *parameters, const unsigned c
     limit->damping_ratio = 0.5 * damping / omega;
   }
   free(mass);
+  free(held_nodes);
 }
 
 /* --- the engine ------------------------------------------------------------------------------- */

@@ -40,9 +40,15 @@ typedef struct cells {
 cells *cells_new(const deck *k, int lattice, rows *nodes, diagnostics *d);
 void cells_free(cells *c);
 
+/* Where a node stands in memory, and which node stands there; its particle, -1 of one in a hole. */
+long cells_site(const cells *c, int node);
+int cells_node(const cells *c, long site);
+int32_t cells_particle(const cells *c, int node);
+
 /* The law with its parameters. */
 void cells_take_law(cells *c, const pl_law *law, const double *parameters);
-/* The longest stable step at rest; held[2 n + d]: freedoms that do not move by themselves. */
+/* The longest stable step at rest; held[2 p + d]: freedoms of particles that do not move by
+   themselves. */
 void cells_step_limit(const cells *c, const double *parameters, const unsigned char *held,
                       step_limit *limit);
 /* At rest; to be freed by sweep_free, before the cells. cracks[k->crack_count]: the laws of the deck's

@@ -17,7 +17,7 @@ double line_visit(const mesh *m, const double from[2], const double to[2], line_
 typedef void (*line_traction)(void *context, const double at[2], double traction[2]);
 
 /* Adds to force[2][nodes] (N); node n of direction d at force[d][n]. Parts of the line outside the
-   mesh bear nothing. Returns the length that lies in the mesh, m. */
+   mesh or in its holes bear nothing. Returns the length that lies in the mesh, m. */
 double line_load(const mesh *m, const double from[2], const double to[2], line_traction traction,
                  void *context, double *const force[2]);
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/filling/mesh_rows.h"
 
 static const double ON_OUTLINE = 1e-6; /* spacings: a node is on a zone's outline */
 
@@ -58,6 +59,7 @@ bool mesh_build(const deck *k, int lattice, mesh *out, diagnostics *d) {
   for (int n = 0; n < k->zone_count; n++)
     if (strcmp(k->zones[n].mesh, l->name) == 0)
       good = take_zone(&k->zones[n], l->spacing, out, d) && good;
+  mesh_rows_cut(k, l->name, out);
   mesh_settle(out);
   return good;
 }

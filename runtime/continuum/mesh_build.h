@@ -1,4 +1,4 @@
-/* The mesh that a deck describes: nodes, zones of methods, rules of integration. */
+/* The mesh that a deck describes: nodes, zones of methods, holes, rules of integration. */
 #ifndef PERILAT_RUNTIME_MESH_BUILD_H
 #define PERILAT_RUNTIME_MESH_BUILD_H
 

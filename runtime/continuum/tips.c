@@ -15,8 +15,9 @@ static const double OVERLAP = 0.01;   /* of the largest K_I: less is noise */
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
+/* Not on the border nor on that of a hole. */
 static bool is_inside(const mesh *m, const double at[2]) {
-  bool inside = true;
+  bool inside = !holes_near(&m->holes, at, ON_BORDER * m->spacing[0]);
   for (int a = 0; a < 2; a++) {
     const double margin = ON_BORDER * m->spacing[a];
     inside =
@@ -29,22 +30,35 @@ static double distance(const double a[2], const double b[2]) {
   return pl_hypot(b[0] - a[0], b[1] - a[1]);
 }
 
-static double line_length(const deck_crack *c) {
+/* Of what a leg has outside of holes. */
+static double leg_length(const mesh *m, const double a[2], const double b[2]) {
+  double *u, sum = 0;
+  const int count = holes_cuts(&m->holes, a, b, &u);
+  for (int k = 0; k + 1 < count; k++) {
+    const double middle = 0.5 * (u[k] + u[k + 1]);
+    const double at[2] = {a[0] + middle * (b[0] - a[0]), a[1] + middle * (b[1] - a[1])};
+    if (!holes_hold(&m->holes, at)) sum += u[k + 1] - u[k];
+  }
+  free(u);
+  return sum * distance(a, b);
+}
+
+static double line_length(const deck_crack *c, const mesh *m) {
   double sum = 0;
   for (int k = 1; k < c->point_count; k++)
-    sum += distance(c->points + 2 * k - 2, c->points + 2 * k);
+    sum += leg_length(m, c->points + 2 * k - 2, c->points + 2 * k);
   return sum;
 }
 
-static mesh_tip tip_of(const deck_crack *c, bool at_start) {
+static mesh_tip tip_of(const deck_crack *c, const mesh *m, bool at_start) {
   const int end = at_start ? 0 : c->point_count - 1, before = at_start ? 1 : end - 1;
   const double *at = c->points + 2 * end, *from = c->points + 2 * before;
   return (mesh_tip){.of = c,
                     .at_start = at_start,
                     .now = {.at = {at[0], at[1]},
                             .angle = pl_atan2(at[1] - from[1], at[0] - from[0]),
-                            .last = distance(from, at),
-                            .length = line_length(c)}};
+                            .last = distance(from, at) * holes_until(&m->holes, at, from),
+                            .length = line_length(c, m)}};
 }
 
 static void add_tip(tips *t, mesh *m, mesh_tip tip) {
@@ -78,6 +92,13 @@ static bool is_seen(const deck_crack *c, const mesh *m, diagnostics *d) {
     }
   }
   return true;
+}
+
+static bool is_in_material(const deck_crack *c, const mesh *m, diagnostics *d) {
+  if (m->holes.count == 0 || line_length(c, m) > ON_BORDER * m->spacing[0]) return true;
+  diag_report(d, DIAG_BAD_VALUE, deck_where(&c->item, "points"), "the crack lies in a hole");
+  diag_hint(d, "one that begins on the outline of a hole, or inside, has to leave it");
+  return false;
 }
 
 /* Along a row of nodes all of these count as on one side: K_I is 57 % low, and K_II is none of the
@@ -126,6 +147,13 @@ static void warn_of_box(const tips *t, const mesh_tip *p, const mesh *m, diagnos
   }
 }
 
+/* A crack that ends at a hole parts its two sides up to the middle: lines that graze the hole pass. */
+static void add_mouth(const deck_crack *c, mesh *m, int end, int before) {
+  double middle[2];
+  if (holes_beyond(&m->holes, c->points + 2 * before, c->points + 2 * end, middle))
+    crack_lines_add(&m->cracks, c->points + 2 * end, middle);
+}
+
 /* Along which axis the edge of the mesh runs that both places lie on; -1: none. */
 static int edge_with(const mesh *m, const double a[2], const double b[2]) {
   for (int across = 0; across < 2 && !m->mapped; across++)
@@ -149,7 +177,7 @@ static bool add_face(tips *t, const deck_crack *c, mesh *m, diagnostics *d) {
     return false;
   }
   for (int start = 1; start >= 0; start--) {
-    const mesh_tip tip = tip_of(c, start);
+    const mesh_tip tip = tip_of(c, m, start);
     const double margin = ON_BORDER * m->spacing[axis], at = tip.now.at[axis];
     if (at > m->corner[axis] + margin && at < mesh_at(m, axis, m->nodes[axis] - 1) - margin)
       add_tip(t, m, tip);
@@ -162,12 +190,14 @@ static bool add_face(tips *t, const deck_crack *c, mesh *m, diagnostics *d) {
 
 static bool add_crack(tips *t, const deck_crack *c, mesh *m, diagnostics *d) {
   if (c->symmetry) return add_face(t, c, m, d);
-  if (!is_seen(c, m, d)) return false;
+  if (!is_seen(c, m, d) || !is_in_material(c, m, d)) return false;
   warn_of_nodes(c, m, d);
   for (int k = 1; k < c->point_count; k++)
     crack_lines_add(&m->cracks, c->points + 2 * k - 2, c->points + 2 * k);
+  add_mouth(c, m, 0, 1);
+  add_mouth(c, m, c->point_count - 1, c->point_count - 2);
   for (int start = 1; start >= 0; start--) {
-    const mesh_tip tip = tip_of(c, start);
+    const mesh_tip tip = tip_of(c, m, start);
     if (!is_inside(m, tip.now.at)) continue;
     add_tip(t, m, tip);
     warn_of_box(t, &t->items[t->count - 1], m, d);
@@ -385,7 +415,7 @@ static int points_of_box(tips *t, const body *w, const node_stencil *k, const ti
                    y = side[1] * (j / 2 + 0.5 * (1 + (j % 2 ? gauss : -gauss))) / cells;
       const double at[2] = {b->at[0] + c * x - s * y, b->at[1] + s * x + c * y};
       const int cell = mesh_cell_of(k->of, at);
-      if (cell < 0 || k->of->cell[cell] == CELL_ABSENT) continue;
+      if (cell < 0 || k->of->cell[cell] == CELL_ABSENT || holes_hold(&k->of->holes, at)) continue;
       const double area = fabs(side[0] * side[1]) / (4.0 * cells * cells);
       note(t, count++, fields_at(t, w, k, at, area, cell));
     }
@@ -458,9 +488,9 @@ static void ask_law(const tips *t, mesh_tip *p, double *said) {
   free(field);
 }
 
-/* A grown tip near the edge of the mesh keeps its direction: the box around it is cut. */
+/* A grown tip near the edge of the mesh or a hole keeps its direction: the box around it is cut. */
 static bool is_near_edge(const tips *t, const mesh_tip *p, const mesh *m) {
-  bool near = false;
+  bool near = holes_near(&m->holes, p->now.at, t->half_size);
   for (int a = 0; a < 2; a++)
     near = near || p->now.at[a] - m->corner[a] < t->half_size ||
            mesh_at(m, a, m->nodes[a] - 1) - p->now.at[a] < t->half_size;
@@ -509,6 +539,7 @@ const char *const tip_end_words[TIP_ENDS] = {
     [TIP_ALIVE] = "",
     [TIP_HAS_LEFT] = "has left where cracks grow",
     [TIP_HAS_MET] = "has met another crack",
+    [TIP_IN_HOLE] = "has run into a hole",
     [TIP_AT_ELEMENTS] = "has come to finite elements, which do not see it",
     [TIP_HAS_TOO_MANY] = "has grown by more pieces than can be kept",
 };
@@ -519,13 +550,25 @@ static void finish(const tips *t, mesh_tip *p, const body *w, tip_end why) {
   p->now.speed = 0;
 }
 
-static void keep_piece(tips *t, const mesh_tip *p, const double a[2], const double b[2]) {
+enum { PIECE_GOES_ON, PIECE_BEGINS_LEG, PIECE_IN_HOLE };
+
+static void keep_piece(tips *t, const mesh_tip *p, const double a[2], const double b[2],
+                       unsigned char kind) {
   tip_pieces *all = &t->pieces;
   crack_piece *piece = &all->items[all->count];
   memcpy(piece->a, a, sizeof piece->a);
   memcpy(piece->b, b, sizeof piece->b);
   all->tip[all->count] = p->number;
-  all->leg[all->count++] = p->now.last == 0;
+  all->leg[all->count++] = kind;
+}
+
+/* A crack that has run into a hole: see add_mouth. */
+static void part_hole(tips *t, const mesh_tip *p, const double from[2], mesh *m, node_stencil *k) {
+  double middle[2];
+  if (t->pieces.count == TIPS_MOST_PIECES || !holes_beyond(&m->holes, from, p->now.at, middle))
+    return;
+  keep_piece(t, p, p->now.at, middle, PIECE_IN_HOLE);
+  node_stencil_grow(k, m, p->now.at, middle, -1);
 }
 
 /* By its way over the time between two advances; shorter where something ends it. */
@@ -541,6 +584,11 @@ static void advance(tips *t, mesh_tip *p, const body *w, mesh *m, node_stencil *
     part = met;
     why = TIP_HAS_MET;
   }
+  const double hole = holes_until(&m->holes, a, b);
+  if (hole < part) {
+    part = hole;
+    why = TIP_IN_HOLE;
+  }
   const double to[2] = {a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])},
                from[2] = {a[0], a[1]};
   const int cell = mesh_cell_of(m, to);
@@ -555,13 +603,14 @@ static void advance(tips *t, mesh_tip *p, const body *w, mesh *m, node_stencil *
   if (part * way > 0) {
     t->rated +=
         part * way * m->thickness * tip_energy_release(&t->medium, tips_speed(t, p), p->now.K);
-    keep_piece(t, p, from, to);
+    keep_piece(t, p, from, to, p->now.last == 0 ? PIECE_BEGINS_LEG : PIECE_GOES_ON);
     node_stencil_grow(k, m, from, to, p->number);
     p->now.last += part * way;
     p->now.length += part * way;
     memcpy(p->now.at, to, sizeof to);
     p->now.grown = 1;
   }
+  if (hole < 1 && part == hole) part_hole(t, p, from, m, k);
   if (why != TIP_ALIVE) finish(t, p, w, why);
 }
 
@@ -622,16 +671,17 @@ void tips_replay(tips *t, mesh *m, node_stencil *k) {
   if (t->pieces.count < 0 || t->pieces.count > TIPS_MOST_PIECES) t->pieces.count = 0;
   for (int64_t n = 0; n < t->pieces.count; n++)
     if (t->pieces.tip[n] >= 0 && t->pieces.tip[n] < t->count)
-      node_stencil_grow(k, m, t->pieces.items[n].a, t->pieces.items[n].b, t->pieces.tip[n]);
+      node_stencil_grow(k, m, t->pieces.items[n].a, t->pieces.items[n].b,
+                        t->pieces.leg[n] == PIECE_IN_HOLE ? -1 : t->pieces.tip[n]);
 }
 
 int tip_path(const tips *t, int tip, double (*at)[2], int most) {
   int count = 0;
   for (int64_t n = 0; n < t->pieces.count; n++) {
-    if (t->pieces.tip[n] != tip) continue;
+    if (t->pieces.tip[n] != tip || t->pieces.leg[n] == PIECE_IN_HOLE) continue;
     const crack_piece *p = &t->pieces.items[n];
     if (count == 0 && most > 0) memcpy(at[count++], p->a, sizeof p->a);
-    if (count > 1 && !t->pieces.leg[n]) count--;
+    if (count > 1 && t->pieces.leg[n] == PIECE_GOES_ON) count--;
     if (count < most) memcpy(at[count++], p->b, sizeof p->b);
   }
   return count;

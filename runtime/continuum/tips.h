@@ -17,8 +17,8 @@
    which the discrete balance of energies wants, and is u.(K - K_after) u/2 up to the length of a
    step.
 
-   An end of a crack inside the mesh is a tip; one on its border is not. A crack on an edge of the mesh,
-   where this is half of a body and its mirror image, hides nothing: it is a free face, and its tip has
+   An end of a crack inside the mesh is a tip; one on its border, or on or in a hole, is not. A crack
+   on an edge of the mesh, where this is half of a body and its mirror image, hides nothing: it is a free face, and its tip has
    the half of the box that lies in the mesh, which counts twice for K_I; K_II is 0. */
 #ifndef PERILAT_RUNTIME_TIPS_H
 #define PERILAT_RUNTIME_TIPS_H
@@ -34,6 +34,7 @@ typedef enum tip_end {
   TIP_ALIVE,
   TIP_HAS_LEFT,
   TIP_HAS_MET,
+  TIP_IN_HOLE,
   TIP_AT_ELEMENTS,
   TIP_HAS_TOO_MANY,
   TIP_ENDS
@@ -80,7 +81,7 @@ typedef struct tip_pieces {
   int64_t count;
   crack_piece *items; /* [TIPS_MOST_PIECES] */
   int32_t *tip;       /* [TIPS_MOST_PIECES] whose */
-  unsigned char *leg; /* [TIPS_MOST_PIECES] 1: a leg begins with it */
+  unsigned char *leg; /* [TIPS_MOST_PIECES] 1: a leg begins with it; 2: no path, but in a hole */
 } tip_pieces;
 
 typedef struct tips {

@@ -205,9 +205,10 @@ typedef struct deck_body { /* adds sites */
   deck_shape shape;
 } deck_body;
 
-typedef struct deck_notch { /* removes sites, and bonds whose chord crosses it */
+typedef struct deck_notch { /* removes sites, and bonds whose chord crosses it; a hole in a mesh */
   deck_item item;
   const char *lattice;
+  const char *mesh; /* the same where the deck says that it is one; else NULL */
   deck_shape shape;
   bool cut_bonds; /* default true */
 } deck_notch;

@@ -297,9 +297,10 @@ static void check_can_be_filled(deck_reader *r, const deck_item *item, const dec
   if (deck_lattice_is_mesh(&r->k->lattices[l])) {
     diag_report(r->d, DIAG_CONFLICT, deck_where(item, "lattice"),
                 is_body ? "`%s` is a mesh: its `corner` and `size` say where it is"
-                        : "`%s` is a mesh, which notches do not cut",
+                        : "`%s` is a mesh, not a lattice",
                 deck_shown(r->memory, lattice));
-    if (!is_body) diag_hint(r->d, "a &crack is a line that nodes do not act across");
+    if (!is_body)
+      diag_hint(r->d, "&notch mesh = '%s' ... is a hole in it", deck_shown(r->memory, lattice));
     return;
   }
   if (suits || !deck_lattice_is_irregular(&r->k->lattices[l])) return;
@@ -333,27 +334,61 @@ DECK_LIST(body, .identity = "lattice", .check = check_body,
 static const deck_key_info notch_keys[] = {
     {.name = "lattice",
      .type = DECK_NAME,
-     .required = true,
+     .fallback = "= none; this or `mesh`",
      DECK_AT(notch, lattice),
      .doc = "name of the lattice"},
+    {.name = "mesh",
+     .type = DECK_NAME,
+     .fallback = "= none",
+     DECK_AT(notch, mesh),
+     .doc = "instead: name of the mesh, in which this is a hole"},
     {.name = "cut_bonds",
      .type = DECK_LOGICAL,
      .fallback = ".true.",
      DECK_AT(notch, cut_bonds),
-     .doc = "also remove bonds between remaining sites whose line crosses the shape"},
+     .doc = "of a lattice: also remove bonds between remaining sites whose line crosses the shape"},
     SHAPE_KEYS(notch),
 };
 
+/* The name of what the notch is in. */
+static bool take_cut_body(deck_reader *r, const namelist_group *from, deck_notch *item) {
+  deck_refuse_both(r, from, "lattice", "mesh");
+  deck_refuse_both(r, from, "mesh", "cut_bonds");
+  if (item->lattice && item->mesh) return false;
+  if (item->lattice) return deck_lattice_known(r, &item->item, item->lattice);
+  if (item->mesh) {
+    item->lattice = item->mesh;
+    return deck_mesh_known(r, &item->item, item->mesh);
+  }
+  diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&notch` has no `lattice`");
+  diag_hint(r->d, "lattice: name of the lattice; of a hole in a mesh `mesh`");
+  return false;
+}
+
+static void check_hole(deck_reader *r, const deck_notch *item) {
+  if (shape_has_size(&item->shape)) return;
+  diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "shape"),
+              "%s has no inside: it is no hole in a mesh", shape_words[item->shape.kind]);
+  diag_hint(r->d, item->shape.kind == SHAPE_SEGMENT
+                      ? "a &crack is a line that nodes do not act across"
+                      : "there are 'rectangle', 'disc', 'polygon' and 'dog_bone'");
+}
+
 static void check_notch(deck_reader *r, const namelist_group *from, void *into) {
   deck_notch *item = into;
-  deck_lattice_known(r, &item->item, item->lattice);
+  const bool known = take_cut_body(r, from, item);
   check_shape(r, from, &deck_group_notch, &item->item, &item->shape, item->lattice);
-  check_can_be_filled(r, &item->item, &item->shape, item->lattice, false);
+  if (!known) return;
+  if (item->mesh)
+    check_hole(r, item);
+  else
+    check_can_be_filled(r, &item->item, &item->shape, item->lattice, false);
 }
 
 DECK_LIST(
-    notch, .identity = "lattice", .check = check_notch,
-    .doc = "Removes the sites inside or on a shape and, by default, the bonds that cross it.");
+    notch, .identity = "lattice", .parts = {"mesh"}, .check = check_notch,
+    .doc = "Removes the sites inside or on a shape and, by default, the bonds that cross it; in a "
+           "mesh it is a hole: see [Holes in meshes](#holes-in-meshes).");
 
 static const deck_key_info region_keys[] = {
     {.name = "name", .type = DECK_NAME, .required = true, DECK_AT(region, name), .doc = "its name"},

@@ -1,11 +1,96 @@
 #include "runtime/filling/mesh_rows.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "dsl/base/arena.h"
 #include "runtime/geometry/quadrilateral.h"
 #include "runtime/lattice/rows_select.h"
+#include "runtime/mesh/cut_cells.h"
 #include "runtime/mesh/node_layout.h"
+
+/* --- holes ------------------------------------------------------------------------------------ */
+
+static bool is_hole_of(const deck_notch *n, const char *of) {
+  return n->mesh && strcmp(n->mesh, of) == 0;
+}
+
+int mesh_rows_cut(const deck *k, const char *name, mesh *m) {
+  for (int n = 0; n < k->notch_count; n++)
+    if (is_hole_of(&k->notchs[n], name)) holes_add(&m->holes, &k->notchs[n].shape);
+  return mesh_cut(m);
+}
+
+/* A hole is to take something of the mesh. */
+static bool takes_something(const deck_notch *n, const mesh *m, diagnostics *d) {
+  double lower[3], upper[3], at[2];
+  bool meets = true, holds = false;
+  shape_box(&n->shape, lower, upper);
+  for (int a = 0; a < 2; a++)
+    meets = meets && upper[a] > m->corner[a] + m->holes.tolerance &&
+            lower[a] < mesh_at(m, a, m->nodes[a] - 1) - m->holes.tolerance;
+  if (!meets) {
+    diag_report(d, DIAG_EMPTY_REGION, n->item.where, "the hole lies outside the mesh `%s`",
+                n->mesh);
+    diag_hint(d, "the mesh reaches from (%.6g, %.6g) to (%.6g, %.6g) mm", 1e3 * m->corner[0],
+              1e3 * m->corner[1], 1e3 * mesh_at(m, 0, m->nodes[0] - 1),
+              1e3 * mesh_at(m, 1, m->nodes[1] - 1));
+    return false;
+  }
+  for (int node = 0; node < mesh_node_count(m) && !holds; node++) {
+    mesh_place(m, node, at);
+    holds = shape_contains(&n->shape, at, -m->holes.tolerance);
+  }
+  if (holds) return true;
+  diag_report(d, DIAG_DECK_WARNING, n->item.where, "the hole holds no node of `%s`", n->mesh);
+  diag_hint(d,
+            "nodes are %.6g mm by %.6g mm apart: what a hole does that is smaller is felt "
+            "coarsely; take more nodes",
+            1e3 * m->spacing[0], 1e3 * m->spacing[1]);
+  return true;
+}
+
+/* None is gone: cells that are cut have to be rectangles. */
+static unsigned char *nodes_of_quadrilateral(const deck *k, const deck_mesh *l, const int nodes[2],
+                                             diagnostics *d) {
+  for (int n = 0; n < k->notch_count; n++) {
+    if (!is_hole_of(&k->notchs[n], l->name)) continue;
+    diag_report(d, DIAG_NOT_SUPPORTED, k->notchs[n].item.where,
+                "`%s` is a quadrilateral: a hole needs a mesh that is a rectangle", l->name);
+    diag_hint(d, "give `corner` and `size` of the mesh in place of `corners`");
+    return NULL;
+  }
+  return must_calloc((size_t)nodes[0] * (size_t)nodes[1], 1);
+}
+
+/* [nodes] 1: no node, as a hole has taken it. NULL after a message. */
+static unsigned char *nodes_gone(const deck *k, const deck_mesh *l, const int nodes[2],
+                                 diagnostics *d) {
+  mesh m;
+  bool good = true;
+  if (l->corners) return nodes_of_quadrilateral(k, l, nodes, d);
+  mesh_open(&m, nodes, l->corner, l->size, l->thickness, l->support);
+  const int left = mesh_rows_cut(k, l->name, &m);
+  const deck_notch *last = NULL;
+  for (int n = 0; n < k->notch_count; n++) {
+    if (!is_hole_of(&k->notchs[n], l->name)) continue;
+    last = &k->notchs[n];
+    good = takes_something(last, &m, d) && good;
+  }
+  if (good && left == 0) {
+    diag_report(d, DIAG_EMPTY_REGION, last->item.where, "the holes leave nothing of the mesh `%s`",
+                l->name);
+    good = false;
+  }
+  unsigned char *gone = m.gone;
+  m.gone = NULL;
+  mesh_close(&m);
+  if (good) return gone;
+  free(gone);
+  return NULL;
+}
+
+/* --- rows ------------------------------------------------------------------------------------- */
 
 /* Where the quadrilateral's map puts the node. */
 static void place_mapped(rows *w, const deck_mesh *m, const node_layout *l, int n) {
@@ -19,21 +104,24 @@ static void place_mapped(rows *w, const deck_mesh *m, const node_layout *l, int 
 
 /* m^2 */
 static double area_of(const deck_mesh *m) {
-  return m->corners ? quadrilateral_area((const double(*)[2])m->corners)
-                    : m->size[0] * m->size[1];
+  return m->corners ? quadrilateral_area((const double(*)[2])m->corners) : m->size[0] * m->size[1];
 }
 
-static void place_nodes(rows *w, const deck_mesh *m, const node_layout *l) {
+static void place_nodes(rows *w, const deck_mesh *m, const node_layout *l,
+                        const unsigned char *gone) {
+  long count = 0;
   for (long q = 0; q < w->size; q++) {
     w->site_particle[q] = -1;
     w->x[q] = m->corner[0];
     w->y[q] = m->corner[1];
   }
-  for (int n = 0; n < w->particle_count; n++) {
+  for (int n = 0; n < l->nodes[0] * l->nodes[1]; n++) {
     const long site = node_layout_at(l, n);
-    w->present[site] = 1;
-    w->site_particle[site] = n;
-    w->particle_site[n] = (int32_t)site;
+    w->present[site] = !gone[n];
+    if (!gone[n]) {
+      w->site_particle[site] = (int32_t)count;
+      w->particle_site[count++] = (int32_t)site;
+    }
     if (m->corners) {
       place_mapped(w, m, l, n);
       continue;
@@ -47,6 +135,8 @@ rows *mesh_rows(const deck *k, int lattice, diagnostics *d) {
   const deck_mesh *m = &k->lattices[lattice];
   const int nodes[2] = {(int)m->nodes[0], (int)m->nodes[1]};
   const node_layout l = node_layout_of(nodes, m->support);
+  unsigned char *gone = nodes_gone(k, m, nodes, d);
+  if (!gone) return NULL;
   const double area = area_of(m) / ((nodes[0] - 1.0) * (nodes[1] - 1.0));
   rows *w = must_calloc(1, sizeof *w);
   *w = (rows){.infinite = {.dimensions = 2, .spacing = m->spacing},
@@ -61,16 +151,20 @@ rows *mesh_rows(const deck *k, int lattice, diagnostics *d) {
               .volume = area * m->thickness,
               .site_area = area,
               .stiffness_thickness = m->thickness,
-              .particle_count = (long)nodes[0] * nodes[1]};
+              .particle_count = 0};
+  for (long n = 0; n < (long)nodes[0] * nodes[1]; n++)
+    w->particle_count += !gone[n];
   w->row_class = must_calloc((size_t)(nodes[1] + 2 * l.reach), 1);
   w->particle_site = must_alloc(((size_t)w->particle_count + 1) * sizeof *w->particle_site);
   if (!rows_new_sites(w)) {
     diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&m->item, "nodes"),
                 "there is not enough memory for %d x %d nodes", nodes[0], nodes[1]);
     rows_free(w);
+    free(gone);
     return NULL;
   }
-  place_nodes(w, m, &l);
+  place_nodes(w, m, &l, gone);
+  free(gone);
   rows_find_extent(w);
   return w;
 }

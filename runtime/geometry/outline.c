@@ -143,6 +143,44 @@ double outline_distance(const outline *o, const double p[2]) {
   return crossings % 2 ? -nearest : nearest;
 }
 
+/* --- ways along it ---------------------------------------------------------------------------- */
+
+/* Turn from a to p about the arc's centre, 0 to 2 pi, in the direction in which the arc runs. */
+static double turn_to(const arc *e, const double a[2], const double p[2]) {
+  const double x = a[0] - e->centre[0], y = a[1] - e->centre[1], u = p[0] - e->centre[0],
+               v = p[1] - e->centre[1], sense = e->rise > 0 ? 1 : -1;
+  const double turn = pl_atan2(sense * (x * v - y * u), x * u + y * v);
+  return turn < 0 ? turn + 2 * 3.14159265358979323846 : turn;
+}
+
+/* From the first corner to a point of the outline; *whole: all of it. */
+static double way_to(const outline *o, const double p[2], double *whole) {
+  double nearest = INFINITY, way = 0;
+  *whole = 0;
+  for (int k = 0; k < o->count; k++) {
+    const double *a = outline_corner(o, k), *b = outline_corner(o, k + 1);
+    arc edge;
+    const bool round = arc_of(o, k, &edge);
+    const double off = round ? distance_to_arc(p, &edge, a, b) : distance_to_straight(p, a, b);
+    const double length =
+        round ? edge.radius * turn_to(&edge, a, b) : pl_hypot(b[0] - a[0], b[1] - a[1]);
+    if (off < nearest) {
+      const double along =
+          round ? edge.radius * turn_to(&edge, a, p) : pl_hypot(p[0] - a[0], p[1] - a[1]);
+      nearest = off;
+      way = *whole + pl_fmin(along, length);
+    }
+    *whole += length;
+  }
+  return way;
+}
+
+double outline_way(const outline *o, const double p[2], const double q[2]) {
+  double whole;
+  const double way = fabs(way_to(o, p, &whole) - way_to(o, q, &whole));
+  return pl_fmin(way, whole - way);
+}
+
 bool outline_is_flat(const outline *o, double tolerance) {
   double twice = 0, perimeter = 0;
   for (int k = 0; k < o->count; k++) {

@@ -19,6 +19,9 @@ void outline_box(const outline *o, double lower[2], double upper[2]);
    number of times. */
 double outline_distance(const outline *o, const double p[2]);
 
+/* Length of the shorter way along the outline between two of its points. */
+double outline_way(const outline *o, const double p[2], const double q[2]);
+
 /* What it encloses is less than `tolerance` wide: a polygon folded flat. */
 bool outline_is_flat(const outline *o, double tolerance);
 

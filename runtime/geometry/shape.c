@@ -468,6 +468,24 @@ int shape_cuts(const deck_shape *shape, const double *a, const double *b, double
   return count;
 }
 
+/* --- ways along the outline --------------------------------------------------------------------- */
+
+static double disc_way(const deck_shape *shape, const double *p, const double *q) {
+  const double a[2] = {p[0] - shape->centre[0], p[1] - shape->centre[1]},
+               b[2] = {q[0] - shape->centre[0], q[1] - shape->centre[1]};
+  const double between = 0.5 * (shape->radius + shape->inner_radius);
+  const bool outer = pl_hypot(a[0], a[1]) > between;
+  if (outer != (pl_hypot(b[0], b[1]) > between)) return INFINITY;
+  return (outer ? shape->radius : shape->inner_radius) *
+         fabs(pl_atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]));
+}
+
+double shape_way(const deck_shape *shape, const double *p, const double *q) {
+  shape_outline s;
+  return shape->kind == SHAPE_DISC ? disc_way(shape, p, q)
+                                   : outline_way(outline_of(shape, &s), p, q);
+}
+
 /* --- corners ---------------------------------------------------------------------------------- */
 
 static bool has_outline(const deck_shape *shape) {

@@ -32,9 +32,12 @@ static bool has_place(mesh_gauge *g, diagnostics *d) {
   const mesh *m = &g->of->mesh;
   const double *at = g->places[0];
   const int cell = mesh_cell_of(m, at);
-  if (cell >= 0 && m->cell[cell] != CELL_ABSENT) return true;
+  const bool in_hole = holes_hold(&m->holes, at);
+  if (cell >= 0 && m->cell[cell] != CELL_ABSENT && !in_hole) return true;
   diag_report(d, DIAG_EMPTY_REGION, deck_where(&g->deck->item, "at"),
-              "the place (%.6g, %.6g) mm is not in the mesh", 1e3 * at[0], 1e3 * at[1]);
+              in_hole ? "the place (%.6g, %.6g) mm is in a hole of the mesh"
+                      : "the place (%.6g, %.6g) mm is not in the mesh",
+              1e3 * at[0], 1e3 * at[1]);
   return false;
 }
 
@@ -74,7 +77,7 @@ mesh_gauge *mesh_gauge_new(const deck_monitor *m, const int32_t *sites, long cou
   g->places = must_calloc((size_t)g->place_count + 1, sizeof *g->places);
   g->nodes = must_calloc((size_t)g->place_count + 1, sizeof *g->nodes);
   for (long k = 0; k < g->place_count; k++) {
-    g->nodes[k] = m->placed ? -1 : w->lattice->site_particle[sites[k]];
+    g->nodes[k] = m->placed ? -1 : cells_node(c, sites[k]);
     if (m->placed)
       memcpy(g->places[k], m->at, sizeof g->places[k]);
     else
@@ -131,7 +134,7 @@ static void find_weights(mesh_gauge *g) {
   for (int n = 0; n < nodes; n++) {
     if (all[n].n == 0 && all[n].nx == 0 && all[n].ny == 0) continue;
     all[g->count] = all[n];
-    all[g->count++].site = g->w->lattice->particle_site[n];
+    all[g->count++].site = (int32_t)cells_site(g->of, n);
   }
   free(g->weights);
   g->weights = all;

@@ -58,7 +58,7 @@ void mesh_rest_free(mesh_rest *r) {
 /* --- an increment ----------------------------------------------------------------------------- */
 
 static int node_of(const mesh_rest *r, int64_t site) {
-  return r->w->lattice->site_particle[site];
+  return cells_node(r->c, site);
 }
 
 static int node_count(const mesh_rest *r) {
@@ -89,7 +89,7 @@ static void keep(mesh_rest *r) {
   for (int d = 0; d < 2; d++) {
     r->gravity[d] = r->w->gravity[d];
     for (int n = 0; n < node_count(r); n++)
-      r->place[d][n] = r->w->displacement[d][r->w->lattice->particle_site[n]];
+      r->place[d][n] = r->w->displacement[d][cells_site(r->c, n)];
   }
   for (long i = 0; i < r->l->force_count; i++)
     r->pushed[i] = r->l->forces[i].now;
@@ -110,8 +110,9 @@ static void push(mesh_rest *r, long step) {
   load_steps_weigh(r->l, r->w, step);
   for (int d = 0; d < 2; d++)
     for (int n = 0; n < node_count(r); n++) {
-      const long site = r->w->lattice->particle_site[n];
-      r->force[d][n] = r->w->gravity[d] * body_mass(r->w, d, site) * (r->w->weight ? 1 : 0);
+      const long site = cells_site(r->c, n);
+      const bool weighs = r->w->weight && !r->c->mesh.gone[n];
+      r->force[d][n] = weighs ? r->w->gravity[d] * body_mass(r->w, d, site) : 0;
     }
   for (long i = 0; i < r->l->force_count; i++) {
     applied *f = &r->l->forces[i];
@@ -132,7 +133,7 @@ double mesh_rest_solve(mesh_rest *r, load_clock clock) {
   found = static_factors_solve(r->factors, (const double *const *)r->force, r->u, r->reaction);
   for (int d = 0; d < 2; d++)
     for (int n = 0; n < node_count(r); n++)
-      r->w->displacement[d][r->w->lattice->particle_site[n]] = r->u[d][n];
+      r->w->displacement[d][cells_site(r->c, n)] = r->u[d][n];
   return found.residual;
 }
 
@@ -142,19 +143,19 @@ void mesh_rest_work(mesh_rest *r) {
   const body *w = r->w;
   for (long i = 0; i < r->l->force_count; i++) {
     applied *f = &r->l->forces[i];
-    const double way = w->displacement[f->component][f->site] -
-                       r->place[f->component][node_of(r, f->site)];
+    const double way =
+        w->displacement[f->component][f->site] - r->place[f->component][node_of(r, f->site)];
     f->sums.work += 0.5 * (r->pushed[i] + f->now) * way;
   }
   for (long i = 0; i < r->l->constraint_count; i++) {
     constraint *c = &r->l->constraints[i];
-    const double way = w->displacement[c->component][c->site] -
-                       r->place[c->component][node_of(r, c->site)];
+    const double way =
+        w->displacement[c->component][c->site] - r->place[c->component][node_of(r, c->site)];
     c->sums.work += 0.5 * (r->reacted[i] + c->reaction) * way;
   }
   for (int d = 0; d < 2 && w->row_gravity; d++)
     for (int n = 0; n < node_count(r); n++) {
-      const long site = w->lattice->particle_site[n];
+      const long site = cells_site(r->c, n);
       w->row_gravity[rows_row(w->lattice, site)] += 0.5 * (r->gravity[d] + w->gravity[d]) *
                                                     body_mass(w, d, site) *
                                                     (w->displacement[d][site] - r->place[d][n]);
@@ -241,13 +242,12 @@ static void put_back(mesh_rest *r, kept_loads *k) {
   loads *l = r->l;
   if (l->constraint_count > 0)
     memcpy(l->constraints, k->constraints, (size_t)l->constraint_count * sizeof(constraint));
-  if (l->force_count > 0)
-    memcpy(l->forces, k->forces, (size_t)l->force_count * sizeof(applied));
+  if (l->force_count > 0) memcpy(l->forces, k->forces, (size_t)l->force_count * sizeof(applied));
   l->clock = k->clock;
   for (int d = 0; d < 2; d++) {
     r->w->gravity[d] = 0;
     for (int n = 0; n < node_count(r); n++)
-      r->w->displacement[d][r->w->lattice->particle_site[n]] = r->u[d][n] = 0;
+      r->w->displacement[d][cells_site(r->c, n)] = r->u[d][n] = 0;
   }
   free(k->constraints);
   free(k->forces);

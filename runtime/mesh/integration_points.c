@@ -1,37 +1,10 @@
 #include "runtime/mesh/integration_points.h"
 
-#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "dsl/base/arena.h"
-#include "dsl/base/elementary.h"
-
-/* Legendre's polynomial of the order and its derivative. */
-static double legendre(int order, double x, double *slope) {
-  double before = 1, now = x;
-  for (int k = 2; k <= order; k++) {
-    const double next = ((2 * k - 1) * x * now - (k - 1) * before) / k;
-    before = now;
-    now = next;
-  }
-  *slope = order * (x * now - before) / (x * x - 1);
-  return now;
-}
-
-void gauss_rule(int order, double at[MESH_MOST_GAUSS], double weight[MESH_MOST_GAUSS]) {
-  enum { NEWTON_STEPS = 8 };
-  for (int k = 0; k < order; k++) {
-    double x = -pl_cos(3.14159265358979323846 * (k + 0.75) / (order + 0.5)), slope = 1;
-    if (order == 1) x = 0;
-    for (int step = 0; step < NEWTON_STEPS && order > 1; step++) {
-      const double value = legendre(order, x, &slope);
-      x -= value / slope;
-    }
-    if (order > 1) legendre(order, x, &slope);
-    at[k] = x;
-    weight[k] = order == 1 ? 2 : 2 / ((1 - x * x) * slope * slope);
-  }
-}
+#include "runtime/mesh/cut_cells.h"
 
 static void rule_of(const mesh *m, int cell, int *order, int *parts) {
   const bool element = m->cell[cell] == CELL_ELEMENT;
@@ -42,8 +15,25 @@ static void rule_of(const mesh *m, int cell, int *order, int *parts) {
 static int points_of(const mesh *m, int cell) {
   int order, parts;
   if (m->cell[cell] == CELL_ABSENT) return 0;
+  if (m->cut[cell]) {
+    cut_points p = {.count = 0};
+    cut_cell_points(m, cell, &p);
+    const int count = p.count;
+    cut_points_free(&p);
+    return count;
+  }
   rule_of(m, cell, &order, &parts);
   return order * order * parts * parts;
+}
+
+static void place_cut_points(integration_points *p, const mesh *m, int cell, int first) {
+  cut_points own = {.count = 0};
+  cut_cell_points(m, cell, &own);
+  memcpy(p->at + first, own.at, (size_t)own.count * sizeof *p->at);
+  memcpy(p->area + first, own.area, (size_t)own.count * sizeof *p->area);
+  for (int n = 0; n < own.count; n++)
+    p->cell[first + n] = cell;
+  cut_points_free(&own);
 }
 
 static void place_points(integration_points *p, const mesh *m, int cell, int first) {
@@ -77,8 +67,8 @@ static void place_mapped(integration_points *p, const mesh *m, int cell, int fir
                          (j + 0.5 * (1 + place[b])) / cells[1]};
     double slope[2][2];
     quadrilateral_map(m->corners, u, p->at[first + n], slope);
-    p->area[first + n] = 0.25 * weight[a] * weight[b] / (cells[0] * cells[1]) *
-                         quadrilateral_jacobian(slope);
+    p->area[first + n] =
+        0.25 * weight[a] * weight[b] / (cells[0] * cells[1]) * quadrilateral_jacobian(slope);
     p->cell[first + n] = cell;
   }
 }
@@ -97,7 +87,9 @@ void integration_points_open(integration_points *p, const mesh *m) {
   p->cell = must_alloc(count * sizeof *p->cell);
   for (int c = 0; c < cells; c++)
     if (p->first[c + 1] > p->first[c])
-      (m->mapped ? place_mapped : place_points)(p, m, c, p->first[c]);
+      (m->mapped   ? place_mapped
+       : m->cut[c] ? place_cut_points
+                   : place_points)(p, m, c, p->first[c]);
 }
 
 void integration_points_close(integration_points *p) {

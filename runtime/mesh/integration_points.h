@@ -1,9 +1,10 @@
 /* Points of integration: Gauss points of the cells of a mesh. An element has its own rule (1 x 1 or
    2 x 2), all other cells the background rule, in equal parts where that is asked for (Karlsson
-   2006, 2.6). */
+   2006, 2.6); cells that a hole cuts as cut_cells.h says. */
 #ifndef PERILAT_RUNTIME_INTEGRATION_POINTS_H
 #define PERILAT_RUNTIME_INTEGRATION_POINTS_H
 
+#include "runtime/mesh/gauss_rule.h"
 #include "runtime/mesh/mesh.h"
 
 typedef struct integration_points {
@@ -16,8 +17,5 @@ typedef struct integration_points {
 
 void integration_points_open(integration_points *p, const mesh *m);
 void integration_points_close(integration_points *p);
-
-/* Gauss-Legendre on [-1, 1]: `order` <= MESH_MOST_GAUSS places, ascending, and weights (sum 2). */
-void gauss_rule(int order, double at[MESH_MOST_GAUSS], double weight[MESH_MOST_GAUSS]);
 
 #endif

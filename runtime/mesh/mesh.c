@@ -17,21 +17,27 @@ void mesh_open(mesh *m, const int nodes[2], const double corner[2], const double
   const size_t count = (size_t)mesh_node_count(m), cells = (size_t)mesh_cell_count(m);
   m->element_free = must_alloc(count);
   m->moving = must_calloc(count, 1);
+  m->gone = must_calloc(count, 1);
+  m->cut = must_calloc(cells, 1);
   m->cell = must_alloc(cells);
   m->element_gauss = must_alloc(cells);
   memset(m->element_free, 1, count);
   memset(m->cell, CELL_ELEMENT_FREE, cells);
   memset(m->element_gauss, 2, cells);
   crack_lines_open(&m->cracks);
+  holes_open(&m->holes);
   mesh_settle(m);
 }
 
 void mesh_close(mesh *m) {
   free(m->element_free);
   free(m->moving);
+  free(m->gone);
+  free(m->cut);
   free(m->cell);
   free(m->element_gauss);
   crack_lines_close(&m->cracks);
+  holes_close(&m->holes);
 }
 
 void mesh_settle(mesh *m) {
@@ -47,7 +53,7 @@ void mesh_settle(mesh *m) {
                                  : free_corners == 4 ? CELL_ELEMENT_FREE
                                                      : CELL_INTERFACE);
     for (int k = 0; k < 4 && free_corners > 0; k++)
-      m->moving[corner[k]] = 1;
+      m->moving[corner[k]] = !m->gone[corner[k]];
   }
 }
 
@@ -63,17 +69,32 @@ void mesh_open_mapped(mesh *m, const int nodes[2], const double corners[4][2], d
   mesh_settle(m);
 }
 
+/* On a border of the absent cell at `place` another one may hold the point; u: in cells. */
+static int cell_across(const mesh *m, const int place[2], const double u[2]) {
+  const double near = 1e-6;
+  int low[2], high[2];
+  for (int a = 0; a < 2; a++) {
+    low[a] = u[a] - place[a] < near && place[a] > 0 ? place[a] - 1 : place[a];
+    high[a] = place[a] + 1 - u[a] < near && place[a] < m->nodes[a] - 2 ? place[a] + 1 : place[a];
+  }
+  for (int j = low[1]; j <= high[1]; j++)
+    for (int i = low[0]; i <= high[0]; i++)
+      if (m->cell[mesh_cell_at(m, i, j)] != CELL_ABSENT) return mesh_cell_at(m, i, j);
+  return mesh_cell_at(m, place[0], place[1]);
+}
+
 int mesh_cell_of(const mesh *m, const double at[2]) {
-  double unit[2];
+  double unit[2], u[2];
   int place[2];
   if (m->mapped) quadrilateral_unmap(m->corners, at, unit);
   for (int a = 0; a < 2; a++) {
-    const double cells = m->nodes[a] - 1,
-                 u = m->mapped ? unit[a] * cells : (at[a] - m->corner[a]) / m->spacing[a];
-    if (!(u >= -1e-9 * cells && u <= cells * (1 + 1e-9))) return -1;
-    place[a] = (int)floor(u);
+    const double cells = m->nodes[a] - 1;
+    u[a] = m->mapped ? unit[a] * cells : (at[a] - m->corner[a]) / m->spacing[a];
+    if (!(u[a] >= -1e-9 * cells && u[a] <= cells * (1 + 1e-9))) return -1;
+    place[a] = (int)floor(u[a]);
     if (place[a] < 0) place[a] = 0;
     if (place[a] > m->nodes[a] - 2) place[a] = m->nodes[a] - 2;
   }
-  return mesh_cell_at(m, place[0], place[1]);
+  const int cell = mesh_cell_at(m, place[0], place[1]);
+  return m->cell[cell] == CELL_ABSENT ? cell_across(m, place, u) : cell;
 }

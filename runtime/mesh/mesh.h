@@ -22,10 +22,9 @@
 #include "dsl/base/c_linkage.h"
 #include "runtime/geometry/quadrilateral.h"
 #include "runtime/mesh/crack_lines.h"
+#include "runtime/mesh/holes.h"
 
 C_LINKAGE_BEGIN
-
-enum { MESH_MOST_GAUSS = 6 };
 
 typedef enum mesh_cell { CELL_ABSENT, CELL_ELEMENT, CELL_INTERFACE, CELL_ELEMENT_FREE } mesh_cell;
 
@@ -42,6 +41,9 @@ typedef struct mesh {
   /* Radius about the nearest live tip (m) within which sqrt(r) is in the basis; 0: nowhere */
   double enriched;
   crack_lines cracks;
+  mesh_holes holes;             /* see cut_cells.h */
+  unsigned char *gone;          /* [nodes] 1: in a hole, no node of the mesh */
+  unsigned char *cut;           /* [cells] 1: a hole takes a part of it */
   unsigned char *element_free;  /* [nodes] 1: element-free, 0: of finite elements */
   unsigned char *moving;        /* [nodes] 1: has a moving least squares function */
   unsigned char *cell;          /* [cells] mesh_cell */
@@ -97,8 +99,8 @@ static inline void mesh_corners(const mesh *m, int cell, int corner[4]) {
   corner[2] = corner[0] + m->nodes[0];
   corner[3] = corner[2] + 1;
 }
-/* The cell that holds a point (on a border: the one to its upper right, at the mesh's edge the
-   last); -1 outside the mesh. */
+/* The cell that holds a point (on a border: the one to its upper right, at the mesh's edge the last,
+   another one where that is absent); -1 outside the mesh. */
 int mesh_cell_of(const mesh *m, const double at[2]);
 
 C_LINKAGE_END

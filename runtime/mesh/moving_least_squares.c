@@ -81,13 +81,14 @@ static int visible_nodes(const mesh *m, const double at[2], bool see_all, neighb
   const bool all = !see_all && m->cracks.count > 0 &&
                    (near_count = crack_lines_near(&m->cracks, lower, upper, near, MOST_NEAR)) >
                        MOST_NEAR; /* so many pieces that each is asked */
+  const bool by_holes = !see_all && holes_meet_box(&m->holes, lower, upper);
   if (all) near_count = m->cracks.count;
   for (int j = 0; j < y.count; j++)
     for (int i = 0; i < x.count; i++) {
       const int node = mesh_node(m, x.first + i, y.first + j);
       const double place[2] = {mesh_at(m, 0, x.first + i), mesh_at(m, 1, y.first + j)};
       if (!m->moving[node]) continue;
-      bool hidden = false;
+      bool hidden = by_holes && holes_hide(&m->holes, at, place);
       for (int k = 0; k < near_count && !hidden; k++)
         hidden = crack_piece_hides(&m->cracks.pieces[all ? k : near[k]], at, place);
       if (hidden) continue;

@@ -17,5 +17,10 @@ node_layout node_layout_of(const int nodes[2], double support);
 static inline long node_layout_at(const node_layout *l, int node) {
   return l->origin + node / l->nodes[0] * l->stride + node % l->nodes[0];
 }
+/* The node that stands there. */
+static inline int node_layout_node(const node_layout *l, long site) {
+  const long row = (site - l->origin) / l->stride;
+  return (int)(row * l->nodes[0] + (site - l->origin - row * l->stride));
+}
 
 #endif

@@ -245,7 +245,7 @@ static bool moves_elements_alone(const run_body *b, const deck_item *item, int r
                                  diagnostics *d) {
   const region_sites *at = region >= 0 ? &b->loads->regions[region] : NULL;
   for (long p = 0; at && p < at->count; p++) {
-    const int32_t node = at->particles[p];
+    const int node = cells_node(b->cells, b->lattice_rows->particle_site[at->particles[p]]);
     double at_node[2];
     if (!b->cells->mesh.element_free[node]) continue;
     mesh_place(&b->cells->mesh, node, at_node);
@@ -253,10 +253,13 @@ static bool moves_elements_alone(const run_body *b, const deck_item *item, int r
         d, DIAG_CONFLICT, deck_where(item, "region"),
         "the node at (%.6g, %.6g) mm is element-free: its displacement cannot be prescribed",
         1e3 * at_node[0], 1e3 * at_node[1]);
-    diag_hint(d,
-              "make the nodes of the region finite elements: &zone mesh = '%s' method = "
-              "'finite_elements' ...",
-              b->name);
+    if (holes_near(&b->cells->mesh.holes, at_node, 2 * b->lattice_rows->spacing))
+      diag_hint(d, "cells that a hole cuts are element-free: hold nodes that are farther from it");
+    else
+      diag_hint(d,
+                "make the nodes of the region finite elements: &zone mesh = '%s' method = "
+                "'finite_elements' ...",
+                b->name);
     return false;
   }
   return true;
@@ -280,7 +283,7 @@ typedef struct taken_traction {
   run_body *b;
   const deck_traction *from;
   int number;
-  double *share;  /* [nodes]; NULL of one that differs from place to place */
+  double *share; /* [nodes]; NULL of one that differs from place to place */
   bool good;
   diagnostics *d;
 } taken_traction;
@@ -293,19 +296,20 @@ static void take_point(void *context, const double at[2], double area, const poi
   if (t->share || !t->good) return;
   t->good = loads_add_place(t->b->loads, here, t->number, t->d);
   for (int n = 0; n < s->count && t->good; n++)
-    loads_add_share_there(t->b->loads, s->node[n], t->from->component, t->number,
-                          area * s->n[n]);
+    loads_add_share_there(t->b->loads, cells_particle(t->b->cells, s->node[n]), t->from->component,
+                          t->number, area * s->n[n]);
 }
 
 /* False where the line misses the mesh. */
 static bool add_traction(run_body *b, const deck *k, int number, diagnostics *d) {
   const deck_traction *f = &k->forces[number];
-  const long nodes = b->lattice_rows->particle_count;
+  const int nodes = mesh_node_count(&b->cells->mesh);
   taken_traction t = {.b = b, .from = f, .number = number, .good = true, .d = d};
   if (!time_function_varies(&f->force)) t.share = must_calloc((size_t)nodes, sizeof(double));
   const double loaded = line_visit(&b->cells->mesh, f->from, f->to, take_point, &t);
-  for (long n = 0; n < nodes && t.share; n++)
-    if (t.share[n] != 0) loads_add_share(b->loads, (int32_t)n, f->component, number, t.share[n]);
+  for (int n = 0; n < nodes && t.share; n++)
+    if (t.share[n] != 0)
+      loads_add_share(b->loads, cells_particle(b->cells, n), f->component, number, t.share[n]);
   free(t.share);
   if (loaded > 0) return t.good;
   diag_report(d, DIAG_EMPTY_REGION, deck_where(&f->item, "from"),
@@ -388,9 +392,9 @@ static void open_state(run_body *b, const deck *k, double step) {
 static void mark_loaded(run_body *b) {
   tips *t = b->cells ? b->cells->tips : NULL;
   for (long n = 0; t && n < b->loads->constraint_count; n++)
-    t->loaded[b->lattice_rows->site_particle[b->loads->constraints[n].site]] = 1;
+    t->loaded[cells_node(b->cells, b->loads->constraints[n].site)] = 1;
   for (long n = 0; t && n < b->loads->force_count; n++)
-    t->loaded[b->lattice_rows->site_particle[b->loads->forces[n].site]] = 1;
+    t->loaded[cells_node(b->cells, b->loads->forces[n].site)] = 1;
 }
 
 bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d) {

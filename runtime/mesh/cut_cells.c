@@ -1,0 +1,238 @@
+#include "runtime/mesh/cut_cells.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
+#include "runtime/mesh/gauss_rule.h"
+
+static const double NOTHING = 1e-9; /* of a cell's area or side: as good as none */
+
+/* --- where a cell is divided ------------------------------------------------------------------ */
+
+typedef struct divisions {
+  double *at; /* [count] m, ascending once sorted */
+  int count, room;
+} divisions;
+
+static void divide_at(divisions *d, double at, double lower, double upper) {
+  if (!(at >= lower && at <= upper)) return;
+  if (d->count == d->room) {
+    d->room = d->room ? 2 * d->room : 32;
+    d->at = must_realloc(d->at, (size_t)d->room * sizeof *d->at);
+  }
+  d->at[d->count++] = at;
+}
+
+static int ascending(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* A cell and the holes about it. */
+typedef struct cut_cell {
+  const mesh *m;
+  double lower[2], upper[2];
+  mesh_holes near; /* its items are not owned */
+} cut_cell;
+
+static cut_cell cell_of(const mesh *m, int cell) {
+  const int place[2] = {cell % (m->nodes[0] - 1), cell / (m->nodes[0] - 1)};
+  cut_cell c = {.m = m, .near = {.tolerance = m->holes.tolerance}};
+  for (int a = 0; a < 2; a++) {
+    c.lower[a] = mesh_at(m, a, place[a]);
+    c.upper[a] = mesh_at(m, a, place[a] + 1);
+  }
+  for (int n = 0; n < m->holes.count; n++) {
+    const mesh_holes one = {.items = &m->holes.items[n], .count = 1};
+    if (holes_meet_box(&one, c.lower, c.upper)) holes_add(&c.near, &one.items->shape);
+  }
+  return c;
+}
+
+/* Along an axis a disc begins and ends with an upright tangent, near which Gauss's places do badly:
+   whether it does so in the cell. */
+static bool begins_round(const cut_cell *c, int axis) {
+  for (int n = 0; n < c->near.count; n++) {
+    const deck_shape *s = &c->near.items[n].shape;
+    const int across = 1 - axis;
+    if (s->kind != SHAPE_DISC || s->centre[across] < c->lower[across] ||
+        s->centre[across] > c->upper[across])
+      continue;
+    for (int side = -1; side <= 1; side += 2)
+      for (int inner = 0; inner < 2; inner++) {
+        const double at = s->centre[axis] + side * (inner ? s->inner_radius : s->radius);
+        if (at > c->lower[axis] && at < c->upper[axis]) return true;
+      }
+  }
+  return false;
+}
+
+/* Where the outlines begin and end, have corners, and cross the two sides along the axis. */
+static void divide_by_outlines(const cut_cell *c, int axis, divisions *d) {
+  enum { MOST_LEVELS = 256 };
+  double level[MOST_LEVELS];
+  for (int n = 0; n < c->near.count; n++) {
+    const int count = shape_levels(&c->near.items[n].shape, axis, level, MOST_LEVELS);
+    for (int k = 0; k < count && k < MOST_LEVELS; k++)
+      divide_at(d, level[k], c->lower[axis], c->upper[axis]);
+  }
+  for (int side = 0; side < 2; side++) {
+    double from[2] = {c->lower[0], c->lower[1]}, to[2] = {c->upper[0], c->upper[1]}, *u;
+    from[1 - axis] = to[1 - axis] = side ? c->upper[1 - axis] : c->lower[1 - axis];
+    const int count = holes_cuts(&c->near, from, to, &u);
+    for (int k = 0; k < count; k++)
+      divide_at(d, from[axis] + u[k] * (to[axis] - from[axis]), c->lower[axis], c->upper[axis]);
+    free(u);
+  }
+}
+
+/* Outlines that cross each other, and round ones that begin, are met by smaller parts. */
+static divisions divide(const cut_cell *c, int axis) {
+  enum { SMALL_PARTS = 4 };
+  divisions d = {.count = 0};
+  const bool hard = c->near.count > 1 || begins_round(c, axis);
+  const int parts = c->m->gauss_parts * (hard ? SMALL_PARTS : 1);
+  const double size = c->upper[axis] - c->lower[axis];
+  for (int k = 0; k <= parts; k++)
+    divide_at(&d, k == parts ? c->upper[axis] : c->lower[axis] + size * k / parts, c->lower[axis],
+              c->upper[axis]);
+  divide_by_outlines(c, axis, &d);
+  qsort(d.at, (size_t)d.count, sizeof *d.at, ascending);
+  return d;
+}
+
+/* --- points ----------------------------------------------------------------------------------- */
+
+static void add(cut_points *p, const double at[2], double area) {
+  if (p->count == p->room) {
+    p->room = p->room ? 2 * p->room : 256;
+    p->at = must_realloc(p->at, (size_t)p->room * sizeof *p->at);
+    p->area = must_realloc(p->area, (size_t)p->room * sizeof *p->area);
+  }
+  memcpy(p->at[p->count], at, sizeof p->at[0]);
+  p->area[p->count++] = area;
+}
+
+typedef struct rule {
+  int order;
+  double place[MESH_MOST_GAUSS], weight[MESH_MOST_GAUSS];
+} rule;
+
+/* Of the line across the cell at `level` along the axis; it stands for `width` of it. */
+static void add_line(const cut_cell *c, int axis, const rule *g, double level, double width,
+                     cut_points *to) {
+  double a[2], b[2], *u;
+  a[axis] = b[axis] = level;
+  a[1 - axis] = c->lower[1 - axis];
+  b[1 - axis] = c->upper[1 - axis];
+  const double size = b[1 - axis] - a[1 - axis];
+  const int count = holes_cuts(&c->near, a, b, &u), parts = c->m->gauss_parts;
+  for (int k = 0; k + 1 < count; k++) {
+    const double middle = a[1 - axis] + 0.5 * (u[k] + u[k + 1]) * size;
+    double at[2] = {level, level};
+    at[1 - axis] = middle;
+    if (u[k + 1] - u[k] <= 0 || holes_near(&c->near, at, 0)) continue;
+    const double part = (u[k + 1] - u[k]) * size / parts;
+    for (int n = 0; n < parts; n++)
+      for (int q = 0; q < g->order; q++) {
+        at[1 - axis] = a[1 - axis] + u[k] * size + part * (n + 0.5 * (1 + g->place[q]));
+        add(to, at, 0.5 * g->weight[q] * part * width);
+      }
+  }
+  free(u);
+}
+
+void cut_cell_points(const mesh *m, int cell, cut_points *to) {
+  cut_cell c = cell_of(m, cell);
+  const int axis = begins_round(&c, 0) && !begins_round(&c, 1) ? 1 : 0;
+  divisions d = divide(&c, axis);
+  rule g = {.order = m->gauss};
+  gauss_rule(g.order, g.place, g.weight);
+  for (int k = 0; k + 1 < d.count; k++) {
+    const double size = d.at[k + 1] - d.at[k];
+    if (size <= 1e-12 * (c.upper[axis] - c.lower[axis])) continue;
+    for (int q = 0; q < g.order; q++)
+      add_line(&c, axis, &g, d.at[k] + 0.5 * size * (1 + g.place[q]), 0.5 * g.weight[q] * size, to);
+  }
+  free(d.at);
+  holes_close(&c.near);
+}
+
+void cut_points_free(cut_points *p) {
+  free(p->at);
+  free(p->area);
+  *p = (cut_points){.count = 0};
+}
+
+/* --- nodes and cells -------------------------------------------------------------------------- */
+
+static void cut_cell_of(mesh *m, int cell, cut_points *scratch) {
+  const double whole = m->spacing[0] * m->spacing[1];
+  double area = 0;
+  int corner[4];
+  scratch->count = 0;
+  cut_cell_points(m, cell, scratch);
+  for (int n = 0; n < scratch->count; n++)
+    area += scratch->area[n];
+  if (area >= (1 - NOTHING) * whole) return;
+  if (area <= NOTHING * whole) {
+    m->cell[cell] = CELL_ABSENT;
+    return;
+  }
+  m->cut[cell] = 1;
+  mesh_corners(m, cell, corner);
+  for (int k = 0; k < 4; k++)
+    m->element_free[corner[k]] = 1;
+}
+
+/* Of a whole cell the points see all corners. */
+static bool is_seen_from(const mesh *m, int cell, const double node[2], cut_points *scratch) {
+  if (m->cell[cell] == CELL_ABSENT) return false;
+  if (!m->cut[cell]) return true;
+  scratch->count = 0;
+  cut_cell_points(m, cell, scratch);
+  for (int n = 0; n < scratch->count; n++)
+    if (!holes_hide(&m->holes, scratch->at[n], node)) return true;
+  return false;
+}
+
+static bool is_seen(const mesh *m, int node, cut_points *scratch) {
+  const int i = node % m->nodes[0], j = node / m->nodes[0];
+  double at[2];
+  mesh_place(m, node, at);
+  for (int dj = -1; dj <= 0; dj++)
+    for (int di = -1; di <= 0; di++) {
+      const int ci = i + di, cj = j + dj;
+      if (ci >= 0 && cj >= 0 && ci < m->nodes[0] - 1 && cj < m->nodes[1] - 1 &&
+          is_seen_from(m, mesh_cell_at(m, ci, cj), at, scratch))
+        return true;
+    }
+  return false;
+}
+
+/* Cells that meet the box of a hole; those outside are whole. */
+static bool meets_holes(const mesh *m, int cell) {
+  const int i = cell % (m->nodes[0] - 1), j = cell / (m->nodes[0] - 1);
+  const double lower[2] = {mesh_at(m, 0, i), mesh_at(m, 1, j)},
+               upper[2] = {mesh_at(m, 0, i + 1), mesh_at(m, 1, j + 1)};
+  return holes_meet_box(&m->holes, lower, upper);
+}
+
+int mesh_cut(mesh *m) {
+  cut_points scratch = {.count = 0};
+  double at[2];
+  int left = 0;
+  m->holes.tolerance = 1e-6 * pl_min(m->spacing[0], m->spacing[1]);
+  for (int c = 0; c < mesh_cell_count(m) && m->holes.count > 0; c++)
+    if (meets_holes(m, c)) cut_cell_of(m, c, &scratch);
+  for (int n = 0; n < mesh_node_count(m); n++) {
+    mesh_place(m, n, at);
+    m->gone[n] = holes_near(&m->holes, at, m->holes.tolerance) &&
+                 (holes_hold(&m->holes, at) || !is_seen(m, n, &scratch));
+    left += !m->gone[n];
+  }
+  cut_points_free(&scratch);
+  return left;
+}
