@@ -689,21 +689,35 @@ int tip_path(const tips *t, int tip, double (*at)[2], int most) {
 
 /* --- series ----------------------------------------------------------------------------------- */
 
-#define X(name, unit, words, value) name,
-const char *const tip_series_names[TIP_SERIES_COUNT] = {TIP_SERIES(X)};
-#undef X
-#define X(name, unit, words, value) unit,
-const char *const tip_series_units[TIP_SERIES_COUNT] = {TIP_SERIES(X)};
-#undef X
-#define X(name, unit, words, value) words,
-const char *const tip_series_words[TIP_SERIES_COUNT] = {TIP_SERIES(X)};
-#undef X
-
-void tip_series_values(const tips *t, const mesh_tip *p, double *values) {
-  int k = 0;
-#define X(name, unit, words, value) values[k++] = value;
-  TIP_SERIES(X)
-#undef X
+double tip_value_now(const tips *t, const mesh_tip *p, tip_value which) {
+  const tip_state *now = &p->now;
+  switch (which) {
+  case TIP_K_I:
+    return now->K[0];
+  case TIP_K_II:
+    return now->K[1];
+  case TIP_K_eq:
+    return hoop_intensity(now->K, hoop_angle(now->K));
+  case TIP_kink:
+    return hoop_angle(now->K);
+  case TIP_energy_release:
+    return tip_energy_release(&t->medium, tips_speed(t, p), now->K);
+  case TIP_angle:
+    return now->angle;
+  case TIP_length:
+    return now->length;
+  case TIP_speed:
+    return now->speed;
+  case TIP_x:
+    return now->at[0];
+  case TIP_y:
+    return now->at[1];
+  case TIP_segments:
+    return (double)now->segments;
+  case TIP_VALUE_COUNT:
+    break;
+  }
+  return 0;
 }
 
 /* Whether the crack's other end is a tip, too. */

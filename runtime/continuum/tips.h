@@ -28,6 +28,7 @@
 #include "runtime/continuum/node_stencil.h"
 #include "runtime/crack/interaction_integral.h"
 #include "runtime/deck/deck.h"
+#include "runtime/crack/tip_values.h"
 
 /* What ends a tip. */
 typedef enum tip_end {
@@ -127,30 +128,8 @@ void tips_replay(tips *t, mesh *m, node_stencil *k);
    start. Returns how many points. */
 int tip_path(const tips *t, int tip, double (*at)[2], int most);
 
-/* Series of a tip: their names, units, words and values. X(name, unit, words, value of tip `p`) */
-#define TIP_SERIES(X)                                                                              \
-  X("K_I", "Pa*m^(1/2)", "stress intensity factor of mode I", p->now.K[0])                         \
-  X("K_II", "Pa*m^(1/2)", "stress intensity factor of mode II", p->now.K[1])                       \
-  X("K_eq", "Pa*m^(1/2)", "stress intensity of the largest hoop stress",                           \
-    hoop_intensity(p->now.K, hoop_angle(p->now.K)))                                                \
-  X("kink", "1", "direction of the largest hoop stress, from the crack's own",                     \
-    hoop_angle(p->now.K))                                                                          \
-  X("energy_release", "N/m", "energy release rate",                                                \
-    tip_energy_release(&t->medium, tips_speed(t, p), p->now.K))                                    \
-  X("angle", "1", "direction of the last leg, from x", p->now.angle)                               \
-  X("length", "m", "length of the crack", p->now.length)                                           \
-  X("speed", "m/s", "speed of the tip", p->now.speed)                                              \
-  X("x", "m", "place of the tip along x", p->now.at[0])                                            \
-  X("y", "m", "place of the tip along y", p->now.at[1])                                            \
-  X("segments", "1", "legs that have grown", (double)p->now.segments)
-#define X(name, unit, words, value) +1
-enum { TIP_SERIES_COUNT = 0 TIP_SERIES(X) };
-#undef X
-extern const char *const tip_series_names[TIP_SERIES_COUNT];
-extern const char *const tip_series_units[TIP_SERIES_COUNT];
-extern const char *const tip_series_words[TIP_SERIES_COUNT];
-/* values[TIP_SERIES_COUNT] of a tip. */
-void tip_series_values(const tips *t, const mesh_tip *p, double *values);
+/* What is known of a tip at the last look. */
+double tip_value_now(const tips *t, const mesh_tip *p, tip_value which);
 /* Whether the faces at a tip have overlapped by more than rounding and noise. */
 bool tip_overlaps(const tip_state *p);
 /* "notch", or "notch/start" of the first point of a crack with two tips. */

@@ -12,6 +12,7 @@
 #include "dsl/base/diagnostics.h"
 #include "dsl/base/units.h"
 #include "runtime/deck/time_function.h"
+#include "runtime/crack/tip_values.h"
 #include "runtime/geometry/shape.h"
 
 C_LINKAGE_BEGIN
@@ -336,6 +337,7 @@ typedef enum monitor_kind {
   MONITOR_SLIP,          /* m: of a link to places, nearest to `at`, or the largest in size */
   MONITOR_CONTACT_FORCE, /* N: of all contacts, on the region's or on all particles */
   MONITOR_CRACK_WIDTH,   /* m: of the widest crack across the line from `from` to `to` */
+  MONITOR_CRACK,         /* of the tip of a crack in a mesh: tip_values.h */
   MONITOR_REACTIONS      /* N, `between`: half of the second's reaction less the first's */
 } monitor_kind;
 
@@ -349,6 +351,8 @@ typedef struct deck_monitor {
   const char *lattice; /* NULL: the region's, or the only one; of counts all */
   const char *between[2];
   const char *field;
+  const char *crack; /* "notch": its tip at the last point; "notch/start": that at the first */
+  tip_value value;   /* of that tip */
   /* of the particles' motion; of MONITOR_FORCE, MONITOR_MOMENT -1: along the normal; of
      MONITOR_ANGULAR_MOMENTUM, MONITOR_MOMENT the axis x, y, z; of tensors as symmetric_tensor.h
      says */

@@ -10,7 +10,9 @@
 
 /* --- monitors --------------------------------------------------------------------------------- */
 
-#define COMPONENTS DECK_COMPONENTS "|xx|yy|zz|xy|yz|xz|kinetic|stored"
+#define X(name, unit, words) "|" #name
+#define TIP_CHOICES          (&("" TIP_VALUES(X))[1])
+#define COMPONENTS           DECK_COMPONENTS "|xx|yy|zz|xy|yz|xz|kinetic|stored"
 enum { WRITTEN_KINETIC = DECK_WRITTEN_COUNT + 6 };
 
 static const deck_key_info monitor_keys[] = {
@@ -23,10 +25,10 @@ static const deck_key_info monitor_keys[] = {
      .type = DECK_CHOICE,
      .choices = "reaction|displacement|velocity|opening|damaged|broken|field|acceleration|"
                 "momentum|angular_momentum|energy|force|moment|tip|tip_speed|stress|"
-                "strain|applied|bar_force|slip|contact_force|crack_width",
+                "strain|applied|bar_force|slip|contact_force|crack_width|crack",
      .required = true,
      DECK_AT(monitor, kind),
-     .doc = "decides which of the next twelve keys are needed"},
+     .doc = "decides which of the next fourteen keys are needed"},
     {.name = "region",
      .type = DECK_NAME,
      DECK_AT(monitor, region),
@@ -66,14 +68,27 @@ static const deck_key_info monitor_keys[] = {
      .type = DECK_NAME,
      DECK_AT(monitor, field),
      .doc = "field: name of a state, damage or output of the law that stands on particles"},
+    {.name = "crack",
+     .type = DECK_NAME,
+     DECK_AT(monitor, crack),
+     .doc =
+         "crack: the name of a crack, of whose tip at the last point the value is; with `/start` "
+         "behind it of that at the first, where there are two"},
+    {.name = "value",
+     .type = DECK_CHOICE,
+     .choices = TIP_CHOICES,
+     DECK_AT(monitor, value),
+     .doc = "crack: which of the tip's values; angles are in radians"},
     {.name = "at",
      .type = DECK_PLACE,
      .unit = "m",
      DECK_AT(monitor, at),
-     .doc = "acceleration, stress, strain: in place of `region`, of the particle nearest to it, of a "
-            "mesh at the place itself, as there displacement and velocity, too; bar_force: of the bond, slip: of the tied particle nearest to it; force, moment: a "
-            "place of the section, which the moment is about; tip, tip_speed: where the crack "
-            "begins"},
+     .doc =
+         "acceleration, stress, strain: in place of `region`, of the particle nearest to it, of a "
+         "mesh at the place itself, as there displacement and velocity, too; bar_force: of the "
+         "bond, slip: of the tied particle nearest to it; force, moment: a "
+         "place of the section, which the moment is about; tip, tip_speed: where the crack "
+         "begins"},
     {.name = "normal",
      .type = DECK_PLACE,
      .unit = "1",
@@ -152,6 +167,7 @@ enum {
   OF_BAR = 1 << MONITOR_BAR_FORCE,
   OF_LINK = 1 << MONITOR_SLIP,
   OF_WIDTH = 1 << MONITOR_CRACK_WIDTH,
+  OF_CRACK = 1 << MONITOR_CRACK,
   OF_CONTACT = 1 << MONITOR_CONTACT_FORCE,
   OF_SUMS = OF_CONTACT | 1 << MONITOR_MOMENTUM, /* along an axis, in sum */
   OF_PART = OF_TURNS | OF_ENERGY | OF_SUMS,     /* of a region or of all */
@@ -161,35 +177,27 @@ enum {
   OF_MOVING = OF_MOTION | OF_PAIR | OF_PLACE | OF_TURNS | 1 << MONITOR_MOMENTUM,
   ALONG_AXIS = OF_MOTION | OF_PAIR | 1 << MONITOR_ACCELERATION | OF_SUMS
 };
-static const char *const monitor_words[] = {"a reaction monitor",
-                                            "a displacement monitor",
-                                            "a velocity monitor",
-                                            "an opening monitor",
-                                            "a damaged monitor",
-                                            "a broken monitor",
-                                            "a field monitor",
-                                            "an acceleration monitor",
-                                            "a momentum monitor",
-                                            "an angular_momentum monitor",
-                                            "an energy monitor",
-                                            "a force monitor",
-                                            "a moment monitor",
-                                            "a tip monitor",
-                                            "a tip_speed monitor",
-                                            "a stress monitor",
-                                            "a strain monitor",
-                                            "an applied monitor",
-                                            "a bar_force monitor",
-                                            "a slip monitor",
-                                            "a contact_force monitor",
-                                            "a crack_width monitor",
-                                            "a reaction monitor with `between`"};
+static const char *const monitor_words[] = {
+    "a reaction monitor",      "a displacement monitor",
+    "a velocity monitor",      "an opening monitor",
+    "a damaged monitor",       "a broken monitor",
+    "a field monitor",         "an acceleration monitor",
+    "a momentum monitor",      "an angular_momentum monitor",
+    "an energy monitor",       "a force monitor",
+    "a moment monitor",        "a tip monitor",
+    "a tip_speed monitor",     "a stress monitor",
+    "a strain monitor",        "an applied monitor",
+    "a bar_force monitor",     "a slip monitor",
+    "a contact_force monitor", "a crack_width monitor",
+    "a crack monitor",         "a reaction monitor with `between`"};
 static const deck_key_use monitor_uses[] = {
     {"region", OF_MOTION | OF_FIELD | OF_PLACE | OF_PART | OF_SECTION | OF_TIP | OF_BAR, false},
     {"lattice", OF_LATTICE, false},
     {"between", OF_PAIR, true},
     {"component", ALONG_AXIS | OF_ENERGY | OF_TENSOR | OF_TURNS | OF_SECTION, false},
     {"field", OF_FIELD, true},
+    {"crack", OF_CRACK, true},
+    {"value", OF_CRACK, true},
     {"at", OF_PLACE | OF_SECTION | OF_TIP | OF_BAR | OF_LINK, false},
     {"normal", OF_SECTION, true},
     {"direction", OF_TIP, true},
@@ -546,6 +554,8 @@ const char *deck_monitor_unit(const deck_monitor *m, bool rotates) {
     return "J";
   case MONITOR_STRESS:
     return "Pa";
+  case MONITOR_CRACK:
+    return tip_value_units[m->value];
   case MONITOR_STRAIN:
   case MONITOR_DAMAGED:
   case MONITOR_BROKEN:

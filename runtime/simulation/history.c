@@ -77,7 +77,7 @@ static int crack_series(const history *h) {
   int count = 0;
   for (int b = 0; b < h->monitors->body_count; b++) {
     const cells *c = h->monitors->bodies[b].cells;
-    count += c && c->tips ? c->tips->count * TIP_SERIES_COUNT : 0;
+    count += c && c->tips ? c->tips->count * TIP_VALUE_COUNT : 0;
   }
   return count;
 }
@@ -85,7 +85,7 @@ static int crack_series(const history *h) {
 /* "notch/K_I", "notch/start/K_I". */
 static char *crack_name(const history *h, int series) {
   char folder[256], *name;
-  int tip = series / TIP_SERIES_COUNT;
+  int tip = series / TIP_VALUE_COUNT;
   for (int b = 0;; b++) {
     const cells *c = h->monitors->bodies[b].cells;
     const int here = c && c->tips ? c->tips->count : 0;
@@ -95,7 +95,7 @@ static char *crack_name(const history *h, int series) {
     }
     tip -= here;
   }
-  const char *last = tip_series_names[series % TIP_SERIES_COUNT];
+  const char *last = tip_value_names[series % TIP_VALUE_COUNT];
   const size_t size = strlen(folder) + strlen(last) + 2;
   name = must_alloc(size);
   snprintf(name, size, "%s/%s", folder, last);
@@ -107,8 +107,9 @@ static void sample_cracks(history *h) {
   double *values = h->sampled + h->monitors->count + h->energies;
   for (int b = 0; b < h->monitors->body_count; b++) {
     const cells *c = h->monitors->bodies[b].cells;
-    for (int n = 0; c && c->tips && n < c->tips->count; n++, values += TIP_SERIES_COUNT)
-      tip_series_values(c->tips, &c->tips->items[n], values);
+    for (int n = 0; c && c->tips && n < c->tips->count; n++)
+      for (int k = 0; k < TIP_VALUE_COUNT; k++)
+        *values++ = tip_value_now(c->tips, &c->tips->items[n], (tip_value)k);
   }
 }
 
@@ -170,7 +171,7 @@ const char *history_series(const history *h, int k, const char **symbol, const d
   if (symbol)
     *symbol = energy < 0     ? h->monitors->items[k].unit
               : of_crack < 0 ? "J"
-              : own < 0      ? tip_series_units[of_crack % TIP_SERIES_COUNT]
+              : own < 0      ? tip_value_units[of_crack % TIP_VALUE_COUNT]
                              : "1";
   if (energy < 0) return h->monitors->deck->monitors[k].name;
   return own < 0 ? h->names[energy] : increment_names[own];
@@ -181,7 +182,7 @@ char *history_words(const history *h, int k, arena *a) {
             own = of_crack - h->cracks;
   if (energy < 0) return monitor_words(h->monitors, k, a);
   if (of_crack >= 0 && own < 0)
-    return arena_printf(a, "%s", tip_series_words[of_crack % TIP_SERIES_COUNT]);
+    return arena_printf(a, "%s", tip_value_words[of_crack % TIP_VALUE_COUNT]);
   if (own >= 0) return arena_printf(a, "%s", increment_words[own]);
   const char *words = ledger_words[term_of(h, energy)], *owner = owner_of(h, energy);
   return owner ? arena_printf(a, "%s, of `%s`", words, owner) : arena_printf(a, "%s", words);

@@ -100,6 +100,27 @@ static void take_places(monitor *m, const monitors *all, diagnostics *d) {
   free(sites);
 }
 
+/* The tip that has that folder in the history. */
+static void take_tip(monitor *m, const monitors *all, diagnostics *d) {
+  enum { MOST = 64, LENGTH = 256 };
+  char folders[MOST][LENGTH];
+  const char *names[MOST];
+  int count = 0;
+  for (int b = 0; b < all->body_count; b++) {
+    const cells *c = all->bodies[b].cells;
+    for (int n = 0; c && c->tips && n < c->tips->count && count < MOST; n++) {
+      names[count] = tip_folder(c->tips, n, folders[count], LENGTH);
+      if (strcmp(names[count++], m->deck->crack) != 0) continue;
+      m->tips = c->tips;
+      m->tip = n;
+      return;
+    }
+  }
+  diag_report(d, DIAG_UNKNOWN_NAME, deck_where(&m->deck->item, "crack"), "there is no tip `%s`",
+              m->deck->crack);
+  deck_suggest(d, m->deck->crack, names, count, "a monitor can watch");
+}
+
 static bool check_component(const deck_monitor *m, const pl_law *law, diagnostics *d) {
   if (!has_component(m) || m->component < law->dof) return true;
   diag_report(d, DIAG_BAD_VALUE, deck_where(&m->item, "component"),
@@ -321,6 +342,9 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
   case MONITOR_SLIP:
     take_places(m, all, d);
     break;
+  case MONITOR_CRACK:
+    take_tip(m, all, d);
+    break;
   case MONITOR_FIELD:
     take_sites(m, 0, all, m->deck->region);
     m->law = law_watched(m);
@@ -485,6 +509,8 @@ static char *quantity_words(const monitors *all, const monitor *m, arena *a) {
     return region_words(all, m, "mean velocity", a);
   case MONITOR_SLIP:
     return slip_words(all, m, a);
+  case MONITOR_CRACK:
+    return arena_printf(a, "%s, of the tip `%s`", tip_value_words[m->deck->value], m->deck->crack);
   case MONITOR_CONTACT_FORCE:
     return arena_printf(a, "%s of `%s`",
                         component_words(all, m, "force of contact on particles", a),
@@ -670,6 +696,8 @@ static double value_now(const monitors *all, const monitor *m, long step) {
     return displacement_mean(m, 1) - displacement_mean(m, 0);
   case MONITOR_SLIP:
     return slip_now(m);
+  case MONITOR_CRACK:
+    return tip_value_now(m->tips, &m->tips->items[m->tip], m->deck->value);
   case MONITOR_CONTACT_FORCE:
     return contact_sum(m);
   case MONITOR_FIELD:

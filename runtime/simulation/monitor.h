@@ -44,6 +44,8 @@ typedef struct monitor {
   int field;            /* of a field monitor: the law's field, or field_count + output */
   const run_link *link; /* of a slip monitor */
   mesh_gauge *gauge[2]; /* of fields of a mesh, of both regions; NULL of other bodies and kinds */
+  const tips *tips;     /* of a crack monitor: those of the mesh, */
+  int tip;              /* and which */
   watched_part *own;    /* NULL of kinds that are not watched.h's */
   double *ring;         /* [window] the last values, value of push k at k % window */
   long window;          /* steps; 1: no averaging */

@@ -57,9 +57,39 @@ static void kernels_are_compared(void **state) {
          "kernel check: lefm and its interpreter give the same");
 }
 
+/* A monitor of a tip has the values of its history, and ends the run. */
+static void monitors_watch_tips(void **state) {
+  workplace *w = *state;
+  char error[1000], unit_text[64];
+  long count[2];
+  assert_int_equal(shell(w, "echo \"&monitor name = 'K' kind = 'crack' crack = 'c' value = 'K_I' / "
+                            "&monitor name = 'way' kind = 'crack' crack = 'c' value = 'length' "
+                            "zero_at = 0 / &stop monitor = 'way' above = '2 mm' /\" >> plate.nml"),
+                   0);
+  expect(w, "run plate.nml", 0, "ended early");
+  result_file *f = open_result_of(w, "plate.h5");
+  double *seen =
+      result_read_series(f, "K", &count[0], unit_text, sizeof unit_text, error, sizeof error);
+  double *kept =
+      result_read_series(f, "c/K_I", &count[1], unit_text, sizeof unit_text, error, sizeof error);
+  assert_non_null(seen);
+  assert_non_null(kept);
+  assert_string_equal(unit_text, "Pa*m^(1/2)");
+  assert_true(count[0] > 2 && count[0] == count[1] && kept[count[1] - 1] != 0);
+  assert_memory_equal(seen, kept, (size_t)count[0] * sizeof *seen);
+  free(seen);
+  free(kept);
+  result_read_close(f);
+  assert_int_equal(shell(w, "sed -i \"s/crack = 'c' value/crack = 'd' value/\" plate.nml && $P "
+                            "check plate.nml"),
+                   1);
+  assert_non_null(strstr(w->said, "there is no tip `d`"));
+}
+
 int main(void) {
 #define T(test) cmocka_unit_test_setup_teardown(test, set_up_plate, tear_down_workplace)
   const struct CMUnitTest tests[] = {T(a_solver_has_them_built_in), T(results_hold_their_text),
-                                     T(another_law_cannot_resume), T(kernels_are_compared)};
+                                     T(another_law_cannot_resume), T(kernels_are_compared),
+                                     T(monitors_watch_tips)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
