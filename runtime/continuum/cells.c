@@ -479,6 +479,29 @@ bool cells_worst_point(const sweep *w, long site, point_state *out) {
   return true;
 }
 
+bool cells_mean_stress(const cells *c, int node, double stress[4]) {
+  const point_forces *p = c->by_points;
+  for (int k = 0; k < PL_STRESSES(2) && p; k++)
+    stress[k] = point_forces_mean(p, p->stress + k * (long)p->strips.count, node);
+  return p != NULL;
+}
+
+bool cells_states_near(const cells *c, const double at[2], double *field) {
+  const int cell = mesh_cell_of(&c->mesh, at);
+  const point_forces *p = c->by_points;
+  if (!p || cell < 0 || p->strips.of_cell[cell] < 0) return false;
+  double least = INFINITY;
+  for (int n = c->points.first[cell]; n < c->points.first[cell + 1]; n++) {
+    const double away = pl_hypot(c->points.at[n][0] - at[0], c->points.at[n][1] - at[1]);
+    if (!(away < least)) continue;
+    least = away;
+    const long first = p->strips.of_cell[cell] + (n - c->points.first[cell]) * PL_LANES;
+    for (int f = 0; f < c->law->field_count; f++)
+      field[f] = p->new_field[f * (long)p->strips.count + first];
+  }
+  return true;
+}
+
 double cells_bytes(const cells *c) {
   return (c->has_stencil ? (double)sizeof(double) * (double)c->stencil.block_count : 0) +
          (c->by_points ? (double)point_forces_bytes(c->by_points) : 0);

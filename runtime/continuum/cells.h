@@ -57,6 +57,11 @@ double cells_stiffness(cells *c);
    with the largest stress, with the nodes where they were before the step. False with a linear law. `out`
    has memory for the law's fields. */
 bool cells_worst_point(const sweep *w, long site, point_state *out);
+/* Of the state observed last, with a law that is not linear; false with one that is, whose points
+   keep nothing. Stress xx, yy, xy, zz (Pa) at a node: the mean of the points in the cells around. */
+bool cells_mean_stress(const cells *c, int node, double stress[4]);
+/* field[law's fields]: states of the point that is nearest to a place (m) in the mesh. */
+bool cells_states_near(const cells *c, const double at[2], double *field);
 /* B, of what the body does not count. */
 double cells_bytes(const cells *c);
 

@@ -399,6 +399,20 @@ static void nodes_show_states(void **state) {
       lost += values[p];
   }
   assert_int_equal(found, 4);
+  double stress[4], states[2], most[2] = {0, 0};
+  const cells *c = simulation_cells(r.simulation, 0);
+  for (int p = 0; p < 63; p++) {
+    assert_true(cells_mean_stress(c, p, stress));
+    assert_true(fabs(stress[0] - 3 * expected[2]) < 1e-2 * 3 * expected[2]);
+    assert_true(fabs(stress[1]) < 1e-3 * stress[0] && fabs(stress[2]) < 1e-3 * stress[0]);
+  }
+  for (int n = 0; n < c->points.count; n++) {
+    assert_true(cells_states_near(c, c->points.at[n], states));
+    for (int f = 0; f < 2; f++)
+      most[f] = fmax(most[f], fabs(states[f] - expected[f]) / expected[f]);
+  }
+  assert_true(most[0] > 0 && most[0] < 1e-2 && most[1] < 1e-2);
+  assert_false(cells_states_near(c, (double[2]){1, 1}, states));
   const double taken = small_last(&r, "energy/dissipated_damage");
   assert_true(taken > 0 && fabs(lost - taken) < 1e-9 * taken);
   small_close(&r);
