@@ -39,6 +39,7 @@ cells *cells_new(const deck *k, int lattice, rows *nodes, diagnostics *d) {
   cells *c = must_calloc(1, sizeof *c);
   c->nodes = nodes;
   c->beta_1 = k->newmark.beta_1;
+  c->stiffened = (cells_stiffened){1, 1, -1};
   if (!mesh_build(k, lattice, &c->mesh, d)) {
     mesh_close(&c->mesh);
     free(c);
@@ -428,9 +429,10 @@ cells_memory cells_remembered(const sweep *w) {
                row = (size_t)w->lattice->row_count * sizeof(double);
   point_forces *p = e->of->by_points;
   const size_t points = p ? (size_t)p->strips.count * sizeof(double) : 0;
-  cells_memory m = {.planes = {e->before[0], e->before[1], e->added_before[0], e->added_before[1],
-                               e->row_rate, &e->begun, &e->of->stiffest},
-                    .bytes = {plane, plane, plane, plane, row, sizeof e->begun, sizeof(double)}};
+  cells_memory m = {
+      .planes = {e->before[0], e->before[1], e->added_before[0], e->added_before[1], e->row_rate,
+                 &e->begun, &e->of->stiffened},
+      .bytes = {plane, plane, plane, plane, row, sizeof e->begun, sizeof e->of->stiffened}};
   m.count = CELLS_PLANES - 2;
   if (points && w->law->field_count > 0) {
     m.planes[m.count] = p->old_field;
@@ -448,13 +450,14 @@ void cells_restored(sweep *w) {
   if (c->tips) tips_replay(c->tips, &c->mesh, &c->stencil);
 }
 
-double cells_stiffness(cells *c) {
-  double most = 0;
-  if (!c->by_points) return 1;
-  for (int row = 0; row < c->by_points->strips.rows; row++)
-    most = pl_max(most, c->by_points->rows[row].stiffness);
-  c->stiffest = pl_max(c->stiffest, most);
-  return most;
+void cells_look(cells *c, double part, double time) {
+  const point_forces *p = c->by_points;
+  if (!p) return;
+  c->stiffened.now = 0;
+  for (int row = 0; row < p->strips.rows; row++)
+    c->stiffened.now = pl_max(c->stiffened.now, p->rows[row].stiffness);
+  c->stiffened.most = pl_max(c->stiffened.most, c->stiffened.now);
+  if (c->stiffened.since < 0 && part * part * c->stiffened.now > 1) c->stiffened.since = time;
 }
 
 bool cells_worst_point(const sweep *w, long site, point_state *out) {
