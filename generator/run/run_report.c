@@ -528,21 +528,31 @@ static void print_point(const run *r, const bad_state *b) {
   fputc('\n', stderr);
 }
 
-/* A mesh whose points have become so stiff that the step may be beyond the limit. */
-static void tell_stiffness(const run *r, FILE *out, const char *begin) {
+/* A mesh whose points have become so stiff that the step may be beyond the limit. Where it was, how
+   stiff they are in the end tells nothing. */
+static void tell_stiffness(const run *r, bool failed) {
   for (int b = 0; b < simulation_bodies(r->simulation); b++) {
     const cells *c = simulation_cells(r->simulation, b);
     const step_limit *limit = simulation_step_limit(r->simulation);
     const double part = limit->step / limit->limit;
-    if (!c || !(part * sqrt(c->stiffest) > 1)) continue;
-    fprintf(
-        out,
-        "%sa point of `%s` became %.3g times as stiff as at rest: steps of %.3g of the limit at "
-        "rest are safe\n  then, %.3g were taken; `step_safety = %.2g` tells whether that "
-        "matters\n",
-        begin, r->deck->lattices[b].name, c->stiffest, 1 / sqrt(c->stiffest), part,
-        0.9 / sqrt(c->stiffest));
-    return;
+    const char *name = r->deck->lattices[b].name;
+    char when[MOMENT_TEXT];
+    if (!c || c->stiffened.since < 0) continue;
+    moment(r, c->stiffened.since, when);
+    if (failed)
+      fprintf(
+          stderr,
+          "  from %s on a point of `%s` was more than %.3g times as stiff as at rest, and steps "
+          "of %.3g of the\n  limit at rest too long for it: take a smaller `step_safety`\n",
+          when, name, 1 / (part * part), part);
+    else
+      fprintf(
+          stderr,
+          "perilat: warning: from %s on steps of %.3g of the limit at rest were longer than is "
+          "safe: a point of `%s`\n  became %.3g times as stiff as at rest, and up to %.3g of it "
+          "are. `step_safety = %.2g` tells whether that matters\n",
+          when, part, name, c->stiffened.most, 1 / sqrt(c->stiffened.most),
+          0.9 / sqrt(c->stiffened.most));
   }
 }
 
@@ -576,7 +586,7 @@ static void report_bad_energy(const run *r, const bad_state *b) {
             "  what was computed until then is in the result; a smaller `step_safety` tells which",
             b->what, b->step, moment(r, b->time, when), last_value(r, "energy/kinetic"),
             last_value(r, "energy/stored"));
-  tell_stiffness(r, stderr, "  ");
+  tell_stiffness(r, true);
 }
 
 void report_bad(const run *r) {
@@ -602,7 +612,7 @@ void report_bad(const run *r) {
       explain_bad(r->model_of[b.interaction]->plan, b.parameters, &bonds, &b, stderr);
     write_bad_bond(r, &b);
   }
-  tell_stiffness(r, stderr, "  ");
+  tell_stiffness(r, true);
   fprintf(stderr,
           "  what was computed until then is in the result; a smaller `step_safety` or a law that "
           "stays finite there mends it\n");
@@ -842,7 +852,7 @@ void conclude(const run *r, double seconds, long steps) {
   warn_of_gain(r);
   warn_of_damping(r);
   warn_of_overlap(r);
-  if (!simulation_bad(r->simulation).what[0]) tell_stiffness(r, stderr, "perilat: warning: ");
+  if (!simulation_bad(r->simulation).what[0]) tell_stiffness(r, false);
   long frames = (long)result_mark(r->result).count;
   printf("  written    %s (%ld frame%s) and its .xdmf for ParaView\n", r->result_path, frames,
          frames == 1 ? "" : "s");

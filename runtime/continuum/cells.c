@@ -74,6 +74,7 @@ cells *cells_new(const deck *k, int lattice, rows *nodes, diagnostics *d) {
   cells *c = must_calloc(1, sizeof *c);
   c->nodes = nodes;
   c->beta_1 = k->newmark.beta_1;
+  c->stiffened = (cells_stiffened){1, 1, -1};
   if (!mesh_build(k, lattice, &c->mesh, d)) {
     mesh_close(&c->mesh);
     free(c);
@@ -474,9 +475,10 @@ cells_memory cells_remembered(const sweep *w) {
                row = (size_t)w->lattice->row_count * sizeof(double);
   point_forces *p = e->of->by_points;
   const size_t points = p ? (size_t)p->strips.count * sizeof(double) : 0;
-  cells_memory m = {.planes = {e->before[0], e->before[1], e->added_before[0], e->added_before[1],
-                               e->row_rate, &e->begun, &e->of->stiffest},
-                    .bytes = {plane, plane, plane, plane, row, sizeof e->begun, sizeof(double)}};
+  cells_memory m = {
+      .planes = {e->before[0], e->before[1], e->added_before[0], e->added_before[1], e->row_rate,
+                 &e->begun, &e->of->stiffened},
+      .bytes = {plane, plane, plane, plane, row, sizeof e->begun, sizeof e->of->stiffened}};
   m.count = CELLS_PLANES - 2;
   if (points && w->law->field_count > 0) {
     m.planes[m.count] = p->old_field;
@@ -494,13 +496,14 @@ void cells_restored(sweep *w) {
   if (c->tips) tips_replay(c->tips, &c->mesh, &c->stencil);
 }
 
-double cells_stiffness(cells *c) {
-  double most = 0;
-  if (!c->by_points) return 1;
-  for (int row = 0; row < c->by_points->strips.rows; row++)
-    most = pl_max(most, c->by_points->rows[row].stiffness);
-  c->stiffest = pl_max(c->stiffest, most);
-  return most;
+void cells_look(cells *c, double part, double time) {
+  const point_forces *p = c->by_points;
+  if (!p) return;
+  c->stiffened.now = 0;
+  for (int row = 0; row < p->strips.rows; row++)
+    c->stiffened.now = pl_max(c->stiffened.now, p->rows[row].stiffness);
+  c->stiffened.most = pl_max(c->stiffened.most, c->stiffened.now);
+  if (c->stiffened.since < 0 && part * part * c->stiffened.now > 1) c->stiffened.since = time;
 }
 
 bool cells_worst_point(const sweep *w, long site, point_state *out) {
@@ -522,6 +525,29 @@ bool cells_worst_point(const sweep *w, long site, point_state *out) {
   point_forces_worst(p, w->lattice->site_particle[site], &motion, out);
   free(before[0]);
   free(before[1]);
+  return true;
+}
+
+bool cells_mean_stress(const cells *c, int node, double stress[4]) {
+  const point_forces *p = c->by_points;
+  for (int k = 0; k < PL_STRESSES(2) && p; k++)
+    stress[k] = point_forces_mean(p, p->stress + k * (long)p->strips.count, node);
+  return p != NULL;
+}
+
+bool cells_states_near(const cells *c, const double at[2], double *field) {
+  const int cell = mesh_cell_of(&c->mesh, at);
+  const point_forces *p = c->by_points;
+  if (!p || cell < 0 || p->strips.of_cell[cell] < 0) return false;
+  double least = INFINITY;
+  for (int n = c->points.first[cell]; n < c->points.first[cell + 1]; n++) {
+    const double away = pl_hypot(c->points.at[n][0] - at[0], c->points.at[n][1] - at[1]);
+    if (!(away < least)) continue;
+    least = away;
+    const long first = p->strips.of_cell[cell] + (n - c->points.first[cell]) * PL_LANES;
+    for (int f = 0; f < c->law->field_count; f++)
+      field[f] = p->new_field[f * (long)p->strips.count + first];
+  }
   return true;
 }
 

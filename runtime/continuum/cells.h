@@ -20,6 +20,13 @@
 #include "runtime/deck/deck.h"
 #include "runtime/interaction/sweep.h"
 
+/* How many times as stiff as at rest the stiffest point is: in the state observed last, and at most so
+   far; 1 of a linear law. */
+typedef struct cells_stiffened {
+  double now, most;
+  double since; /* s: the step is longer than is safe for that; -1: never so far */
+} cells_stiffened;
+
 typedef struct cells {
   const pl_law *law;
   const rows *nodes; /* the mesh's, not owned */
@@ -30,9 +37,8 @@ typedef struct cells {
   node_stencil stencil;
   bool has_stencil;        /* of a linear law */
   point_forces *by_points; /* of any other law, once the run has begun; else NULL */
-  double
-      stiffest; /* the most that by_points has been as stiff as at rest, at samples; 0: not known */
-  tips *tips;   /* of its cracks; NULL without */
+  cells_stiffened stiffened;
+  tips *tips; /* of its cracks; NULL without */
 } cells;
 
 /* Of the deck's lattice of that number, a &mesh; its nodes learn what volume each stands for.
@@ -56,13 +62,18 @@ void cells_step_limit(const cells *c, const double *parameters, const unsigned c
 sweep *cells_sweep(cells *c, const deck *k, const double *parameters, const tip_law *cracks,
                    double time_step, int threads, body_ledger ledger);
 
-/* How many times as stiff as at rest the stiffest point of the state observed is; 1 of a linear law.
-   No frequency of the mesh is above the root of this times the highest at rest. */
-double cells_stiffness(cells *c);
+/* After a state was observed, at that time: how stiff points are. `part` of the longest step at rest
+   is taken. No frequency of the mesh is above the root of `stiffened.now` times the highest at rest. */
+void cells_look(cells *c, double part, double time);
 /* Where a node had a velocity that is no number or too large: of the points that push it the one
    with the largest stress, with the nodes where they were before the step. False with a linear law. `out`
    has memory for the law's fields. */
 bool cells_worst_point(const sweep *w, long site, point_state *out);
+/* Of the state observed last, with a law that is not linear; false with one that is, whose points
+   keep nothing. Stress xx, yy, xy, zz (Pa) at a node: the mean of the points in the cells around. */
+bool cells_mean_stress(const cells *c, int node, double stress[4]);
+/* field[law's fields]: states of the point that is nearest to a place (m) in the mesh. */
+bool cells_states_near(const cells *c, const double at[2], double *field);
 /* B, of what the body does not count. */
 double cells_bytes(const cells *c);
 /* Stress intensities at the tips, where the body stands still. */

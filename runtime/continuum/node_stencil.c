@@ -42,20 +42,30 @@ static const plane_stiffness *law_at(const node_stencil *k, int cell) {
   return &k->laws[k->law_of_cell ? k->law_of_cell[cell] : 0];
 }
 
+/* Places of the point's nodes in blocks: of node p toward node q at from[p] + to[q]. */
+static void find_places(const node_stencil *k, const point_shape *s, long *from, long *to) {
+  const int nx = k->layout.nodes[0], w = width(k);
+  for (int p = 0; p < s->count; p++) {
+    const long i = s->node[p] % nx, j = s->node[p] / nx;
+    to[p] = (j * w + i) * 4 * PL_LANES;
+    from[p] = block_of(k, s->node[p], 0, 0) - k->blocks - to[p];
+  }
+}
+
 /* t area sign B_I^T D B_J for all pairs of the point's nodes. */
 static void add_point(node_stencil *k, int point, const point_shape *s, double sign) {
   const plane_stiffness *law = law_at(k, k->points->cell[point]);
   const double factor = sign * k->of->thickness * k->points->area[point];
-  const int nx = k->layout.nodes[0];
+  long from[SHAPE_MOST_NODES], to[SHAPE_MOST_NODES];
+  find_places(k, s, from, to);
   for (int p = 0; p < s->count; p++) {
     double left[2][3]; /* B_I^T D, scaled */
     for (int c = 0; c < 3; c++) {
       left[0][c] = factor * (s->nx[p] * law->D[0][c] + s->ny[p] * law->D[2][c]);
       left[1][c] = factor * (s->ny[p] * law->D[1][c] + s->nx[p] * law->D[2][c]);
     }
-    const int node = s->node[p], i = node % nx, j = node / nx;
     for (int q = 0; q < s->count; q++) {
-      double *block = block_of(k, node, s->node[q] % nx - i, s->node[q] / nx - j);
+      double *block = k->blocks + (from[p] + to[q]);
       for (int a = 0; a < 2; a++) {
         block[2 * a * PL_LANES] += left[a][0] * s->nx[q] + left[a][2] * s->ny[q];
         block[(2 * a + 1) * PL_LANES] += left[a][1] * s->ny[q] + left[a][2] * s->nx[q];

@@ -19,7 +19,7 @@ enum {
 /* What a thread works with: planes of one strip. */
 typedef struct point_scratch {
   double *strain[STRAINS], *rate[STRAINS], *stress[STRESSES], *traction[STRAINS],
-      *tangent[TANGENTS];
+      *tangent[TANGENTS], *bound;
   double **old_field, **new_field, **observed;
 } point_scratch;
 
@@ -46,6 +46,7 @@ static void open_scratch(point_forces *p, point_scratch *s) {
   planes(p, s->stress, STRESSES, size);
   planes(p, s->traction, STRAINS, size);
   planes(p, s->tangent, TANGENTS, size);
+  planes(p, &s->bound, 1, size);
   s->old_field = must_calloc((size_t)p->law->field_count + 1, sizeof(double *));
   s->new_field = must_calloc((size_t)p->law->field_count + 1, sizeof(double *));
   s->observed = must_calloc((size_t)p->law->output_count + 1, sizeof(double *));
@@ -71,10 +72,39 @@ static double cell_size(const mesh *m) {
   return sqrt(m->spacing[0] * m->spacing[1]);
 }
 
+/* L^-1 of Cholesky's factor of the tangent at rest; zeros where it has none. */
+static void find_scale(const double rest[STRAINS][STRAINS], double scale[STRAINS][STRAINS]) {
+  double l[STRAINS][STRAINS] = {{0}};
+  memset(scale, 0, sizeof(double[STRAINS][STRAINS]));
+  for (int i = 0; i < STRAINS; i++)
+    for (int j = 0; j <= i; j++) {
+      double sum = 0.5 * (rest[i][j] + rest[j][i]);
+      for (int k = 0; k < j; k++)
+        sum -= l[i][k] * l[j][k];
+      if (i == j && !(sum > 0)) return;
+      l[i][j] = i == j ? sqrt(sum) : sum / l[j][j];
+    }
+  for (int c = 0; c < STRAINS; c++)
+    for (int i = c; i < STRAINS; i++) {
+      double sum = i == c ? 1 : 0;
+      for (int k = c; k < i; k++)
+        sum -= l[i][k] * scale[k][c];
+      scale[i][c] = sum / l[i][i];
+    }
+}
+
+static void find_rest(point_forces *p, const double *parameters) {
+  const double rest[STRAINS] = {0};
+  double tangent[STRAINS][STRAINS];
+  point_law *one = point_law_new(p->law, parameters);
+  point_law_tangent(one, rest, cell_size(p->of), tangent);
+  point_law_free(one);
+  find_scale(tangent, p->scale);
+}
+
 point_forces *point_forces_new(const mesh *m, const integration_points *points, const pl_law *law,
                                const double *parameters, int blocks, bool ledger) {
   const pl_bond_class none = {.size = sizeof none};
-  const double rest[STRAINS] = {0};
   point_forces *p = must_calloc(1, sizeof *p);
   *p = (point_forces){.of = m, .points = points, .law = law, .blocks = blocks};
   p->memory = pool_new();
@@ -92,9 +122,7 @@ point_forces *point_forces_new(const mesh *m, const integration_points *points, 
   p->scratch = must_calloc((size_t)blocks + 1, sizeof *p->scratch);
   for (int b = 0; b < blocks; b++)
     open_scratch(p, &p->scratch[b]);
-  point_law *one = point_law_new(law, parameters);
-  point_law_tangent(one, rest, cell_size(m), p->rest);
-  point_law_free(one);
+  find_rest(p, parameters);
   return p;
 }
 
@@ -217,6 +245,40 @@ static void step_strip(const point_forces *p, const strip *s, point_scratch *own
 
 /* --- looking at a state ----------------------------------------------------------------------- */
 
+/* L^-1 D L^-T of the symmetric part of a point's tangent: its eigenvalues are those of the tangent by
+   that at rest. */
+static inline __attribute__((always_inline)) void relative_tangent(const point_forces *p,
+                                                                   double *const tangent[TANGENTS],
+                                                                   long at,
+                                                                   double a[STRAINS][STRAINS]) {
+  double d[STRAINS][STRAINS];
+  for (int i = 0; i < STRAINS; i++)
+    for (int j = 0; j < STRAINS; j++)
+      d[i][j] = 0.5 * (tangent[STRAINS * i + j][at] + tangent[STRAINS * j + i][at]);
+  for (int i = 0; i < STRAINS; i++)
+    for (int j = 0; j <= i; j++) {
+      double sum = 0;
+      for (int k = 0; k <= i; k++)
+        for (int m = 0; m <= j; m++)
+          sum += p->scale[i][k] * p->scale[j][m] * d[k][m];
+      a[i][j] = a[j][i] = sum;
+    }
+}
+
+/* What no eigenvalue is above: mean + 2 p of the largest (below). */
+static void find_bounds(const point_forces *p, double *const tangent[TANGENTS], long count,
+                        double *bound) {
+  INDEPENDENT
+  for (long k = 0; k < count; k++) {
+    double a[STRAINS][STRAINS];
+    relative_tangent(p, tangent, k, a);
+    const double mean = (a[0][0] + a[1][1] + a[2][2]) / 3, x = a[0][0] - mean, y = a[1][1] - mean,
+                 z = a[2][2] - mean,
+                 off = a[0][1] * a[0][1] + a[1][2] * a[1][2] + a[0][2] * a[0][2];
+    bound[k] = mean + 2 * pl_sqrt((x * x + y * y + z * z + 2 * off) / 6);
+  }
+}
+
 /* Largest eigenvalue of a symmetric matrix (Smith 1961). */
 static double largest_eigenvalue(double a[STRAINS][STRAINS]) {
   const double mean = (a[0][0] + a[1][1] + a[2][2]) / 3, x = a[0][0] - mean, y = a[1][1] - mean,
@@ -226,54 +288,19 @@ static double largest_eigenvalue(double a[STRAINS][STRAINS]) {
   const double r = (x * (y * z - a[1][2] * a[1][2]) - a[0][1] * (a[0][1] * z - a[1][2] * a[0][2]) +
                     a[0][2] * (a[0][1] * a[1][2] - y * a[0][2])) /
                    (2 * p * p * p);
-  const double bound = pl_max(-1, pl_min(1, r));
-  return mean + 2 * p * pl_cos(pl_atan2(pl_sqrt(1 - bound * bound), bound) / 3);
+  const double within = pl_max(-1, pl_min(1, r));
+  return mean + 2 * p * pl_cos(pl_atan2(pl_sqrt(1 - within * within), within) / 3);
 }
 
-/* Cholesky's factor of the tangent at rest; false where it has none. */
-static bool factor_of(const double rest[STRAINS][STRAINS], double l[STRAINS][STRAINS]) {
-  for (int i = 0; i < STRAINS; i++)
-    for (int j = 0; j <= i; j++) {
-      double sum = 0.5 * (rest[i][j] + rest[j][i]);
-      for (int k = 0; k < j; k++)
-        sum -= l[i][k] * l[j][k];
-      if (i == j && !(sum > 0)) return false;
-      l[i][j] = i == j ? sqrt(sum) : sum / l[j][j];
-    }
-  return true;
-}
-
-/* Column c of a becomes L^-1 times it. */
-static void solve(double l[STRAINS][STRAINS], double a[STRAINS][STRAINS], int c) {
-  for (int i = 0; i < STRAINS; i++) {
-    for (int k = 0; k < i; k++)
-      a[i][c] -= l[i][k] * a[k][c];
-    a[i][c] /= l[i][i];
-  }
-}
-
-/* L^-1 D L^-T of the symmetric part of a tangent. */
-static double stiffness_of(double l[STRAINS][STRAINS], double *const tangent[TANGENTS], long at) {
-  double a[STRAINS][STRAINS], b[STRAINS][STRAINS];
-  for (int i = 0; i < STRAINS; i++)
-    for (int j = 0; j < STRAINS; j++)
-      a[i][j] = 0.5 * (tangent[STRAINS * i + j][at] + tangent[STRAINS * j + i][at]);
-  for (int c = 0; c < STRAINS; c++)
-    solve(l, a, c);
-  for (int i = 0; i < STRAINS; i++)
-    for (int j = 0; j < STRAINS; j++)
-      b[i][j] = a[j][i];
-  for (int c = 0; c < STRAINS; c++)
-    solve(l, b, c);
-  return largest_eigenvalue(b);
-}
-
-static double stiffest_of(const point_forces *p, const strip *s, double *const *tangent) {
-  double l[STRAINS][STRAINS] = {{0}}, most = 0;
-  if (!factor_of(p->rest, l)) return 0;
+/* The most that a point of the strip is as stiff as at rest, or `most` of others. */
+static double stiffest_of(const point_forces *p, const strip *s, const point_scratch *own,
+                          double most) {
+  find_bounds(p, own->tangent, s->count, own->bound);
   for (long k = 0; k < s->count; k++) {
-    const double here = stiffness_of(l, tangent, k);
-    if (here > most) most = here;
+    double a[STRAINS][STRAINS];
+    if (!(own->bound[k] > most)) continue;
+    relative_tangent(p, own->tangent, k, a);
+    most = pl_max(most, largest_eigenvalue(a));
   }
   return most;
 }
@@ -314,7 +341,7 @@ static void see_strip(const point_forces *p, const strip *s, point_scratch *own,
   p->law->point_observe(p->law, p->uniforms, &points);
   row->stored += lane_dot(s->count, NULL, own->observed[0], p->strips.volume + s->at);
   p->law->point_tangent(p->law, p->uniforms, &points);
-  row->stiffness = pl_max(row->stiffness, stiffest_of(p, s, own->tangent));
+  row->stiffness = stiffest_of(p, s, own, row->stiffness);
 }
 
 /* --- rows ------------------------------------------------------------------------------------- */

@@ -29,15 +29,15 @@ typedef struct point_forces {
   bool loses; /* the law has states or rates, and energies are kept */
   /* [fields][strips.count] SI, when the step begins and after it */
   double *old_field, *new_field;
-  double *lost;      /* [PL_LOSSES][strips.count] J/m^3 since the start; NULL unless it loses */
-  double *lost_now;  /* [PL_LOSSES][strips.count] by the state observed */
-  double *observed;  /* [1 + outputs][strips.count] in the state observed: J/m^3, then outputs */
-  double *stress;    /* [PL_STRESSES(2)][strips.count] Pa, in the state observed */
-  double *pushed[2]; /* [rows][plane] N */
-  long plane;        /* doubles */
-  double *size;      /* [points of a strip] m: of the cells */
-  double rest[3][3]; /* Pa: tangent at rest */
-  point_row *rows;   /* [strips.rows] */
+  double *lost;       /* [PL_LOSSES][strips.count] J/m^3 since the start; NULL unless it loses */
+  double *lost_now;   /* [PL_LOSSES][strips.count] by the state observed */
+  double *observed;   /* [1 + outputs][strips.count] in the state observed: J/m^3, then outputs */
+  double *stress;     /* [PL_STRESSES(2)][strips.count] Pa, in the state observed */
+  double *pushed[2];  /* [rows][plane] N */
+  long plane;         /* doubles */
+  double *size;       /* [points of a strip] m: of the cells */
+  double scale[3][3]; /* Pa^(-1/2): L^-1 of the tangent at rest, L L^T */
+  point_row *rows;    /* [strips.rows] */
   struct point_scratch *scratch; /* [blocks] */
   int blocks;
   long doubles; /* of arrays */

@@ -267,6 +267,36 @@ void cell_group_place(const mesh *m, const integration_points *p, int row, const
 
 /* --- strains ---------------------------------------------------------------------------------- */
 
+/* PL_LANES doubles side by side, wherever they stand. */
+typedef double lanes_at
+    __attribute__((vector_size(PL_LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
+
+/* Four sums of products, kept apart so that none waits for another: of the slopes x, y x a, y b,
+   y c, x d. Products are rounded, so that all processors have the same bits. */
+typedef struct lane_sums {
+  lanes_at xa, yb, yc, xd;
+} lane_sums;
+
+static inline __attribute__((always_inline)) void add_products(lane_sums *s, int lanes,
+                                                               const double *slope, const double *a,
+                                                               const double *b, const double *c,
+                                                               const double *d) {
+  const lanes_at *at[] = {(const lanes_at *)a, (const lanes_at *)b, (const lanes_at *)c,
+                          (const lanes_at *)d};
+  if (lanes == 1) {
+    s->xa += slope[0] * *at[0];
+    s->yb += slope[1] * *at[1];
+    s->yc += slope[1] * *at[2];
+    s->xd += slope[0] * *at[3];
+  } else {
+    const lanes_at *x = (const lanes_at *)slope, *y = (const lanes_at *)(slope + PL_LANES);
+    s->xa += *x * *at[0];
+    s->yb += *y * *at[1];
+    s->yc += *y * *at[2];
+    s->xd += *x * *at[3];
+  }
+}
+
 /* `lanes` is a literal: slopes of one lane count for all. */
 static inline __attribute__((always_inline)) void strain_of_group(const cell_table *t, int lanes,
                                                                   const double *ux,
@@ -274,22 +304,14 @@ static inline __attribute__((always_inline)) void strain_of_group(const cell_tab
                                                                   double *const strain[3]) {
   const double *slope = t->slope;
   for (int g = 0; g < t->points; g++) {
-    double xx[PL_LANES] = {0}, yy[PL_LANES] = {0}, xy[PL_LANES] = {0}, yx[PL_LANES] = {0};
+    lane_sums s = {{0}, {0}, {0}, {0}};
     for (int e = t->first[g]; e < t->first[g + 1]; e++, slope += 2 * lanes) {
       const double *x = ux + t->away[e], *y = uy + t->away[e];
-      for (int lane = 0; lane < PL_LANES; lane++) {
-        const double nx = slope[lanes == 1 ? 0 : lane], ny = slope[lanes == 1 ? 1 : lanes + lane];
-        xx[lane] = pl_fma(nx, x[lane], xx[lane]);
-        yy[lane] = pl_fma(ny, y[lane], yy[lane]);
-        xy[lane] = pl_fma(ny, x[lane], xy[lane]);
-        yx[lane] = pl_fma(nx, y[lane], yx[lane]);
-      }
+      add_products(&s, lanes, slope, x, y, x, y);
     }
-    for (int lane = 0; lane < PL_LANES; lane++) {
-      strain[0][g * PL_LANES + lane] = xx[lane];
-      strain[1][g * PL_LANES + lane] = yy[lane];
-      strain[2][g * PL_LANES + lane] = 0.5 * (xy[lane] + yx[lane]);
-    }
+    *(lanes_at *)(strain[0] + g * PL_LANES) = s.xa;
+    *(lanes_at *)(strain[1] + g * PL_LANES) = s.yb;
+    *(lanes_at *)(strain[2] + g * PL_LANES) = 0.5 * (s.yc + s.xd);
   }
 }
 
@@ -311,25 +333,16 @@ void cell_strips_strain(const cell_strips *s, int row, const cell_group *g,
 static inline __attribute__((always_inline)) void push_group(const cell_table *t, int lanes,
                                                              const double *const traction[3],
                                                              double *fx, double *fy) {
+  const double *xx = traction[0], *yy = traction[1], *xy = traction[2];
   for (int n = 0; n < t->nodes; n++) {
-    double x[PL_LANES] = {0}, y[PL_LANES] = {0}, xs[PL_LANES] = {0}, ys[PL_LANES] = {0};
+    lane_sums s = {{0}, {0}, {0}, {0}};
     for (int e = t->first_of_node[n]; e < t->first_of_node[n + 1]; e++) {
       const double *slope = t->slope + (long)t->entry[e] * 2 * lanes;
       const long at = (long)t->point[e] * PL_LANES;
-      const double *xx = traction[0] + at, *yy = traction[1] + at, *xy = traction[2] + at;
-      for (int lane = 0; lane < PL_LANES; lane++) {
-        const double nx = slope[lanes == 1 ? 0 : lane], ny = slope[lanes == 1 ? 1 : lanes + lane];
-        x[lane] = pl_fma(nx, xx[lane], x[lane]);
-        xs[lane] = pl_fma(ny, xy[lane], xs[lane]);
-        y[lane] = pl_fma(ny, yy[lane], y[lane]);
-        ys[lane] = pl_fma(nx, xy[lane], ys[lane]);
-      }
+      add_products(&s, lanes, slope, xx + at, yy + at, xy + at, xy + at);
     }
-    double *to_x = fx + t->offset[n], *to_y = fy + t->offset[n];
-    for (int lane = 0; lane < PL_LANES; lane++) {
-      to_x[lane] += x[lane] + xs[lane];
-      to_y[lane] += y[lane] + ys[lane];
-    }
+    *(lanes_at *)(fx + t->offset[n]) += s.xa + s.yc;
+    *(lanes_at *)(fy + t->offset[n]) += s.yb + s.xd;
   }
 }
 

@@ -26,15 +26,6 @@ void crack_lines_add(crack_lines *c, const double a[2], const double b[2]) {
   memcpy(p->b, b, sizeof p->b);
 }
 
-static double turn(const double a[2], const double b[2], const double c[2]) {
-  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
-bool crack_piece_hides(const crack_piece *p, const double x[2], const double node[2]) {
-  if ((turn(p->a, p->b, x) >= 0) == (turn(p->a, p->b, node) >= 0)) return false;
-  return turn(x, node, p->a) * turn(x, node, p->b) <= 0;
-}
-
 int crack_lines_near(const crack_lines *c, const double lower[2], const double upper[2], int *near,
                      int most) {
   int count = 0;

@@ -27,8 +27,20 @@ void crack_lines_open(crack_lines *c);
 void crack_lines_close(crack_lines *c);
 void crack_lines_add(crack_lines *c, const double a[2], const double b[2]);
 
-/* Whether the line from x to `node` meets the piece. */
-bool crack_piece_hides(const crack_piece *p, const double x[2], const double node[2]);
+/* o(a, b, c) */
+static inline double crack_turn(const double a[2], const double b[2], const double c[2]) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+/* Whether the line from x to `node` meets the piece; `left`: o(a, b, x) >= 0. */
+static inline bool crack_piece_parts(const crack_piece *p, bool left, const double x[2],
+                                     const double node[2]) {
+  if (left == (crack_turn(p->a, p->b, node) >= 0)) return false;
+  return crack_turn(x, node, p->a) * crack_turn(x, node, p->b) <= 0;
+}
+static inline bool crack_piece_hides(const crack_piece *p, const double x[2],
+                                     const double node[2]) {
+  return crack_piece_parts(p, crack_turn(p->a, p->b, x) >= 0, x, node);
+}
 
 /* Those of `c` whose box meets that of lower .. upper: their numbers. Returns how many; at most
    `most` are written. */

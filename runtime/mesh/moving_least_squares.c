@@ -72,26 +72,50 @@ static double *nearest_tip(const mesh *m, const double at[2], double *distance) 
 
 /* --- nodes ------------------------------------------------------------------------------------ */
 
+/* Pieces of cracks that may hide nodes from a point. */
+typedef struct near_pieces {
+  bool all; /* so many are near that each of the mesh is asked */
+  int count, piece[MOST_NEAR];
+  bool left[MOST_NEAR]; /* the point is on the piece's left */
+} near_pieces;
+
+static void find_pieces(const mesh *m, const double at[2], const double lower[2],
+                        const double upper[2], near_pieces *out) {
+  out->count = crack_lines_near(&m->cracks, lower, upper, out->piece, MOST_NEAR);
+  out->all = out->count > MOST_NEAR;
+  for (int k = 0; k < out->count && !out->all; k++) {
+    const crack_piece *p = &m->cracks.pieces[out->piece[k]];
+    out->left[k] = crack_turn(p->a, p->b, at) >= 0;
+  }
+}
+
+static bool is_hidden(const mesh *m, const near_pieces *near, const double at[2],
+                      const double place[2]) {
+  const crack_piece *pieces = m->cracks.pieces;
+  for (int k = 0; k < m->cracks.count && near->all; k++)
+    if (crack_piece_hides(&pieces[k], at, place)) return true;
+  for (int k = 0; k < near->count && !near->all; k++)
+    if (crack_piece_parts(&pieces[near->piece[k]], near->left[k], at, place)) return true;
+  return false;
+}
+
 static int visible_nodes(const mesh *m, const double at[2], bool see_all, neighbour *out) {
   const along x = weights_along(m, 0, at[0]), y = weights_along(m, 1, at[1]);
-  double reach[2] = {m->support * m->spacing[0], m->support * m->spacing[1]};
-  const double lower[2] = {at[0] - reach[0], at[1] - reach[1]},
+  const double reach[2] = {m->support * m->spacing[0], m->support * m->spacing[1]},
+               lower[2] = {at[0] - reach[0], at[1] - reach[1]},
                upper[2] = {at[0] + reach[0], at[1] + reach[1]};
-  int near[MOST_NEAR], near_count = 0, count = 0;
-  const bool all = !see_all && m->cracks.count > 0 &&
-                   (near_count = crack_lines_near(&m->cracks, lower, upper, near, MOST_NEAR)) >
-                       MOST_NEAR; /* so many pieces that each is asked */
+  near_pieces near;
+  int count = 0;
+  near.all = false;
+  near.count = 0;
+  if (!see_all && m->cracks.count > 0) find_pieces(m, at, lower, upper, &near);
   const bool by_holes = !see_all && holes_meet_box(&m->holes, lower, upper);
-  if (all) near_count = m->cracks.count;
   for (int j = 0; j < y.count; j++)
     for (int i = 0; i < x.count; i++) {
       const int node = mesh_node(m, x.first + i, y.first + j);
       const double place[2] = {mesh_at(m, 0, x.first + i), mesh_at(m, 1, y.first + j)};
-      if (!m->moving[node]) continue;
-      bool hidden = by_holes && holes_hide(&m->holes, at, place);
-      for (int k = 0; k < near_count && !hidden; k++)
-        hidden = crack_piece_hides(&m->cracks.pieces[all ? k : near[k]], at, place);
-      if (hidden) continue;
+      if (!m->moving[node] || is_hidden(m, &near, at, place)) continue;
+      if (by_holes && holes_hide(&m->holes, at, place)) continue;
       neighbour *n = &out[count++];
       n->node = node;
       n->weight = x.weight[i] * y.weight[j];

@@ -98,8 +98,7 @@ static bool cracks_fit(const pl_law *law, const deck *k, const deck_mesh *m, dia
     diag_report(d, DIAG_CONFLICT, k->cracks[n].item.where,
                 "a crack needs a linear elastic law: `%s` of the mesh `%s` is none", law->name,
                 m->name);
-    diag_hint(d, "take one such as `elastic`, or leave the crack out: a law with states says by "
-                 "itself where it fails");
+    diag_hint(d, "take one such as `elastic`, or leave the &crack out");
     return false;
   }
   return true;
@@ -133,6 +132,11 @@ static bool mesh_can_have(const pl_law *law, const deck *k, int lattice, diagnos
   if (!item && law->varying_count > 0) {
     item = &k->materials[deck_find_material(k, m->name)].item;
     why = "parameters that differ from place to place";
+  }
+  const deck_protect *held = protected_on(k, m->name);
+  if (!item && held) {
+    item = &held->item;
+    why = "protected regions";
   }
   for (int n = 0; n < k->contact_count && !item; n++)
     if (deck_lattice_touches(m, &k->contacts[n])) {

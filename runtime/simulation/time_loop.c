@@ -57,7 +57,7 @@ static void sample_laws(simulation *s) {
 /* Above which a body of the state observed has no frequency; where only the virgin one is known, that
    of this. */
 static double highest_frequency(const run_body *of) {
-  return of->limit.omega_max * (of->cells ? sqrt(pl_fmax(1, cells_stiffness(of->cells))) : 1);
+  return of->limit.omega_max * (of->cells ? sqrt(pl_fmax(1, of->cells->stiffened.now)) : 1);
 }
 
 /* Energies of the state observed; they tell of a run that has gone wrong. */
@@ -173,8 +173,17 @@ static void look_at_loads(simulation *s) {
         load_steps_observe(s->bodies[b].loads, s->bodies[b].body, (long)s->clock.at.step);
 }
 
+static void look_at_cells(simulation *s) {
+  for (int b = 0; b < s->body_count; b++) {
+    const run_body *of = &s->bodies[b];
+    if (of->cells)
+      cells_look(of->cells, of->limit.step / of->limit.limit, run_clock_time(&s->clock));
+  }
+}
+
 static void after_observing(simulation *s) {
   look_at_loads(s);
+  look_at_cells(s);
   s->observe = false;
   s->observed_step = s->clock.at.step;
   if (s->relaxation && s->clock.at.step > 0) {

@@ -1,0 +1,137 @@
+/* A compiled law with a state, a damage and a rate term on a mesh: the same bits for any number of
+   threads, by the interpreter, resumed and from a solver; its fields at nodes; what is said of a step
+   that its stiffening leaves behind. */
+#define _GNU_SOURCE
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+
+#include "tests/generator/command_tools.h"
+
+/* Soft at first: it stiffens, and breaks. */
+static const char law_text[] =
+    "model ageing\n"
+    "  law continuum\n"
+    "  for plane_stress\n"
+    "  parameter E = 2 [GPa]  in (0, inf)\n"
+    "  parameter nu = 0.2  in [0, 0.5)\n"
+    "  parameter rho = 1000 [kg/m^3]  in (0, inf)\n"
+    "  parameter tau = 0.2 [us]  in [0, inf)\n"
+    "  state peak on point = 0  \"largest strain so far\"\n"
+    "  damage omega on point\n"
+    "  peak = max(previous(peak), norm(strain))\n"
+    "  omega = 1 - exp(-peak/0.01)\n"
+    "  stress sigma = (1 - omega)*hooke(strain, E, nu) + hooke(tau*strain_rate, E, nu)\n"
+    "  output biggest = principal(sigma, 1)\n"
+    "end model\n";
+
+static const char deck_text[] =
+    "&simulation  end_time = '0.2 ms'  /\n"
+    "&mesh      name = 'bar'  size = '100 mm', '20 mm'  nodes = 31, 7  thickness = '20 mm'\n"
+    "           method = 'element_free'  support = 2.1 /\n"
+    "&zone      mesh = 'bar'  method = 'finite_elements'  shape = 'rectangle'  corner = 0, 0\n"
+    "           size = '10 mm', '20 mm' /\n"
+    "&zone      mesh = 'bar'  method = 'finite_elements'  shape = 'rectangle'\n"
+    "           corner = '90 mm', 0  size = '10 mm', '20 mm' /\n"
+    "&material  mesh = 'bar'  model = './ageing.plm' /\n"
+    "&region    name = 'left'  shape = 'segment'  from = 0, 0  to = 0, '20 mm' /\n"
+    "&region    name = 'right'  shape = 'segment'  from = '100 mm', 0  to = '100 mm', '20 mm' /\n"
+    "&support   region = 'left'  fix = 'x' /\n"
+    "&drive     region = 'right'  component = 'x'  velocity = '5 m/s'  rise = '50 us' /\n"
+    "&monitor   name = 'load'  kind = 'reaction'  region = 'right'  component = 'x' /\n"
+    "&monitor   name = 'broken'  kind = 'damaged'  above = 0.5 /\n"
+    "&output    result = 'one.h5'  frames = 3  sample = '3 us'\n"
+    "           fields = 'displacement', 'damage', 'peak', 'biggest', 'dissipated' /\n";
+
+static void write_bar(const workplace *w) {
+  write_text(w, "ageing.plm", law_text);
+  write_text(w, "bar.nml", deck_text);
+}
+
+static void same_bits(void **state) {
+  workplace *w = *state;
+  write_bar(w);
+  expect(w, "run bar.nml --threads 1", 0, "one.h5");
+  expect(w, "run bar.nml --threads 2 --set output.result=other.h5", 0, "other.h5");
+  expect_same_results(w, "one.h5", "other.h5");
+  expect(w, "run bar.nml --threads 3 --set output.result=other.h5", 0, "other.h5");
+  expect_same_results(w, "one.h5", "other.h5");
+  expect(w, "run bar.nml --interpret --set output.result=other.h5", 0, "other.h5");
+  expect_same_results(w, "one.h5", "other.h5");
+  expect(w, "run bar.nml --check-kernel --set output.result=other.h5", 0, "the same bits");
+  expect(w, "build bar.nml -o bar", 0, "written");
+  assert_int_equal(shell(w, "./bar --set output.result=other.h5"), 0);
+  expect_same_results(w, "one.h5", "other.h5");
+}
+
+/* Nodes between broken points are broken; what all have lost is the ledger's. */
+static void nodes_tell(void **state) {
+  workplace *w = *state;
+  double sum = 0, most = 0;
+  char text[64], error[1000];
+  long count, samples;
+  int components;
+  write_bar(w);
+  expect(w, "run bar.nml", 0, "broken");
+  result_file *f = open_result_of(w, "one.h5");
+  double *lost = result_read_frame(f, "dissipated", 3, &count, &components, text, sizeof text,
+                                   error, sizeof error),
+         *peak = result_read_frame(f, "peak", 3, &count, &components, text, sizeof text, error,
+                                   sizeof error),
+         *damage = result_read_frame(f, "damage", 3, &count, &components, text, sizeof text, error,
+                                     sizeof error);
+  assert_int_equal(count, 31 * 7);
+  for (long p = 0; p < count; p++) {
+    sum += lost[p];
+    most = peak[p] > most ? peak[p] : most;
+    /* 1 - exp is bent, so that the mean of omega lies below that of the mean */
+    assert_true(damage[p] <= 1 - exp(-peak[p] / 0.01) + 1e-12);
+  }
+  assert_true(most > 0.005);
+  double taken = 0;
+  static const char *const parts[] = {"energy/dissipated_damage", "energy/dissipated_damping"};
+  for (int k = 0; k < 2; k++) {
+    double *values =
+        result_read_series(f, parts[k], &samples, text, sizeof text, error, sizeof error);
+    taken += values[samples - 1];
+    assert_true(values[samples - 1] > 0);
+    free(values);
+  }
+  if (!(fabs(sum - taken) < 1e-9 * taken)) print_message("%.12g of %.12g\n", sum, taken);
+  assert_true(fabs(sum - taken) < 1e-9 * taken);
+  free(lost);
+  free(peak);
+  free(damage);
+  result_read_close(f);
+}
+
+/* By much too long it ends badly; by little only a warning says so. */
+static void a_step_that_is_too_long_is_told(void **state) {
+  workplace *w = *state;
+  const char *run = "run " SOURCE_DIR "/examples/stiffening_bar/bar.nml --set output.result=b.h5 ";
+  char line[600];
+  snprintf(line, sizeof line, "%s --set simulation.step_safety=0.9", run);
+  expect(w, line, 2, "runaway velocity");
+  assert_non_null(strstr(w->said, "a point of `bar` was more than 1.23 times as stiff as at rest"));
+  assert_non_null(strstr(w->said, "mm of cell ("));
+  assert_non_null(strstr(w->said, "stress xx"));
+  snprintf(line, sizeof line, "%s --set simulation.step_safety=0.7", run);
+  expect(w, line, 0, "perilat: warning: from increment");
+  assert_non_null(strstr(w->said, "became 2.2"));
+  expect(w, run, 0, "written");
+  assert_null(strstr(w->said, "as stiff as at rest"));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test_setup_teardown(same_bits, set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(nodes_tell, set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(a_step_that_is_too_long_is_told, set_up_workplace,
+                                      tear_down_workplace)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
