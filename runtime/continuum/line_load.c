@@ -17,8 +17,7 @@ static int ascending(const void *a, const void *b) {
 
 /* Where the line meets the straight one through a row (axis 1) or column of nodes of a mapped mesh;
    no number where they are parallel. */
-static double cut_by_row(const mesh *m, int axis, int k, const double from[2],
-                         const double to[2]) {
+static double cut_by_row(const mesh *m, int axis, int k, const double from[2], const double to[2]) {
   double a[2], b[2];
   const int last = m->nodes[1 - axis] - 1;
   mesh_place(m, axis ? mesh_node(m, 0, k) : mesh_node(m, k, 0), a);

@@ -32,9 +32,10 @@ static const deck_key_info mesh_keys[] = {
      .fallback = "= a rectangle",
      DECK_AT(mesh, corners),
      DECK_COUNT_AT(mesh, corner_count),
-     .doc = "x1, y1, ..., x4, y4: in place of `corner` and `size` the corners of a quadrilateral of "
-            "finite elements, counter-clockwise; the first two are the ends of the first row of "
-            "nodes"},
+     .doc =
+         "x1, y1, ..., x4, y4: in place of `corner` and `size` the corners of a quadrilateral of "
+         "finite elements, counter-clockwise; the first two are the ends of the first row of "
+         "nodes"},
     {.name = "nodes",
      .type = DECK_PAIR,
      .unit = "1",
@@ -181,7 +182,8 @@ static bool has_extent(deck_reader *r, const namelist_group *from, deck_mesh *it
   if (item->corner_count > 0) return take_corners(r, from, item);
   if (namelist_find(from, "size")) return true;
   diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&mesh` has no `size`");
-  diag_hint(r->d, "size: extent of the rectangle along x and y (m); or `corners` of a quadrilateral");
+  diag_hint(r->d,
+            "size: extent of the rectangle along x and y (m); or `corners` of a quadrilateral");
   return false;
 }
 
@@ -284,8 +286,9 @@ static void check_crack(deck_reader *r, const namelist_group *from, void *into) 
 }
 
 DECK_LIST(crack, .identity = "name", .open = true, .check = check_crack,
-          .doc = "A crack in the element-free part of a mesh: nodes do not act across it; or on "
-                 "its edge, by `symmetry`. Every other key sets a parameter or an option of its law.");
+          .doc =
+              "A crack in the element-free part of a mesh: nodes do not act across it; or on "
+              "its edge, by `symmetry`. Every other key sets a parameter or an option of its law.");
 
 static const deck_key_info tips_keys[] = {
     {.name = "integral",

@@ -19,8 +19,7 @@ static void place_mapped(rows *w, const deck_mesh *m, const node_layout *l, int 
 
 /* m^2 */
 static double area_of(const deck_mesh *m) {
-  return m->corners ? quadrilateral_area((const double(*)[2])m->corners)
-                    : m->size[0] * m->size[1];
+  return m->corners ? quadrilateral_area((const double(*)[2])m->corners) : m->size[0] * m->size[1];
 }
 
 static void place_nodes(rows *w, const deck_mesh *m, const node_layout *l) {

@@ -142,14 +142,14 @@ void mesh_rest_work(mesh_rest *r) {
   const body *w = r->w;
   for (long i = 0; i < r->l->force_count; i++) {
     applied *f = &r->l->forces[i];
-    const double way = w->displacement[f->component][f->site] -
-                       r->place[f->component][node_of(r, f->site)];
+    const double way =
+        w->displacement[f->component][f->site] - r->place[f->component][node_of(r, f->site)];
     f->sums.work += 0.5 * (r->pushed[i] + f->now) * way;
   }
   for (long i = 0; i < r->l->constraint_count; i++) {
     constraint *c = &r->l->constraints[i];
-    const double way = w->displacement[c->component][c->site] -
-                       r->place[c->component][node_of(r, c->site)];
+    const double way =
+        w->displacement[c->component][c->site] - r->place[c->component][node_of(r, c->site)];
     c->sums.work += 0.5 * (r->reacted[i] + c->reaction) * way;
   }
   for (int d = 0; d < 2 && w->row_gravity; d++)
@@ -241,8 +241,7 @@ static void put_back(mesh_rest *r, kept_loads *k) {
   loads *l = r->l;
   if (l->constraint_count > 0)
     memcpy(l->constraints, k->constraints, (size_t)l->constraint_count * sizeof(constraint));
-  if (l->force_count > 0)
-    memcpy(l->forces, k->forces, (size_t)l->force_count * sizeof(applied));
+  if (l->force_count > 0) memcpy(l->forces, k->forces, (size_t)l->force_count * sizeof(applied));
   l->clock = k->clock;
   for (int d = 0; d < 2; d++) {
     r->w->gravity[d] = 0;

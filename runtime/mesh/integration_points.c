@@ -77,8 +77,8 @@ static void place_mapped(integration_points *p, const mesh *m, int cell, int fir
                          (j + 0.5 * (1 + place[b])) / cells[1]};
     double slope[2][2];
     quadrilateral_map(m->corners, u, p->at[first + n], slope);
-    p->area[first + n] = 0.25 * weight[a] * weight[b] / (cells[0] * cells[1]) *
-                         quadrilateral_jacobian(slope);
+    p->area[first + n] =
+        0.25 * weight[a] * weight[b] / (cells[0] * cells[1]) * quadrilateral_jacobian(slope);
     p->cell[first + n] = cell;
   }
 }

@@ -280,7 +280,7 @@ typedef struct taken_traction {
   run_body *b;
   const deck_traction *from;
   int number;
-  double *share;  /* [nodes]; NULL of one that differs from place to place */
+  double *share; /* [nodes]; NULL of one that differs from place to place */
   bool good;
   diagnostics *d;
 } taken_traction;
@@ -293,8 +293,7 @@ static void take_point(void *context, const double at[2], double area, const poi
   if (t->share || !t->good) return;
   t->good = loads_add_place(t->b->loads, here, t->number, t->d);
   for (int n = 0; n < s->count && t->good; n++)
-    loads_add_share_there(t->b->loads, s->node[n], t->from->component, t->number,
-                          area * s->n[n]);
+    loads_add_share_there(t->b->loads, s->node[n], t->from->component, t->number, area * s->n[n]);
 }
 
 /* False where the line misses the mesh. */
