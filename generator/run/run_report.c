@@ -9,27 +9,18 @@
 #include "generator/drive/explain_bad.h"
 #include "generator/kernel/document.h"
 #include "generator/run/bad_bond.h"
+#include "generator/run/print_quantity.h"
+#include "generator/run/report_mesh.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/uniform_strain.h"
 #include "runtime/deck/lattice_kind.h"
-#include "runtime/geometry/polyline.h"
 #include "runtime/filling/bar_placing.h"
+#include "runtime/geometry/polyline.h"
 #include "runtime/lattice/notch_depth.h"
 #include "runtime/lattice/parameter_planes.h"
 #include "runtime/result/checkpoint.h"
 
 /* --- before the run --------------------------------------------------------------------------- */
-
-static void print_quantity(const char *text, double value, const char *unit_name) {
-  static const struct {
-    double factor;
-    const char *prefix;
-  } scales[] = {{1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1, ""}, {1e-3, "m"}, {1e-6, "u"}, {1e-9, "n"}};
-  size_t k = 0;
-  while (k < 6 && fabs(value) < scales[k].factor)
-    k++;
-  printf("%s%.4g %s%s", text, value / scales[k].factor, scales[k].prefix, unit_name);
-}
 
 /* Irregular particles have no lattice that implies anything: they are asked. */
 static void announce_uniform_strain(const run *r, int interaction) {
@@ -407,6 +398,10 @@ void announce(const run *r) {
   const step_limit *limit = simulation_step_limit(r->simulation);
   printf("%s\n", s->title ? s->title : r->options->deck_path);
   for (int k = 0; k < r->deck->lattice_count; k++) {
+    if (deck_lattice_is_mesh(&r->deck->lattices[k])) {
+      announce_mesh(r, k);
+      continue;
+    }
     if (deck_lattice_is_bar(&r->deck->lattices[k]))
       announce_bar(r, k);
     else if (deck_lattice_is_link(&r->deck->lattices[k]))
@@ -765,12 +760,22 @@ static void conclude_monitor(const run *r, int k) {
          moment(r, when, text));
 }
 
-void conclude(const run *r, double seconds, long steps) {
-  double rate = (double)steps / pl_fmax(seconds, 1e-9), bonds = 0;
-  for (int b = 0; b < simulation_bodies(r->simulation); b++)
+static void conclude_speed(const run *r, double seconds, long steps) {
+  const double rate = (double)steps / pl_fmax(seconds, 1e-9);
+  double bonds = 0, nodes = 0;
+  for (int b = 0; b < simulation_bodies(r->simulation); b++) {
     bonds += (double)simulation_rows(r->simulation, b)->bond_count;
-  printf("%ld steps in %.2f s: %.0f steps/s, %.1f million bond updates/s\n", steps, seconds, rate,
-         1e-6 * rate * bonds);
+    if (simulation_cells(r->simulation, b))
+      nodes += (double)simulation_rows(r->simulation, b)->particle_count;
+  }
+  printf("%ld steps in %.2f s: %.0f steps/s", steps, seconds, rate);
+  if (bonds > 0) printf(", %.1f million bond updates/s", 1e-6 * rate * bonds);
+  if (nodes > 0) printf(", %.1f million node updates/s", 1e-6 * rate * nodes);
+  putchar('\n');
+}
+
+void conclude(const run *r, double seconds, long steps) {
+  conclude_speed(r, seconds, steps);
   conclude_increments(r);
   for (int k = 0; k < r->deck->monitor_count; k++)
     conclude_monitor(r, k);

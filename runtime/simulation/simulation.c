@@ -260,8 +260,8 @@ const rows *simulation_rows(const simulation *s, int number) {
   return s->bodies[number].lattice_rows;
 }
 
-const mesh *simulation_mesh(const simulation *s, int number) {
-  return s->bodies[number].cells ? &s->bodies[number].cells->mesh : NULL;
+const cells *simulation_cells(const simulation *s, int number) {
+  return s->bodies[number].cells;
 }
 
 const step_limit *simulation_step_limit(const simulation *s) {

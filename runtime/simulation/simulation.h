@@ -18,7 +18,6 @@
 #include "runtime/kernel.h"
 #include "runtime/lattice/parameter_planes.h"
 #include "runtime/lattice/rows.h"
-#include "runtime/mesh/mesh.h"
 #include "runtime/simulation/bad_state.h"
 #include "runtime/simulation/frame_field.h"
 #include "runtime/simulation/run_clock.h"
@@ -61,7 +60,8 @@ const deck *simulation_deck(const simulation *s);
 /* rad/s of a mode, from 1, that the deck gives something by. */
 double simulation_omega(const simulation *s, int mode);
 const rows *simulation_rows(const simulation *s, int body);
-const mesh *simulation_mesh(const simulation *s, int body); /* NULL: the body is none */
+/* The cells of a mesh (runtime/continuum/cells.h); NULL of other bodies. */
+const struct cells *simulation_cells(const simulation *s, int body);
 /* Of an interaction of the deck: the rows of its body with the bonds that the law has a part in,
    and the parameters that differ in space (NULL without). */
 const rows *simulation_law_rows(const simulation *s, int interaction);
