@@ -147,11 +147,45 @@ void plot_cells_contours(canvas *c, const plot_meshes *m, const mesh_view *v, co
 
 /* --- lines ------------------------------------------------------------------------------------ */
 
-/* Some crack lies between the ends: the outline is open there. */
-static bool is_cut(const plot_mesh *m, const double a[2], const double b[2]) {
-  for (int k = 0; k < m->lines.count; k++)
-    if (crack_piece_hides(&m->lines.pieces[k], a, b)) return true;
-  return false;
+static void trace_line(canvas *c, const map_place *at, const double from[2], const double to[2]) {
+  double a[2], b[2];
+  place(at, from, a);
+  place(at, to, b);
+  cairo_move_to(c->cr, a[0], a[1]);
+  cairo_line_to(c->cr, b[0], b[1]);
+}
+
+/* The first crack between the ends, and the part of the way up to it; NULL: there is none. */
+static const crack_piece *piece_between(const plot_mesh *m, const double a[2], const double b[2],
+                                        double *part) {
+  for (int k = 0; k < m->lines.count; k++) {
+    const crack_piece *p = &m->lines.pieces[k];
+    const double u[2] = {p->b[0] - p->a[0], p->b[1] - p->a[1]};
+    if (!crack_piece_hides(p, a, b)) continue;
+    const double at_a = u[0] * (a[1] - p->a[1]) - u[1] * (a[0] - p->a[0]),
+                 at_b = u[0] * (b[1] - p->a[1]) - u[1] * (b[0] - p->a[0]);
+    *part = at_a / (at_a - at_b);
+    return p;
+  }
+  return NULL;
+}
+
+/* A side of a cell; where a crack cuts it, up to the two faces. */
+static void trace_side(canvas *c, const plot_mesh *m, const mesh_view *v, const map_place *at,
+                       int32_t i, int32_t j) {
+  const double *a = v->reference + 2 * i, *b = v->reference + 2 * j;
+  double part, faces[2][2];
+  if (!piece_between(m, a, b, &part)) {
+    trace_line(c, at, v->moved + 2 * i, v->moved + 2 * j);
+    return;
+  }
+  const double cut[2] = {a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])};
+  for (int k = 0; k < 2; k++) {
+    const double toward = k ? 1e-3 : -1e-3,
+                 side[2] = {toward * (b[0] - a[0]), toward * (b[1] - a[1])};
+    plot_mesh_face(m, v, cut, side, faces[k]);
+    trace_line(c, at, v->moved + 2 * (k ? j : i), faces[k]);
+  }
 }
 
 void plot_cells_outline(canvas *c, const plot_meshes *m, const mesh_view *v, const map_place *at) {
@@ -160,15 +194,8 @@ void plot_cells_outline(canvas *c, const plot_meshes *m, const mesh_view *v, con
   for (int k = 0; k < m->count; k++) {
     long count;
     int32_t *sides = plot_mesh_outline(&m->items[k], &count);
-    for (long n = 0; n < count; n++) {
-      const int32_t i = sides[2 * n], j = sides[2 * n + 1];
-      double ends[2][2];
-      if (is_cut(&m->items[k], v->reference + 2 * i, v->reference + 2 * j)) continue;
-      place(at, v->moved + 2 * i, ends[0]);
-      place(at, v->moved + 2 * j, ends[1]);
-      cairo_move_to(c->cr, ends[0][0], ends[0][1]);
-      cairo_line_to(c->cr, ends[1][0], ends[1][1]);
-    }
+    for (long n = 0; n < count; n++)
+      trace_side(c, &m->items[k], v, at, sides[2 * n], sides[2 * n + 1]);
     cairo_stroke(c->cr);
     free(sides);
   }

@@ -557,6 +557,10 @@ static bool choose_values(sheet *s, const plot_map_options *o, char *error, size
     snprintf(error, size, "`%s` holds no finite value to draw", o->field);
     return false;
   }
+  if (o->contours > 0 && s->panels[0].frame.meshes.count == 0) {
+    snprintf(error, size, "--contours is of meshes: leave it out of a map of particles or bonds");
+    return false;
+  }
   if (o->range && !read_range(s, o->range, error, size)) return false;
   if (o->contours > 0) s->level_count = contour_levels(s->least, s->most, o->contours, s->levels);
   if (o->contours == 0 || s->level_count > 0) return true;

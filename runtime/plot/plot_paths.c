@@ -12,7 +12,7 @@
 #include "runtime/result/result_find.h"
 #include "runtime/result/result_read.h"
 
-enum { WIDE = 1100, HIGH = 620, SIDE = 40, TOP = 64, BOTTOM = 64, LINE = 28 };
+enum { WIDE = 1100, HIGH = 620, WITH_LEGEND = 1240, SIDE = 40, TOP = 64, BOTTOM = 64, LINE = 28 };
 
 typedef struct path_set { /* of a result */
   plot_meshes meshes;
@@ -100,7 +100,7 @@ static bool lay_out(picture *p, double legend, char *error, size_t size) {
                       .scale = scale,
                       .origin_x = SIDE,
                       .origin_y = TOP + high * scale};
-  const bool beside = wide * scale + 60 + legend <= WIDE;
+  const bool beside = wide * scale + 60 + legend <= WITH_LEGEND;
   p->width = 2 * SIDE + pl_fmax(wide * scale + (beside ? 60 + legend : 0), 700);
   p->height = TOP + high * scale + BOTTOM + (beside ? 0 : LINE * (p->count + 1));
   return true;

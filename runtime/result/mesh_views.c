@@ -194,6 +194,36 @@ static bool show_paths(hid_t file, const mesh_path *p, long frames) {
   return good;
 }
 
+void mesh_views_nothing_name(long points, int columns, char *name, size_t size) {
+  snprintf(name, size, "/xdmf/nothing/%d/%ld", columns, points);
+}
+
+static bool write_nothing(hid_t file, long points, int columns) {
+  char name[NAME];
+  const hsize_t shape[2] = {(hsize_t)points, (hsize_t)columns};
+  mesh_views_nothing_name(points, columns, name, sizeof name);
+  if (H5Lexists(file, name, H5P_DEFAULT) > 0) return true;
+  double *values = must_calloc((size_t)(points * columns) + 1, sizeof *values);
+  for (long k = 0; k < points && columns == 1; k++)
+    values[k] = NAN;
+  const bool good = h5_write_doubles(file, name, values, columns == 1 ? 1 : 2, shape, NULL);
+  free(values);
+  return good;
+}
+
+/* For the points that paths have in some frame. */
+static bool write_nothings(hid_t file, const mesh_views *v, long frames) {
+  bool good = v->path_count == 0 ||
+              (h5_make_group(file, "/xdmf/nothing") && h5_make_group(file, "/xdmf/nothing/1") &&
+               h5_make_group(file, "/xdmf/nothing/3"));
+  for (int k = 0; k < v->path_count; k++)
+    for (long n = 0; n < frames && good; n++) {
+      const long points = mesh_path_count(&v->paths[k], n);
+      good = write_nothing(file, points, 1) && write_nothing(file, points, 3);
+    }
+  return good;
+}
+
 bool mesh_views_write(hid_t file, const mesh_views *v, long frames) {
   char name[NAME];
   bool good = v->set_count == 0 || h5_make_group(file, "/xdmf/cells");
@@ -204,5 +234,5 @@ bool mesh_views_write(hid_t file, const mesh_views *v, long frames) {
   }
   for (int k = 0; good && k < v->path_count; k++)
     good = show_paths(file, &v->paths[k], frames);
-  return good;
+  return good && write_nothings(file, v, frames);
 }

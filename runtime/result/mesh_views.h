@@ -5,6 +5,9 @@
      /xdmf/cells/<k>                       [C, 4] particles: cells of all meshes that no crack
                                            crosses, for the frames of set k
      /xdmf/cracks/<crack>/<frame>          [P, 3] points of the crack
+     /xdmf/nothing/<columns>/<P>           [P] NaN, [P, 3] 0: fields of the nodes on a crack, which
+                                           has none; a reader of ParaView's colours a grid only
+                                           with arrays that all grids have
 
    A crack that has come further leaves out more cells: frames in between share a set. */
 #ifndef PERILAT_RUNTIME_MESH_VIEWS_H
@@ -45,6 +48,7 @@ bool mesh_views_write_meshes(hid_t file, const result_header *h);
 bool mesh_views_write(hid_t file, const mesh_views *v, long frames);
 void mesh_views_set_name(int set, char *name, size_t size);
 void mesh_views_path_name(const mesh_path *p, long frame, char *name, size_t size);
+void mesh_views_nothing_name(long points, int columns, char *name, size_t size);
 /* "notch" of the field "notch/points". */
 int mesh_path_name_length(const mesh_path *p);
 

@@ -48,15 +48,20 @@ static void print_item(FILE *out, const char *file, const char *set, const char 
   fputs("</DataItem>", out);
 }
 
+static void print_array(FILE *out, const char *file, const views_array *a, const char *set,
+                        long count) {
+  const int components = views_components(a->field);
+  fprintf(out, "<Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">", a->name,
+          components == 1 ? "Scalar" : "Vector", a->field->interaction ? "Cell" : "Node");
+  print_item(out, file, set, "Float", 8, count, components);
+  fputs("</Attribute>\n", out);
+}
+
 static void print_attribute(FILE *out, const char *file, const result_header *h, long frame,
                             const views_array *a) {
   char set[512];
-  const int components = views_components(a->field);
   views_frame_name(a, frame, set, sizeof set);
-  fprintf(out, "<Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">", a->name,
-          components == 1 ? "Scalar" : "Vector", a->field->interaction ? "Cell" : "Node");
-  print_item(out, file, set, "Float", 8, views_count(h, a->field), components);
-  fputs("</Attribute>\n", out);
+  print_array(out, file, a, set, views_count(h, a->field));
 }
 
 static void begin_grid(FILE *out, const char *name, double time) {
@@ -131,6 +136,16 @@ static void print_cells(const sidecar *s) {
   fputs("</Grid>", s->out);
 }
 
+/* Those of the nodes, so that all grids have them. */
+static void print_nothings(const sidecar *s, long points) {
+  for (int k = 0; k < s->array_count; k++) {
+    char set[512];
+    if (s->arrays[k].field->interaction) continue;
+    mesh_views_nothing_name(points, views_components(s->arrays[k].field), set, sizeof set);
+    print_array(s->out, s->file, &s->arrays[k], set, points);
+  }
+}
+
 /* One line through all points. */
 static void print_path(const sidecar *s, const mesh_path *p) {
   begin_series(s, p->field->name, mesh_path_name_length(p));
@@ -147,6 +162,7 @@ static void print_path(const sidecar *s, const mesh_path *p) {
       fprintf(s->out, "%s%ld", k ? " " : "", k);
     fputs("</DataItem></Topology>\n", s->out);
     print_geometry(s->out, s->file, name, points);
+    print_nothings(s, points);
     fputs("</Grid>\n", s->out);
   }
   fputs("</Grid>", s->out);

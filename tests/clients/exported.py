@@ -39,3 +39,34 @@ class Frame:
         # laws stand in the order of their names, in these decks that of the lattices, too
         omegas = [column for name, column in bonds.columns.items() if name.endswith("/omega")]
         self.omega = comparable([next((w for w in bond if not math.isnan(w)), math.nan) for bond in zip(*omegas)])
+
+
+class MeshFrame:
+    """A frame of the mesh: its nodes, and the points of its crack."""
+
+    NODES = (26, 21)
+
+    def __init__(self, folder, frame):
+        nodes = Columns(f"{folder}/mesh_particles_{frame}.csv")
+        slit = Columns(f"{folder}/mesh_slit.csv").columns
+        self.places = nodes.vectors("x", "y", "z")
+        self.displacement = nodes.vectors("displacement_x", "displacement_y", "displacement_z")
+        self.stress = nodes.columns["stress_yy"]
+        self.crack = [(x, y, 0.0) for k, x, y in zip(slit["frame"], slit["x"], slit["y"]) if k == frame]
+        self.cells = [cell for cell in self.all_cells() if not self.is_crossed(cell)]
+
+    @classmethod
+    def all_cells(cls):
+        along, up = cls.NODES
+        lows = (j * along + i for j in range(up - 1) for i in range(along - 1))
+        return [(low, low + 1, low + 1 + along, low + along) for low in lows]
+
+    def is_crossed(self, cell):
+        """Points close to each other along the crack: is one inside?"""
+        low, high = self.places[cell[0]], self.places[cell[2]]
+        for a, b in zip(self.crack, self.crack[1:]):
+            for k in range(2001):
+                x, y = (p + k / 2000 * (q - p) for p, q in zip(a[:2], b[:2]))
+                if low[0] < x < high[0] and low[1] < y < high[1]:
+                    return True
+        return False

@@ -4,9 +4,9 @@ import sys
 
 import h5py
 
-from exported import FRAMES, SPECIMENS, Frame, comparable
+from exported import FRAMES, SPECIMENS, Frame, MeshFrame, comparable
 
-VTK_LINE = 3
+VTK_LINE, VTK_QUAD = 3, 9
 WORDS = {  # the law's, where it has them
     "plane": "Loss of stiffness that puts the force on the softening curve (eq 3.15). "
              "A bond with omega = 1 is gone in tension and in compression.",
@@ -53,8 +53,8 @@ def check_words(file, specimen):
         assert bonds["omega"].attrs["long_name"] == WORDS[specimen], specimen
 
 
-def grid_of_step(vtk, step):
-    """One step as VTK reads it: offsets of the step, then parts. Here there is one part, and names of its arrays."""
+def grid_of_step(vtk, step, kind=VTK_LINE):
+    """One step as VTK reads it: offsets of the step, then parts. A step has one part here, with all arrays."""
     steps = vtk["Steps"]
     assert steps["NumberOfParts"][step] == 1
     part = steps["PartOffsets"][step]
@@ -62,8 +62,8 @@ def grid_of_step(vtk, step):
     point, cell, first = (int(steps[what + "Offsets"][step].item()) for what in ("Point", "Cell", "ConnectivityId"))
     offsets = vtk["Offsets"][part + cell:part + cell + cells + 1].tolist()
     connectivity = vtk["Connectivity"][first:first + ids].tolist()
-    assert len(offsets) == cells + 1 and offsets[-1] == ids == len(connectivity)
-    assert vtk["Types"].dtype == "u1" and set(vtk["Types"][cell:cell + cells]) == {VTK_LINE}
+    assert len(offsets) == cells + 1 and offsets[0] == 0 and offsets[-1] == ids == len(connectivity)
+    assert vtk["Types"].dtype == "u1" and set(vtk["Types"][cell:cell + cells]) == {kind}
     arrays = {}
     for data, count in (("PointData", points), ("CellData", cells)):
         for name, values in vtk[data].items():
@@ -93,6 +93,29 @@ def check_vtkhdf(file, specimen, frames):
     assert all(item.is_virtual for item in shown), "no copies"
 
 
+def check_mesh(file, frames):
+    """Tables of the mesh and of its crack; and the grid, whose cells are those that the crack does not cross."""
+    mesh, points = file["meshes/plate"], file["cracks/slit/points"]
+    assert mesh.attrs["first_particle"] == 0 and mesh.attrs["thickness"] == 0.01
+    for item in data_sets(mesh):
+        assert item.attrs["long_name"] and item.attrs["units"], item.name
+    assert [place + (0.0,) for place in tuples(mesh["nodes"][:].tolist())] == frames[0].places
+    assert tuples(mesh["cells"][:].tolist()) == MeshFrame.all_cells() and set(mesh["method"][:]) == {3}
+    assert points.attrs["units"] == "m" and points.attrs["long_name"] and points.attrs["mesh"] == "plate"
+    assert points.dims[0][0] == file["frames/time"]
+    for step, frame in enumerate(frames):
+        there = [(x, y, 0.0) for x, y in points[step].tolist() if x == x]
+        assert there == frame.crack and all(x != x for x, _ in points[step, len(there):]), step
+        places, cells, arrays = grid_of_step(file["VTKHDF"], step, VTK_QUAD)
+        assert tuples(places) == frame.places and tuples(cells) == frame.cells, step
+        assert tuples(arrays["PointData", "displacement"]) == frame.displacement, step
+        assert arrays["PointData", "stress_yy"] == frame.stress, step
+    assert len(frames[0].cells) > len(frames[-1].cells) > 400
+
+
+with h5py.File(f"{sys.argv[1]}/mesh.h5", "r") as opened:
+    check_ending(opened, "mesh")
+    check_mesh(opened, [MeshFrame(sys.argv[1], frame) for frame in range(FRAMES)])
 for specimen in SPECIMENS:
     with h5py.File(f"{sys.argv[1]}/{specimen}.h5", "r") as opened:
         check_ending(opened, specimen)

@@ -6,7 +6,7 @@ from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOImage import vtkPNGReader
 
-from exported import END, FRAMES, SPECIMENS, Frame, comparable
+from exported import END, FRAMES, SPECIMENS, Frame, MeshFrame, comparable
 
 
 def rows(array):
@@ -22,6 +22,57 @@ def check_grid(grid, frame, where):
     assert comparable(rows(grid.GetCellData().GetArray("omega"))) == frame.omega, where
     ends = rows(grid.GetCells().GetConnectivityArray())
     assert list(zip(ends[::2], ends[1::2])) == frame.ends, where
+
+
+def grids_of(block):
+    """Grids in blocks within blocks."""
+    if block.IsA("vtkUnstructuredGrid"):
+        return [block]
+    parts = block.GetNumberOfPieces() if block.IsA("vtkMultiPieceDataSet") else block.GetNumberOfBlocks()
+    get = block.GetPiece if block.IsA("vtkMultiPieceDataSet") else block.GetBlock
+    return [grid for k in range(parts) if get(k) for grid in grids_of(get(k))]
+
+
+def check_cells(grid, frame, where):
+    assert rows(grid.GetPoints().GetData()) == frame.places, where
+    assert rows(grid.GetPointData().GetArray("displacement")) == frame.displacement, where
+    assert rows(grid.GetPointData().GetArray("stress_yy")) == frame.stress, where
+    corners = rows(grid.GetCells().GetConnectivityArray())
+    assert list(zip(*(corners[k::4] for k in range(4)))) == frame.cells, where
+
+
+def check_crack(grid, frame, where):
+    assert rows(grid.GetPoints().GetData()) == frame.crack and grid.GetNumberOfCells() == 1, where
+    assert rows(grid.GetCells().GetConnectivityArray()) == list(range(len(frame.crack))), where
+
+
+def check_mesh(reader, frames):
+    """The cells, then the crack."""
+    where = f"mesh, {reader.GetXMLName()}"
+    reader.UpdatePipelineInformation()
+    times = list(reader.TimestepValues)
+    assert len(times) == FRAMES, (where, times)
+    for time, frame in zip(times, frames):
+        reader.UpdatePipeline(time)
+        cells, crack = grids_of(servermanager.Fetch(reader))
+        check_cells(cells, frame, f"{where}, {time} s")
+        check_crack(crack, frame, f"{where}, {time} s")
+    return times
+
+
+def look_at_mesh(folder):
+    frames = [MeshFrame(folder, frame) for frame in range(FRAMES)]
+    path = f"{folder}/mesh.xdmf"
+    reader = simple.OpenDataFile(path)
+    times = check_mesh(reader, frames)
+    check_mesh(simple.Xdmf3ReaderT(FileName=[path]), frames)
+    check_mesh(simple.XDMFReader(FileNames=[path]), frames)
+    check_picture(reader, times[-1], "POINTS", "displacement", f"{folder}/mesh_displacement.png")
+    vtkhdf = simple.VTKHDFReader(FileName=f"{folder}/mesh.h5")
+    vtkhdf.UpdatePipeline()
+    check_cells(servermanager.Fetch(vtkhdf), frames[0], "mesh, VTKHDF")
+    print(f"mesh: {len(frames[0].places)} nodes, {len(frames[0].cells)} to {len(frames[-1].cells)} cells, "
+          f"{len(frames[-1].crack)} points of the crack")
 
 
 def check_times(times, where):
@@ -67,6 +118,7 @@ def check_picture(reader, time, place, field, path):
 
 
 def main(folder):
+    look_at_mesh(folder)
     for specimen in SPECIMENS:
         frames = [Frame(folder, specimen, frame) for frame in range(FRAMES)]
         assert max(value or 0 for value in frames[-1].omega) > 0.9 and max(frames[-1].displacement) > (1e-4, 0, 0), specimen
