@@ -9,29 +9,20 @@
 #include "generator/drive/explain_bad.h"
 #include "generator/kernel/document.h"
 #include "generator/run/bad_bond.h"
+#include "generator/run/print_quantity.h"
+#include "generator/run/report_mesh.h"
 #include "generator/run/run_cracks.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/uniform_strain.h"
 #include "runtime/continuum/tips.h"
 #include "runtime/deck/lattice_kind.h"
-#include "runtime/geometry/polyline.h"
 #include "runtime/filling/bar_placing.h"
+#include "runtime/geometry/polyline.h"
 #include "runtime/lattice/notch_depth.h"
 #include "runtime/lattice/parameter_planes.h"
 #include "runtime/result/checkpoint.h"
 
 /* --- before the run --------------------------------------------------------------------------- */
-
-static void print_quantity(const char *text, double value, const char *unit_name) {
-  static const struct {
-    double factor;
-    const char *prefix;
-  } scales[] = {{1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1, ""}, {1e-3, "m"}, {1e-6, "u"}, {1e-9, "n"}};
-  size_t k = 0;
-  while (k < 6 && fabs(value) < scales[k].factor)
-    k++;
-  printf("%s%.4g %s%s", text, value / scales[k].factor, scales[k].prefix, unit_name);
-}
 
 /* Irregular particles have no lattice that implies anything: they are asked. */
 static void announce_uniform_strain(const run *r, int interaction) {
@@ -366,6 +357,11 @@ static void announce_line_load(const run *r, int force) {
 /* Loads come in the deck's time, which has nothing to do with that of the steps. */
 static void announce_increments(const run *r) {
   const deck_relaxation *k = &r->deck->relaxation;
+  if (k->solved) {
+    printf("  static     %d increment%s, each the solution of K u = F\n", k->increments,
+           k->increments == 1 ? "" : "s");
+    return;
+  }
   printf(
       "  increments %d, quasi-static, each until the unbalanced force is %.4g of the reactions or "
       "loads, or for %ld steps\n",
@@ -404,11 +400,25 @@ static void announce_frequencies(const run *r) {
   }
 }
 
+/* "0.3061 us: 0.25 of the stable step 1.224 us (rotation mode rules)" */
+static void announce_step(const run *r) {
+  const step_limit *limit = simulation_step_limit(r->simulation);
+  printf("%.4g us: %.3g of the stable step %.4g us (%s mode%s", 1e6 * limit->step,
+         limit->step / limit->limit, 1e6 * limit->limit, limit->mode,
+         limit->at_surface ? " at a surface" : "");
+  if (r->deck->lattice_count > 1)
+    printf(" of %s", r->deck->lattices[simulation_ruling_body(r->simulation)].name);
+  puts(" rules)");
+}
+
 void announce(const run *r) {
   const deck_simulation *s = &simulation_deck(r->simulation)->simulation;
-  const step_limit *limit = simulation_step_limit(r->simulation);
   printf("%s\n", s->title ? s->title : r->options->deck_path);
   for (int k = 0; k < r->deck->lattice_count; k++) {
+    if (deck_lattice_is_mesh(&r->deck->lattices[k])) {
+      announce_mesh(r, k);
+      continue;
+    }
     if (deck_lattice_is_bar(&r->deck->lattices[k]))
       announce_bar(r, k);
     else if (deck_lattice_is_link(&r->deck->lattices[k]))
@@ -429,12 +439,7 @@ void announce(const run *r) {
   else
     printf("  time       %.6g ms in %ld steps of ", 1e3 * s->end_time,
            simulation_step_count(r->simulation));
-  printf("%.4g us: %.3g of the stable step %.4g us (%s mode%s", 1e6 * limit->step,
-         limit->step / limit->limit, 1e6 * limit->limit, limit->mode,
-         limit->at_surface ? " at a surface" : "");
-  if (r->deck->lattice_count > 1)
-    printf(" of %s", r->deck->lattices[simulation_ruling_body(r->simulation)].name);
-  puts(" rules)");
+  if (!r->deck->relaxation.solved) announce_step(r);
   announce_frequencies(r);
   printf("  machine    %d thread%s, %.1f MiB\n", simulation_threads(r->simulation),
          simulation_threads(r->simulation) == 1 ? "" : "s",
@@ -741,6 +746,11 @@ static void conclude_increments(const run *r) {
   long unbalanced;
   const long increments = simulation_increments(r->simulation, &unbalanced);
   if (increments == 0) return;
+  if (r->deck->relaxation.solved) {
+    printf("  static     unbalanced force left: at most %.2g of the reactions or loads\n",
+           largest_of(r, "relaxation_unbalance"));
+    return;
+  }
   printf("  increments %ld, in the mean %ld steps each, at most %.0f; unbalanced force left: at "
          "most %.2g of the "
          "reactions or loads\n",
@@ -776,12 +786,26 @@ static void conclude_monitor(const run *r, int k) {
          moment(r, when, text));
 }
 
-void conclude(const run *r, double seconds, long steps) {
-  double rate = (double)steps / pl_fmax(seconds, 1e-9), bonds = 0;
-  for (int b = 0; b < simulation_bodies(r->simulation); b++)
+static void conclude_speed(const run *r, double seconds, long steps) {
+  if (r->deck->relaxation.solved) {
+    printf("%ld solution%s in %.2f s\n", steps, steps == 1 ? "" : "s", seconds);
+    return;
+  }
+  const double rate = (double)steps / pl_fmax(seconds, 1e-9);
+  double bonds = 0, nodes = 0;
+  for (int b = 0; b < simulation_bodies(r->simulation); b++) {
     bonds += (double)simulation_rows(r->simulation, b)->bond_count;
-  printf("%ld steps in %.2f s: %.0f steps/s, %.1f million bond updates/s\n", steps, seconds, rate,
-         1e-6 * rate * bonds);
+    if (simulation_cells(r->simulation, b))
+      nodes += (double)simulation_rows(r->simulation, b)->particle_count;
+  }
+  printf("%ld steps in %.2f s: %.0f steps/s", steps, seconds, rate);
+  if (bonds > 0) printf(", %.1f million bond updates/s", 1e-6 * rate * bonds);
+  if (nodes > 0) printf(", %.1f million node updates/s", 1e-6 * rate * nodes);
+  putchar('\n');
+}
+
+void conclude(const run *r, double seconds, long steps) {
+  conclude_speed(r, seconds, steps);
   conclude_increments(r);
   for (int k = 0; k < r->deck->monitor_count; k++)
     conclude_monitor(r, k);

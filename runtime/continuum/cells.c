@@ -11,6 +11,7 @@
 #include "runtime/continuum/frequency_limit.h"
 #include "runtime/continuum/mesh_build.h"
 #include "runtime/continuum/node_masses.h"
+#include "runtime/continuum/point_law.h"
 #include "runtime/mesh/shape_functions.h"
 
 /* Power iteration finds the highest frequency from below. */
@@ -63,39 +64,11 @@ void cells_free(cells *c) {
 
 /* The law's tangent at rest. */
 static plane_stiffness tangent_at_rest(const pl_law *law, const double *parameters) {
-  enum { STRAINS = 3, TANGENTS = STRAINS * STRAINS };
-  double zero[PL_LANES] = {0}, size[PL_LANES], out[TANGENTS][PL_LANES];
-  const double *strain[STRAINS] = {zero, zero, zero};
-  double *tangent[TANGENTS];
-  double **field = must_calloc((size_t)law->field_count + 1, sizeof *field);
-  double *uniforms = must_calloc((size_t)law->uniform_count + 1, sizeof *uniforms);
-  const pl_bond_class none = {.size = sizeof none};
+  const double rest[3] = {0};
   plane_stiffness k;
-  for (int f = 0; f < law->field_count; f++) {
-    field[f] = must_calloc(PL_LANES, sizeof **field);
-    for (int lane = 0; lane < PL_LANES; lane++)
-      field[f][lane] = law->fields[f].initial;
-  }
-  for (int n = 0; n < TANGENTS; n++)
-    tangent[n] = out[n];
-  for (int lane = 0; lane < PL_LANES; lane++)
-    size[lane] = 1;
-  law->prepare(law, parameters, &none, uniforms);
-  const pl_points points = {.size = sizeof points,
-                            .count = PL_LANES,
-                            .strain = strain,
-                            .strain_rate = strain,
-                            .cell_size = size,
-                            .old_field = (const double *const *)field,
-                            .tangent = tangent};
-  law->point_tangent(law, uniforms, &points);
-  for (int a = 0; a < STRAINS; a++)
-    for (int b = 0; b < STRAINS; b++)
-      k.D[a][b] = out[STRAINS * a + b][0];
-  for (int f = 0; f < law->field_count; f++)
-    free(field[f]);
-  free(field);
-  free(uniforms);
+  point_law *p = point_law_new(law, parameters);
+  point_law_tangent(p, rest, 1, k.D);
+  point_law_free(p);
   return k;
 }
 
@@ -289,6 +262,11 @@ sweep *cells_sweep(cells *c, const deck *k, const double *parameters, const tip_
                              .free = free_own,
                              .own = e};
   return w;
+}
+
+void cells_look(const sweep *w) {
+  const cells *c = own(w)->of;
+  if (c->tips) tips_at_rest(c->tips, w->body, &c->stencil);
 }
 
 cells_memory cells_remembered(const sweep *w) {

@@ -44,6 +44,9 @@ void cells_step_limit(const cells *c, const unsigned char *held, step_limit *lim
 sweep *cells_sweep(cells *c, const deck *k, const double *parameters, const tip_law *cracks,
                    double time_step, int threads, body_ledger ledger);
 
+/* Stress intensities at the tips, where the body stands still. */
+void cells_look(const sweep *w);
+
 /* What the engine remembers from step to step, for checkpoints; and after one was read. */
 enum { CELLS_PLANES = 6 };
 typedef struct cells_memory {

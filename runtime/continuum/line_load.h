@@ -4,7 +4,14 @@
 #ifndef PERILAT_RUNTIME_LINE_LOAD_H
 #define PERILAT_RUNTIME_LINE_LOAD_H
 
-#include "runtime/mesh/mesh.h"
+#include "runtime/mesh/moving_least_squares.h"
+
+/* At a point of integration of the line, whose part of the line has `area` (m^2): the functions of the
+   nodes. */
+typedef void line_visitor(void *context, const double at[2], double area, const point_shape *s);
+/* Visits all that lie in the mesh; returns their length, m. */
+double line_visit(const mesh *m, const double from[2], const double to[2], line_visitor *visit,
+                  void *context);
 
 /* Traction (Pa) at a point of the line. */
 typedef void (*line_traction)(void *context, const double at[2], double traction[2]);

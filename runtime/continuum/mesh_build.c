@@ -42,7 +42,10 @@ bool mesh_build(const deck *k, int lattice, mesh *out, diagnostics *d) {
   const deck_mesh *l = &k->lattices[lattice];
   const int nodes[2] = {(int)l->nodes[0], (int)l->nodes[1]};
   bool good = true;
-  mesh_open(out, nodes, l->corner, l->size, l->thickness, l->support);
+  if (l->corners)
+    mesh_open_mapped(out, nodes, (const double(*)[2])l->corners, l->thickness, l->support);
+  else
+    mesh_open(out, nodes, l->corner, l->size, l->thickness, l->support);
   out->smooth_ramp = l->smooth;
   out->enriched = l->rich * out->spacing[0];
   if (l->method == MESH_FINITE_ELEMENTS) {

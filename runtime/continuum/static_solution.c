@@ -40,8 +40,8 @@ static bool is_alone(const node_stencil *k, int node) {
          node_stencil_entry(k, node, node, 1, 1) == 0;
 }
 
-typedef void (*pair_visitor)(band *b, int node, int other, void *context);
-static void visit_pairs(band *b, pair_visitor visit, void *context) {
+typedef void pair_visitor(band *b, int node, int other, void *context);
+static void visit_pairs(band *b, pair_visitor *visit, void *context) {
   const node_layout *l = &b->k->layout;
   for (int node = 0; node < l->nodes[0] * l->nodes[1]; node++)
     for (int dj = -b->k->reach; dj <= b->k->reach; dj++)
@@ -52,23 +52,14 @@ static void visit_pairs(band *b, pair_visitor visit, void *context) {
       }
 }
 
-typedef struct filling {
-  const unsigned char *fixed; /* [2 nodes] held, or alone */
-  const double *const *u;
-  double *right; /* [n] */
-} filling;
-
 static void fill(band *b, int node, int other, void *context) {
-  filling *f = context;
+  const unsigned char *fixed = context;
   for (int d = 0; d < 2; d++)
     for (int e = 0; e < 2; e++) {
       const int row = freedom(b, node, d), column = freedom(b, other, e);
-      if (f->fixed[2 * node + d]) continue;
-      const double entry = node_stencil_entry(b->k, node, other, d, e);
-      if (f->fixed[2 * other + e])
-        f->right[row] -= entry * f->u[e][other];
-      else if (row >= column)
-        b->matrix[(size_t)column * (size_t)b->rows + (size_t)(row - column)] = entry;
+      if (fixed[2 * node + d] || fixed[2 * other + e] || row < column) continue;
+      b->matrix[(size_t)column * (size_t)b->rows + (size_t)(row - column)] =
+          node_stencil_entry(b->k, node, other, d, e);
     }
 }
 
@@ -104,17 +95,13 @@ static void judge(const node_stencil *k, const unsigned char *fixed, const doubl
   r->residual = most > 0 ? off / most : 0;
 }
 
-static bool factor(band *b, double *right, static_result *r) {
-  const int one = 1;
+static bool factor(band *b, static_result *r) {
   int info = 0;
   dpbtrf_("L", &b->n, &b->bands, b->matrix, &b->rows, &info, 1);
-  if (info > 0) {
-    r->loose = node_of(b, info - 1);
-    r->loose_axis = (info - 1) % 2;
-    return false;
-  }
-  dpbtrs_("L", &b->n, &b->bands, &one, b->matrix, &b->rows, right, &b->n, &info, 1);
-  return info == 0;
+  if (info <= 0) return info == 0;
+  r->loose = node_of(b, info - 1);
+  r->loose_axis = (info - 1) % 2;
+  return false;
 }
 
 /* A pivot lost to rounding is no stiffness either. */
@@ -129,43 +116,88 @@ static bool stays_positive(const band *b, const double *diagonal, static_result 
   return true;
 }
 
-static_result static_solution(const node_stencil *k, const unsigned char *held,
-                              const double *const force[2], double *const u[2],
-                              double *const reaction[2]) {
+struct static_factors {
+  band b;
+  unsigned char *held, *fixed; /* [2 nodes]; fixed: held, or alone */
+};
+
+static int node_count(const node_stencil *k) {
+  return k->layout.nodes[0] * k->layout.nodes[1];
+}
+
+static band band_of(const node_stencil *k) {
   const node_layout *l = &k->layout;
-  const int nodes = l->nodes[0] * l->nodes[1], narrow = l->nodes[0] < l->nodes[1] ? 0 : 1;
-  band b = {.k = k, .by_columns = narrow == 1, .n = 2 * nodes};
-  static_result r = {.solved = false};
+  const int narrow = l->nodes[0] < l->nodes[1] ? 0 : 1;
+  band b = {.k = k, .by_columns = narrow == 1, .n = 2 * node_count(k)};
   b.bands = 2 * (k->reach * l->nodes[narrow] + k->reach) + 1;
   if (b.bands > b.n - 1) b.bands = b.n - 1;
   b.rows = b.bands + 1;
   b.matrix = must_calloc((size_t)b.n * (size_t)b.rows, sizeof *b.matrix);
-  unsigned char *fixed = must_alloc(2 * (size_t)nodes);
-  double *right = must_calloc((size_t)b.n, sizeof *right),
-         *diagonal = must_calloc((size_t)b.n, sizeof *diagonal);
-  for (int n = 0; n < nodes; n++)
-    for (int d = 0; d < 2; d++) {
-      fixed[2 * n + d] = held[2 * n + d] || is_alone(k, n);
-      if (fixed[2 * n + d] && !held[2 * n + d]) u[d][n] = 0;
-      right[freedom(&b, n, d)] = fixed[2 * n + d] ? 0 : force[d][n];
-    }
-  filling f = {.fixed = fixed, .u = (const double *const *)u, .right = right};
-  visit_pairs(&b, fill, &f);
-  for (int n = 0; n < nodes; n++)
-    for (int d = 0; d < 2; d++) {
-      const int at = freedom(&b, n, d);
-      double *entry = &b.matrix[(size_t)at * (size_t)b.rows];
-      if (fixed[2 * n + d]) *entry = 1;
-      diagonal[at] = *entry;
-    }
-  r.solved = factor(&b, right, &r) && stays_positive(&b, diagonal, &r);
-  for (int n = 0; n < nodes && r.solved; n++)
-    for (int d = 0; d < 2; d++)
-      if (!fixed[2 * n + d]) u[d][n] = right[freedom(&b, n, d)];
-  if (r.solved) judge(k, fixed, force, u, reaction, &r);
-  free(b.matrix);
-  free(fixed);
-  free(right);
+  return b;
+}
+
+static_factors *static_factors_new(const node_stencil *k, const unsigned char *held,
+                                   static_result *r) {
+  const int nodes = node_count(k);
+  static_factors *f = must_calloc(1, sizeof *f);
+  f->b = band_of(k);
+  f->held = must_alloc(2 * (size_t)nodes);
+  f->fixed = must_alloc(2 * (size_t)nodes);
+  memcpy(f->held, held, 2 * (size_t)nodes);
+  double *diagonal = must_calloc((size_t)f->b.n, sizeof *diagonal);
+  for (int n = 0; n < 2 * nodes; n++)
+    f->fixed[n] = held[n] || is_alone(k, n / 2);
+  visit_pairs(&f->b, fill, f->fixed);
+  for (int n = 0; n < 2 * nodes; n++) {
+    const int at = freedom(&f->b, n / 2, n % 2);
+    double *entry = &f->b.matrix[(size_t)at * (size_t)f->b.rows];
+    if (f->fixed[n]) *entry = 1;
+    diagonal[at] = *entry;
+  }
+  *r = (static_result){.solved = false};
+  r->solved = factor(&f->b, r) && stays_positive(&f->b, diagonal, r);
   free(diagonal);
+  if (r->solved) return f;
+  static_factors_free(f);
+  return NULL;
+}
+
+void static_factors_free(static_factors *f) {
+  if (!f) return;
+  free(f->b.matrix);
+  free(f->held);
+  free(f->fixed);
+  free(f);
+}
+
+static_result static_factors_solve(const static_factors *f, const double *const force[2],
+                                   double *const u[2], double *const reaction[2]) {
+  const band *b = &f->b;
+  const int nodes = node_count(b->k), one = 1;
+  static_result r = {.solved = false};
+  int info = 0;
+  double *right = must_calloc((size_t)b->n, sizeof *right);
+  for (int n = 0; n < 2 * nodes; n++)
+    if (!f->held[n]) u[n % 2][n / 2] = 0;
+  multiply(b->k, (const double *const *)u, reaction); /* by what is prescribed */
+  for (int n = 0; n < 2 * nodes; n++)
+    if (!f->fixed[n])
+      right[freedom(b, n / 2, n % 2)] = force[n % 2][n / 2] - reaction[n % 2][n / 2];
+  dpbtrs_("L", &b->n, &b->bands, &one, b->matrix, &b->rows, right, &b->n, &info, 1);
+  r.solved = info == 0;
+  for (int n = 0; n < 2 * nodes; n++)
+    if (!f->fixed[n]) u[n % 2][n / 2] = right[freedom(b, n / 2, n % 2)];
+  judge(b->k, f->fixed, force, u, reaction, &r);
+  free(right);
+  return r;
+}
+
+static_result static_solution(const node_stencil *k, const unsigned char *held,
+                              const double *const force[2], double *const u[2],
+                              double *const reaction[2]) {
+  static_result r;
+  static_factors *f = static_factors_new(k, held, &r);
+  if (f) r = static_factors_solve(f, force, u, reaction);
+  static_factors_free(f);
   return r;
 }

@@ -8,7 +8,7 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "runtime/crack/hoop_stress.h"
-#include "runtime/mesh/shape_functions.h"
+#include "runtime/mesh/mesh_fields.h"
 
 static const double MET = 1e-9;       /* of an advance: nearer is where it begins */
 static const double ON_BORDER = 1e-6; /* spacings */
@@ -102,7 +102,42 @@ static void warn_of_nodes(const deck_crack *c, const mesh *m, diagnostics *d) {
     }
 }
 
+/* Along which axis the edge of the mesh runs that both places lie on; -1: none. */
+static int edge_with(const mesh *m, const double a[2], const double b[2]) {
+  for (int across = 0; across < 2 && !m->mapped; across++)
+    for (int side = 0; side < 2; side++) {
+      const double edge = mesh_at(m, across, side ? m->nodes[across] - 1 : 0),
+                   margin = ON_BORDER * m->spacing[across];
+      if (fabs(a[across] - edge) <= margin && fabs(b[across] - edge) <= margin) return 1 - across;
+    }
+  return -1;
+}
+
+/* A free face of half of a body: its tips are the ends that are no corners of the mesh. */
+static bool add_face(tips *t, const deck_crack *c, mesh *m, diagnostics *d) {
+  const int before = t->count,
+            axis = c->point_count == 2 ? edge_with(m, c->points, c->points + 2) : -1;
+  if (axis < 0) {
+    diag_report(d, DIAG_BAD_VALUE, deck_where(&c->item, "points"),
+                "a crack on a line of symmetry has two points, both on one straight edge of the "
+                "rectangle `%s`",
+                c->mesh);
+    return false;
+  }
+  for (int start = 1; start >= 0; start--) {
+    const mesh_tip tip = tip_of(c, start);
+    const double margin = ON_BORDER * m->spacing[axis], at = tip.now.at[axis];
+    if (at > m->corner[axis] + margin && at < mesh_at(m, axis, m->nodes[axis] - 1) - margin)
+      add_tip(t, m, tip);
+  }
+  if (t->count > before) return true;
+  diag_report(d, DIAG_BAD_VALUE, deck_where(&c->item, "points"),
+              "this crack has no tip: both of its ends are corners of the mesh, or beyond them");
+  return false;
+}
+
 static bool add_crack(tips *t, const deck_crack *c, mesh *m, diagnostics *d) {
+  if (c->symmetry) return add_face(t, c, m, d);
   if (!is_seen(c, m, d)) return false;
   warn_of_nodes(c, m, d);
   for (int k = 1; k < c->point_count; k++)
@@ -261,18 +296,15 @@ static tip_point fields_at(const tips *t, const body *w, const node_stencil *k, 
   tip_point p = {.at = {at[0], at[1]}, .area = area};
   point_shape s;
   shape_functions(k->of, cell, at, &s);
-  for (int q = 0; q < s.count; q++) {
-    const long site = node_layout_at(&k->layout, s.node[q]);
+  mesh_field(&s, &k->layout, (const double *const *)w->displacement, NULL, p.gradient);
+  for (int q = 0; q < s.count; q++)
     for (int d = 0; d < 2; d++) {
-      const double u = w->displacement[d][site], v = t->velocity[d][s.node[q]];
-      p.gradient[d][0] += s.nx[q] * u;
-      p.gradient[d][1] += s.ny[q] * u;
+      const double v = t->velocity[d][s.node[q]];
       p.velocity[d] += s.n[q] * v;
       p.velocity_gradient[d][0] += s.nx[q] * v;
       p.velocity_gradient[d][1] += s.ny[q] * v;
       p.acceleration[d] += s.n[q] * t->acceleration[d][s.node[q]];
     }
-  }
   const double e[3] = {p.gradient[0][0], p.gradient[1][1], p.gradient[0][1] + p.gradient[1][0]};
   const plane_stiffness *law = &k->laws[k->law_of_cell ? k->law_of_cell[cell] : 0];
   for (int a = 0; a < 3; a++)
@@ -341,6 +373,9 @@ static void look_at(tips *t, mesh_tip *p, const body *w, const node_stencil *k) 
   const int count =
       t->options->points > 0 ? points_of_box(t, w, k, &b) : points_of_mesh(t, w, k, &b);
   tip_intensity(&t->medium, &b, t->points, count, p->now.speed, p->now.K);
+  if (!p->of->symmetry) return;
+  p->now.K[0] *= 2; /* the mirror image has as much of mode I, and the opposite of mode II */
+  p->now.K[1] = 0;
 }
 
 bool tip_overlaps(const tip_state *p) {
@@ -567,6 +602,13 @@ void tips_after(tips *t, const body *w, double *const last_resistance[2], mesh *
   if (t->step > 0 && t->step % t->update_steps == 0 && some_grows(t)) grow(t, w, m, k);
   t->step++;
   if (is_time(t, t->step)) look(t, w, last_resistance, m, k);
+}
+
+void tips_at_rest(tips *t, const body *w, const node_stencil *k) {
+  for (int n = 0; n < t->count; n++) {
+    look_at(t, &t->items[n], w, k); /* velocities and accelerations are 0, as they began */
+    note_overlap(t, &t->items[n], w);
+  }
 }
 
 void tips_replay(tips *t, mesh *m, node_stencil *k) {

@@ -17,7 +17,9 @@
    which the discrete balance of energies wants, and is u.(K - K_after) u/2 up to the length of a
    step.
 
-   An end of a crack inside the mesh is a tip; one on its border is not. */
+   An end of a crack inside the mesh is a tip; one on its border is not. A crack on an edge of the mesh,
+   where this is half of a body and its mirror image, hides nothing: it is a free face, and its tip has
+   the half of the box that lies in the mesh, which counts twice for K_I; K_II is 0. */
 #ifndef PERILAT_RUNTIME_TIPS_H
 #define PERILAT_RUNTIME_TIPS_H
 
@@ -116,6 +118,8 @@ void tips_before(tips *t, const body *w, const node_stencil *k);
    is time for one. `m` and `k` are the mesh and its stiffness, which growth changes;
    last_resistance[2][layout.size]: K u at t_(n-1), N. */
 void tips_after(tips *t, const body *w, double *const last_resistance[2], mesh *m, node_stencil *k);
+/* A look at a body that stands still (static_solution.h). */
+void tips_at_rest(tips *t, const body *w, const node_stencil *k);
 /* After `pieces` was read from a checkpoint: the mesh and its stiffness as they were then. */
 void tips_replay(tips *t, mesh *m, node_stencil *k);
 /* Pieces of a tip so far: points of its path, in order; *at begins with where the tip was at the

@@ -5,6 +5,7 @@
 #define PERILAT_RUNTIME_DECK_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "dsl/base/arena.h"
 #include "dsl/base/c_linkage.h"
@@ -73,6 +74,8 @@ typedef struct deck_lattice {
   double within; /* spacings; to sites */
   /* of a mesh: the corner of least coordinates, extent, nodes along x and y */
   double corner[3], size[3]; /* m */
+  const double *corners;     /* of a quadrilateral: x1, y1, ... counter-clockwise, m; else NULL */
+  int corner_count;          /* values: 8, or 0 */
   double nodes[2];           /* whole */
   mesh_method method;
   double support;   /* d_max, spacings */
@@ -140,12 +143,13 @@ typedef struct deck_material {
   bool beside; /* other laws are at work on the lattice, too */
 } deck_material;
 
-typedef struct deck_crack { /* in the element-free part of a mesh */
+typedef struct deck_crack { /* in the element-free part of a mesh, or on its edge */
   deck_item item;
   const char *name, *mesh;
   const double *points; /* x1, y1, x2, y2, ..., m */
   int point_count;      /* pairs */
   bool grows;
+  bool symmetry;          /* on the edge of a mesh that is half of a body */
   const char *model;      /* law of its tips; NULL where it does not grow */
   deck_material material; /* that law with what the deck sets of it */
 } deck_crack;
@@ -382,7 +386,13 @@ typedef struct deck_relaxation { /* increments 0: a dynamic run */
   int increments;
   double tolerance; /* unbalanced force over the force needed */
   int most_steps;   /* of an increment */
+  bool solved;      /* of a &static: each increment is one system of equations */
 } deck_relaxation;
+
+typedef struct deck_static { /* kept as a relaxation, `solved` */
+  deck_item item;
+  int increments;
+} deck_static;
 
 typedef struct deck_simulation {
   deck_item item;
@@ -432,10 +442,11 @@ typedef struct deck_file { /* a table that a load was read from */
 
 /* The groups of a deck, in the order in which they are read, so that names are known before they
    are used: ONE is there once at most, LIST any number of times, MORE too, as more items of another
-   list. Each has its structure above, its keys and its check in a group_*.c. */
+   list (`static`, which C lets no field be called, once: it is `at_rest`). Each has its structure above, its keys and its check in a group_*.c. */
 #define DECK_GROUPS(ONE, LIST, MORE)                                                               \
   ONE(simulation)                                                                                  \
   ONE(relaxation)                                                                                  \
+  MORE(static)                                                                                     \
   LIST(lattice)                                                                                    \
   MORE(bar)                                                                                        \
   MORE(link)                                                                                       \
@@ -484,7 +495,7 @@ typedef struct deck {
   int file_count;
   const deck_interaction *interactions; /* lattice by lattice */
   int interaction_count;
-  unsigned lacks;    /* groups of which items were left out: see deck_lacks */
+  uint64_t lacks;    /* groups of which items were left out: see deck_lacks */
   deck_names *names; /* of what deck_find_... finds; NULL: few, looked at one by one */
 #define ONE(group) deck_##group group;
 #define LIST(group)                                                                                \
@@ -495,6 +506,7 @@ typedef struct deck {
 #undef ONE
 #undef LIST
 #undef MORE
+  deck_static at_rest;
 } deck;
 
 /* "group.key=value" as given by --set; a group that occurs several times is named group[k] (from 1)

@@ -91,7 +91,7 @@ static void read_keys(deck_reader *r, const namelist_group *from, const deck_gro
 /* --- the groups of a kind --------------------------------------------------------------------- */
 
 static void lack(deck *k, int kind) {
-  k->lacks |= 1u << kind;
+  k->lacks |= UINT64_C(1) << kind;
 }
 
 static bool too_many_errors(const deck_reader *r) {
@@ -283,11 +283,35 @@ static bool has_material(const deck *k, const char *lattice) {
   return deck_lacks(k, "material") || deck_find_material(k, lattice) >= 0;
 }
 
+/* Equations are solved of meshes; and what they have no use for. */
+static void check_static_run(deck_reader *r) {
+  const deck *k = r->k;
+  for (int n = 0; n < k->lattice_count; n++) {
+    if (deck_lattice_is_mesh(&k->lattices[n])) continue;
+    diag_report(r->d, DIAG_CONFLICT, k->lattices[n].item.where,
+                "`&static` solves for meshes, and `%s` is none",
+                deck_shown(r->memory, k->lattices[n].name ? k->lattices[n].name : ""));
+    diag_hint(r->d, "`&relaxation increments = %d` in its place brings lattices to rest",
+              k->relaxation.increments);
+    break;
+  }
+  if (k->damping_count > 0)
+    diag_report(r->d, DIAG_CONFLICT, k->dampings[0].item.where,
+                "a static solution knows no motion: no `&damping` with `&static`");
+  if (k->initial_displacement_count > 0)
+    diag_report(r->d, DIAG_CONFLICT, k->initial_displacements[0].item.where,
+                "a static solution does not depend on where it begins: no `&initial_displacement` "
+                "with `&static`");
+}
+
 /* Inertia and its damping are means of the relaxation. */
 static void check_quasi_static(deck_reader *r) {
   const deck *k = r->k;
+  const char *group = k->relaxation.solved ? "static" : "relaxation";
   if (k->relaxation.increments < 1) return;
-  if (k->damping_count > 0)
+  if (k->relaxation.solved)
+    check_static_run(r);
+  else if (k->damping_count > 0)
     diag_report(r->d, DIAG_CONFLICT, k->dampings[0].item.where,
                 "a quasi-static run chooses its damping itself: no `&damping` with `&relaxation`");
   if (k->simulation.periods > 0)
@@ -295,7 +319,16 @@ static void check_quasi_static(deck_reader *r) {
                 "the time of a quasi-static run is only an order: it has no periods");
   if (k->initial_velocity_count > 0)
     diag_report(r->d, DIAG_CONFLICT, k->initial_velocitys[0].item.where,
-                "a quasi-static run begins at rest: no `&initial_velocity` with `&relaxation`");
+                "a quasi-static run begins at rest: no `&initial_velocity` with `&%s`", group);
+}
+
+/* Only a static solution needs no time. */
+static void check_end(deck_reader *r) {
+  deck_simulation *s = &r->k->simulation;
+  if (s->end_time > 0 || s->periods > 0 || s->item.where.end == 0 || s->item.faulty) return;
+  diag_report(r->d, DIAG_MISSING_KEY, s->item.where, "`&simulation` has no `end_time`");
+  diag_hint(r->d, "end_time: the run begins at 0 and ends here (s)");
+  lack(r->k, DECK_GROUP_simulation);
 }
 
 /* A region that a material is for is one of its lattice. */
@@ -482,6 +515,7 @@ static void check_whole(deck_reader *r) {
     diag_report(r->d, DIAG_MISSING_KEY, simulation->where, "the deck has no `&simulation`");
   if (k->lattice_count == 0 && !deck_lacks(k, "lattice") && !deck_lacks(k, "bar"))
     diag_report(r->d, DIAG_MISSING_KEY, simulation->where, "the deck has no `&lattice`");
+  check_end(r);
   check_quasi_static(r);
   check_regional_materials(r);
   take_middles(r);
@@ -548,7 +582,7 @@ const deck *deck_read_what_is_right(arena *a, source_set *sources, int file,
   deck_reader r = {.memory = a, .d = d, .k = k, .names_known = true};
   read_groups(&r, n);
   if (k->simulation.item.where.end == 0) lack(k, DECK_GROUP_simulation);
-  if (n->broken || too_many_errors(&r)) k->lacks = ~0u; /* nobody knows what is behind */
+  if (n->broken || too_many_errors(&r)) k->lacks = UINT64_MAX; /* nobody knows what is behind */
   leave_out_all_faulty(k);
   k->names = deck_names_new(a); /* others have moved up */
   find_anew_what_links_join(k);

@@ -409,6 +409,11 @@ static void check_zone(deck_reader *r, const namelist_group *from, void *into) {
   deck_zone *item = into;
   check_shape(r, from, &deck_group_zone, &item->item, &item->shape, item->mesh);
   deck_mesh_known(r, &item->item, item->mesh);
+  const int lattice = item->mesh ? deck_find_lattice(r->k, item->mesh) : -1;
+  if (lattice >= 0 && r->k->lattices[lattice].corners && item->method == MESH_ELEMENT_FREE)
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "method"),
+                "element-free nodes stand on a rectangle, and `%s` is given by `corners`",
+                deck_shown(r->memory, item->mesh));
   if (item->gauss < 1)
     diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "gauss"),
                 "an element has 1 or 2 points along either axis");

@@ -74,6 +74,11 @@ static const deck_key_info drive_keys[] = {
      .unit = "m; rotation: rad",
      DECK_NOT_KEPT,
      .doc = "full displacement, counted from where the region is at `start`"},
+    {.name = "acceleration",
+     .type = DECK_LATER,
+     .unit = "m/s^2; rotation: rad/s^2",
+     DECK_NOT_KEPT,
+     .doc = "constant acceleration from rest at `start` on"},
     DECK_TIME_KEYS,
 };
 
@@ -109,6 +114,19 @@ static void warn_of_jump(deck_reader *r, const namelist_group *from, const time_
   diag_hint(r->d, table ? "let the first value be 0" : "give a `rise`, e.g. rise = '1 ms'");
 }
 
+/* The velocity that a constant acceleration has given. */
+static bool accelerate(deck_reader *r, const deck_drive *item, time_function *motion) {
+  if (motion->shape == TIME_CONSTANT) {
+    motion->shape = TIME_RAMP;
+    motion->rise = 1;
+    return true;
+  }
+  diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "acceleration"),
+              "an acceleration is constant, without a history");
+  diag_hint(r->d, "give a `velocity` by a table or a `formula` of t");
+  return false;
+}
+
 static void complete_drive(deck_reader *r, const namelist_group *from, deck_drive *item) {
   deck_moving_region_known(r, &item->item, item->region);
   if (!deck_take_component(r, &item->item, item->region, &item->component)) return;
@@ -116,8 +134,9 @@ static void complete_drive(deck_reader *r, const namelist_group *from, deck_driv
   check_other_motions(r, item);
   const deck_load_kind kinds[] = {
       {"velocity", rotates ? "1/s" : "m/s", false, &deck_formula_of_all},
-      {"displacement", rotates ? "1" : "m", false, &deck_formula_of_all}};
-  const int kind = deck_load_kind_of(r->memory, from, kinds, 2, r->d);
+      {"displacement", rotates ? "1" : "m", false, &deck_formula_of_all},
+      {"acceleration", rotates ? "1/s^2" : "m/s^2", false, &deck_formula_of_all}};
+  const int kind = deck_load_kind_of(r->memory, from, kinds, 3, r->d);
   if (kind < 0) return;
   item->is_displacement = kind == 1;
   if (!deck_load_read(r->memory, from, &kinds[kind], &item->motion, r->d)) {
@@ -125,6 +144,7 @@ static void complete_drive(deck_reader *r, const namelist_group *from, deck_driv
       diag_hint(r->d, "a rotation is in rad, its velocity in rad/s");
     return;
   }
+  if (kind == 2 && !accelerate(r, item, &item->motion)) return;
   deck_warn_late(r, &item->item, "start", item->motion.start);
   if (!item->is_displacement) return;
   spread(r, from, &item->motion);
@@ -141,7 +161,7 @@ static void check_drive(deck_reader *r, const namelist_group *from, void *into) 
 
 DECK_LIST(drive, .identity = "region", .check = check_drive,
           .doc = "Prescribed motion of a region from `start` to `end`; free before and after. Give "
-                 "`velocity` or `displacement`.");
+                 "`velocity`, `displacement` or `acceleration`.");
 
 /* --- force ------------------------------------------------------------------------------------ */
 
@@ -291,6 +311,7 @@ static void check_traction(deck_reader *r, const namelist_group *from, void *int
                 "the line that is loaded ends where it begins");
   if (!deck_load_read(r->memory, from, &traction_kind, &item->force, r->d)) return;
   deck_warn_late(r, &item->item, "start", item->force.start);
+  spread(r, from, &item->force);
 }
 
 DECK_MORE(traction, force, .identity = "mesh", .check = check_traction,

@@ -2,10 +2,12 @@
 
 #include <math.h>
 
+#include "dsl/base/elementary.h"
 #include "runtime/deck/deck_check.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/group_lattice.h"
 #include "runtime/deck/lattice_kind.h"
+#include "runtime/geometry/quadrilateral.h"
 
 /* --- the mesh --------------------------------------------------------------------------------- */
 
@@ -21,9 +23,19 @@ static const deck_key_info mesh_keys[] = {
      .type = DECK_PLACE,
      .unit = "m",
      .bound = BOUND_POSITIVE,
-     .required = true,
+     .fallback = "= required, or `corners`",
      DECK_AT(mesh, size),
      .doc = "extent of the rectangle along x and y"},
+    {.name = "corners",
+     .type = DECK_REALS,
+     .unit = "m",
+     .fallback = "= a rectangle",
+     DECK_AT(mesh, corners),
+     DECK_COUNT_AT(mesh, corner_count),
+     .doc =
+         "x1, y1, ..., x4, y4: in place of `corner` and `size` the corners of a quadrilateral of "
+         "finite elements, counter-clockwise; the first two are the ends of the first row of "
+         "nodes"},
     {.name = "nodes",
      .type = DECK_PAIR,
      .unit = "1",
@@ -153,6 +165,59 @@ static void check_basis(deck_reader *r, const namelist_group *from, deck_mesh *i
   }
 }
 
+/* A convex quadrilateral, whose box stands for the rectangle. */
+static bool take_corners(deck_reader *r, const namelist_group *from, deck_mesh *item) {
+  const span where = deck_where(&item->item, "corners");
+  deck_refuse_both(r, from, "corners", "corner");
+  deck_refuse_both(r, from, "corners", "size");
+  if (item->corner_count != 8) {
+    diag_report(r->d, DIAG_BAD_VALUE, where, "a quadrilateral has four corners, 8 values, not %d",
+                item->corner_count);
+    return false;
+  }
+  if (item->method != MESH_FINITE_ELEMENTS) {
+    diag_report(r->d, DIAG_CONFLICT, where,
+                "element-free nodes stand on a rectangle: `corners` are for finite elements");
+    diag_hint(r->d, "method = 'finite_elements', or `corner` and `size`");
+    return false;
+  }
+  const double(*corners)[2] = (const double(*)[2])item->corners;
+  for (int k = 0; k < 4; k++) {
+    const double across = quadrilateral_turn(corners, (k + 2) % 4);
+    if (quadrilateral_turn(corners, k) > 1e-9 * fabs(across)) continue;
+    diag_report(r->d, DIAG_BAD_VALUE, where,
+                "at corner %d the quadrilateral is not convex, or its corners stand clockwise",
+                k + 1);
+    diag_hint(r->d, "give them counter-clockwise, each inner angle less than 180 degrees");
+    return false;
+  }
+  double upper[2];
+  quadrilateral_box(corners, item->corner, upper);
+  for (int a = 0; a < 2; a++)
+    item->size[a] = upper[a] - item->corner[a];
+  return true;
+}
+
+/* m: of the edges' parts the shortest. */
+static double spacing_of(const deck_mesh *item) {
+  double least = INFINITY;
+  for (int k = 0; k < 4 && item->corner_count > 0; k++) {
+    const double *a = item->corners + 2 * k, *b = item->corners + 2 * ((k + 1) % 4);
+    least = pl_min(least, pl_hypot(b[0] - a[0], b[1] - a[1]) / (item->nodes[k % 2] - 1));
+  }
+  if (item->corner_count > 0) return least;
+  return pl_min(item->size[0] / (item->nodes[0] - 1), item->size[1] / (item->nodes[1] - 1));
+}
+
+static bool has_extent(deck_reader *r, const namelist_group *from, deck_mesh *item) {
+  if (item->corner_count > 0) return take_corners(r, from, item);
+  if (namelist_find(from, "size")) return true;
+  diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&mesh` has no `size`");
+  diag_hint(r->d,
+            "size: extent of the rectangle along x and y (m); or `corners` of a quadrilateral");
+  return false;
+}
+
 static void check_mesh(deck_reader *r, const namelist_group *from, void *into) {
   deck_mesh *item = into;
   const namelist_key *ramp = namelist_find(from, "ramp");
@@ -163,9 +228,8 @@ static void check_mesh(deck_reader *r, const namelist_group *from, void *into) {
   deck_check_places(r, from, &deck_group_mesh, 2);
   check_gauss(r, from, item);
   check_basis(r, from, item);
-  if (!has_nodes(r, item) || !has_support(r, item)) return;
-  const double dx = item->size[0] / (item->nodes[0] - 1), dy = item->size[1] / (item->nodes[1] - 1);
-  item->spacing = dx < dy ? dx : dy;
+  if (!has_extent(r, from, item) || !has_nodes(r, item) || !has_support(r, item)) return;
+  item->spacing = spacing_of(item);
   item->origin[0] = item->corner[0];
   item->origin[1] = item->corner[1];
 }
@@ -196,6 +260,12 @@ static const deck_key_info crack_keys[] = {
      .fallback = ".false.",
      DECK_AT(crack, grows),
      .doc = "its tips run on as the law says"},
+    {.name = "symmetry",
+     .type = DECK_LOGICAL,
+     .fallback = ".false.",
+     DECK_AT(crack, symmetry),
+     .doc = "it lies on a straight edge of the mesh, which is half of a body and its mirror image; "
+            "beyond the tip a support holds the edge. Finite elements, too"},
     {.name = "model",
      .type = DECK_NAME,
      DECK_AT(crack, model),
@@ -232,6 +302,11 @@ static void check_crack(deck_reader *r, const namelist_group *from, void *into) 
   item->material = (deck_material){
       .item = item->item, .lattice = item->mesh, .mesh = item->mesh, .model = item->model};
   deck_assignments_read(r->memory, from, &deck_group_crack, &item->material, r->d);
+  if (item->grows && item->symmetry) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "symmetry"),
+                "a crack on a line of symmetry does not grow: supports hold its way");
+    diag_hint(r->d, "leave out `grows`, or give the whole body");
+  }
   if (item->grows && !item->model) {
     diag_report(r->d, DIAG_MISSING_KEY, from->where, "a crack that grows needs a `model`");
     diag_hint(r->d, "such as model = 'lefm'  K_Ic = '0.8 MPa*m^(1/2)'");
@@ -243,8 +318,9 @@ static void check_crack(deck_reader *r, const namelist_group *from, void *into) 
 }
 
 DECK_LIST(crack, .identity = "name", .open = true, .check = check_crack,
-          .doc = "A crack in the element-free part of a mesh: nodes do not act across it. Every "
-                 "other key sets a parameter or an option of its law.");
+          .doc =
+              "A crack in the element-free part of a mesh: nodes do not act across it; or on "
+              "its edge, by `symmetry`. Every other key sets a parameter or an option of its law.");
 
 static const deck_key_info tips_keys[] = {
     {.name = "integral",

@@ -70,10 +70,12 @@ static const deck_key_info monitor_keys[] = {
      .type = DECK_PLACE,
      .unit = "m",
      DECK_AT(monitor, at),
-     .doc = "acceleration, stress, strain: in place of `region`, of the particle nearest to it; "
-            "bar_force: of the bond, slip: of the tied particle nearest to it; force, moment: a "
-            "place of the section, which the moment is about; tip, tip_speed: where the crack "
-            "begins"},
+     .doc =
+         "acceleration, stress, strain: in place of `region`, of the particle nearest to it, of a "
+         "mesh at the place itself, as there displacement and velocity, too; bar_force: of the "
+         "bond, slip: of the tied particle nearest to it; force, moment: a "
+         "place of the section, which the moment is about; tip, tip_speed: where the crack "
+         "begins"},
     {.name = "normal",
      .type = DECK_PLACE,
      .unit = "1",
@@ -143,7 +145,8 @@ enum {
   OF_PAIR = 1 << MONITOR_OPENING | 1 << MONITOR_REACTIONS,
   OF_DAMAGE = 1 << MONITOR_DAMAGED | 1 << MONITOR_BROKEN,
   OF_TENSOR = 1 << MONITOR_STRESS | 1 << MONITOR_STRAIN,
-  OF_PLACE = OF_TENSOR | 1 << MONITOR_ACCELERATION, /* of a region or at a place */
+  OF_POINT = 1 << MONITOR_DISPLACEMENT | 1 << MONITOR_VELOCITY, /* at a place of meshes alone */
+  OF_PLACE = OF_TENSOR | OF_POINT | 1 << MONITOR_ACCELERATION,  /* of a region or at a place */
   OF_SECTION = 1 << MONITOR_FORCE | 1 << MONITOR_MOMENT,
   OF_TIP = 1 << MONITOR_TIP | 1 << MONITOR_TIP_SPEED,
   OF_TURNS = 1 << MONITOR_ANGULAR_MOMENTUM,
@@ -198,7 +201,7 @@ static const deck_key_use monitor_uses[] = {
     {"above", OF_DAMAGE | OF_TIP | OF_WIDTH, false}};
 /* The keys that some kinds need and others may have. */
 static const deck_key_use monitor_needs[] = {
-    {"region", OF_MOTION | OF_FIELD, true},
+    {"region", (OF_MOTION & ~OF_POINT) | OF_FIELD, true},
     {"component", ALONG_AXIS | OF_ENERGY | OF_TENSOR, true},
     {"at", OF_SECTION | OF_TIP, true},
     {"above", OF_TIP, true},
@@ -360,6 +363,12 @@ static bool some_contact_touches(const deck *k, const deck_lattice *l) {
 /* Some kinds are of bars, of links or of what touches alone. */
 static bool check_sort(deck_reader *r, const deck_monitor *item) {
   const deck_lattice *l = watched_lattice(r, item);
+  if (l && item->placed && is_kind(item, OF_POINT) && !deck_lattice_is_mesh(l)) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "at"),
+                "%s has a place on meshes alone: name a `region` of `%s`",
+                monitor_words[item->kind], deck_shown(r->memory, l->name));
+    return false;
+  }
   if (!l || !is_kind(item, OF_BAR | OF_LINK | OF_CONTACT | OF_WIDTH)) return true;
   const span where = deck_where(&item->item, item->region ? "region" : "lattice");
   const char *name = deck_shown(r->memory, l->name), *word = deck_lattice_word(l);

@@ -14,7 +14,7 @@ static const deck_key_info simulation_keys[] = {
      .type = DECK_END,
      .unit = "s",
      .bound = BOUND_POSITIVE,
-     .required = true,
+     .fallback = "= required; with &static 1 s",
      DECK_AT(simulation, end_time),
      DECK_COUNT_AT(simulation, periods),
      .doc = "the run begins at 0 and ends here; periods are those of the lowest mode"},
@@ -93,6 +93,42 @@ DECK_ONE(relaxation, .check = check_relaxation,
          .doc = "Makes the run quasi-static: the loads come in increments, and after each the body "
                 "comes to "
                 "rest by damped motion.");
+
+/* --- a static solution */
+
+static const deck_key_info static_keys[] = {
+    {.name = "increments",
+     .type = DECK_COUNT,
+     .fallback = "1",
+     .most = 1000000,
+     DECK_AT(static, increments),
+     .doc = "equal parts of `end_time`: there is a solution, and a sample of the history, for the "
+            "loads at the end of each"},
+};
+
+static void check_static(deck_reader *r, const namelist_group *from, void *into) {
+  const deck_static *item = into;
+  deck_relaxation *kept = &r->k->relaxation;
+  if (item->increments < 1) {
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "increments"),
+                "a static run has at least one increment");
+  } else if (kept->increments > 0) {
+    diag_report(r->d, DIAG_CONFLICT, from->where,
+                "a run is solved, `&static`, or relaxed, `&relaxation`, not both");
+    diag_note(r->d, kept->item.where, "it is relaxed here");
+  }
+  *kept = (deck_relaxation){.item = item->item,
+                            .increments = item->increments,
+                            .tolerance = kept->tolerance,
+                            .most_steps = 1,
+                            .solved = true};
+  if (r->k->simulation.end_time == 0 && r->k->simulation.periods == 0)
+    r->k->simulation.end_time = 1;
+}
+
+DECK_ROW(static, .single = true, .place = offsetof(deck, at_rest), .check = check_static,
+         .doc = "Makes the run static: the displacements of meshes whose laws are linear solve the "
+                "equations K u = F, without steps in time.");
 
 /* --- what is written -------------------------------------------------------------------------- */
 

@@ -3,8 +3,24 @@
 #include <stdlib.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/geometry/quadrilateral.h"
 #include "runtime/lattice/rows_select.h"
 #include "runtime/mesh/node_layout.h"
+
+/* Where the quadrilateral's map puts the node. */
+static void place_mapped(rows *w, const deck_mesh *m, const node_layout *l, int n) {
+  const double u[2] = {(double)(n % l->nodes[0]) / (l->nodes[0] - 1),
+                       (double)(n / l->nodes[0]) / (l->nodes[1] - 1)};
+  double at[2], slope[2][2];
+  quadrilateral_map((const double(*)[2])m->corners, u, at, slope);
+  w->x[node_layout_at(l, n)] = at[0];
+  w->y[node_layout_at(l, n)] = at[1];
+}
+
+/* m^2 */
+static double area_of(const deck_mesh *m) {
+  return m->corners ? quadrilateral_area((const double(*)[2])m->corners) : m->size[0] * m->size[1];
+}
 
 static void place_nodes(rows *w, const deck_mesh *m, const node_layout *l) {
   for (long q = 0; q < w->size; q++) {
@@ -17,6 +33,10 @@ static void place_nodes(rows *w, const deck_mesh *m, const node_layout *l) {
     w->present[site] = 1;
     w->site_particle[site] = n;
     w->particle_site[n] = (int32_t)site;
+    if (m->corners) {
+      place_mapped(w, m, l, n);
+      continue;
+    }
     w->x[site] = m->corner[0] + m->size[0] * (n % l->nodes[0]) / (l->nodes[0] - 1);
     w->y[site] = m->corner[1] + m->size[1] * (n / l->nodes[0]) / (l->nodes[1] - 1);
   }
@@ -26,7 +46,7 @@ rows *mesh_rows(const deck *k, int lattice, diagnostics *d) {
   const deck_mesh *m = &k->lattices[lattice];
   const int nodes[2] = {(int)m->nodes[0], (int)m->nodes[1]};
   const node_layout l = node_layout_of(nodes, m->support);
-  const double area = m->size[0] * m->size[1] / ((nodes[0] - 1.0) * (nodes[1] - 1.0));
+  const double area = area_of(m) / ((nodes[0] - 1.0) * (nodes[1] - 1.0));
   rows *w = must_calloc(1, sizeof *w);
   *w = (rows){.infinite = {.dimensions = 2, .spacing = m->spacing},
               .dimensions = 2,

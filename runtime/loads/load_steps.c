@@ -21,9 +21,15 @@ static time_function function_at(const loads *l, const time_function *f, int64_t
   return time_function_placed(f, at);
 }
 
+/* The function of a force: of its particle, or of a place of its own. */
+static time_function function_of(const loads *l, const applied *f) {
+  const time_function *of = cause_of(l, f->cause);
+  return f->place ? time_function_placed(of, l->places[f->place - 1]) : function_at(l, of, f->site);
+}
+
 static double factor_at(const loads *l, const body *w, const applied *f, long step) {
   if (f->link) return *f->link;
-  const time_function here = function_at(l, cause_of(l, f->cause), f->site);
+  const time_function here = function_of(l, f);
   return load_clock_acting(&l->clock, w, &here, step);
 }
 
@@ -240,6 +246,22 @@ static void keep_all_turning(const loads *l, const body *w) {
   }
 }
 
+double load_steps_motion(const loads *l, const body *w, const constraint *c, long step) {
+  return motion_at(l, w, c, step);
+}
+
+double load_steps_factor(const loads *l, const body *w, const applied *f, long step) {
+  return factor_at(l, w, f, step);
+}
+
+void load_steps_weigh(const loads *l, body *w, long step) {
+  if (w->weight) set_gravity(l, w, step);
+}
+
+bool load_steps_holds(const loads *l, const body *w, const constraint *c) {
+  return is_held(l, w, c, (long)l->clock.first);
+}
+
 void load_steps_increment(loads *l, const body *w, load_clock clock) {
   l->clock = clock;
   for (long i = 0; i < l->constraint_count; i++) {
@@ -284,7 +306,7 @@ static double damping_at_once(const loads *l) {
 
 static double force_at_once(const loads *l, const applied *f) {
   if (f->link) return f->share * *f->link;
-  const time_function here = function_at(l, cause_of(l, f->cause), f->site);
+  const time_function here = function_of(l, f);
   return f->share * time_function_at(&here, 0);
 }
 

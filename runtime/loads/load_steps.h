@@ -39,6 +39,14 @@ typedef struct load_look {
   double dissipated; /* by mass damping, likewise */
 } load_look;
 
+/* Of a static run: the motion prescribed after `step` steps (m), counted from the anchor; the force
+   of a cause then (N for each unit of share); and the weight. */
+double load_steps_motion(const loads *l, const body *w, const constraint *c, long step);
+double load_steps_factor(const loads *l, const body *w, const applied *f, long step);
+void load_steps_weigh(const loads *l, body *w, long step);
+/* Something holds or drives the component in the present increment. */
+bool load_steps_holds(const loads *l, const body *w, const constraint *c);
+
 /* Before the first step of each increment of a quasi-static run: its loads, and what they hold. */
 void load_steps_increment(loads *l, const body *w, load_clock clock);
 /* To be called once, before the first step: forces at time 0, places of the supports. */

@@ -226,6 +226,7 @@ static int by_site_and_cause(const void *a, const void *b) {
   if (p->site != q->site) return p->site < q->site ? -1 : 1;
   if (p->component != q->component) return p->component < q->component ? -1 : 1;
   if (p->cause != q->cause) return p->cause < q->cause ? -1 : 1;
+  if (p->place != q->place) return p->place < q->place ? -1 : 1;
   return (p->link > q->link) - (p->link < q->link); /* shares of one link's forces */
 }
 
@@ -254,6 +255,24 @@ static void find_holders(loads *l, const motions *m) {
 
 void loads_add_share(loads *l, int32_t particle, int component, int force, double share) {
   add_force(l, particle, component, force, share);
+}
+
+bool loads_add_place(loads *l, const double at[3], int force, diagnostics *d) {
+  const deck_force *f = &l->deck->forces[force];
+  const time_function here = time_function_placed(&f->force, at);
+  char text[ROWS_PLACE_TEXT];
+  l->places = must_realloc(l->places, ((size_t)l->place_count + 1) * sizeof *l->places);
+  memcpy(l->places[l->place_count++], at, sizeof *l->places);
+  if (isfinite(time_function_at(&here, f->force.start))) return true;
+  diag_report(d, DIAG_BAD_NUMBER, deck_where(&f->item, "formula"),
+              "this formula has no finite value at %s, t = %g s",
+              rows_place_text(l->lattice->dimensions, at, text), f->force.start);
+  return false;
+}
+
+void loads_add_share_there(loads *l, int32_t particle, int component, int force, double share) {
+  add_force(l, particle, component, force, share);
+  l->forces[l->force_count - 1].place = l->place_count;
 }
 
 void loads_add_link(loads *l, int64_t site, int component, int link, double share,
@@ -419,6 +438,7 @@ void loads_free(loads *l) {
   regions_free(l->deck, l->regions);
   free(l->constraints);
   free(l->forces);
+  free(l->places);
   free(l);
 }
 

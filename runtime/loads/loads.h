@@ -40,10 +40,11 @@ typedef struct applied { /* part of a force that acts on one component of one pa
   int32_t component;
   int32_t cause;      /* index into the deck's forces, then end moments, then the run's links */
   const double *link; /* N, N m: of a link, what it exerts in the present state; else NULL */
-  int64_t holder;     /* index of the constraint on the same component, or -1 */
-  double share;       /* force = share * time function */
-  double now;         /* N: force of the coming step */
-  double velocity;    /* m/s: after the last step */
+  int64_t place;   /* of what differs from place to place: one of loads.places + 1; 0: the site */
+  int64_t holder;  /* index of the constraint on the same component, or -1 */
+  double share;    /* force = share * time function */
+  double now;      /* N: force of the coming step */
+  double velocity; /* m/s: after the last step */
   load_sums sums;
 } applied;
 
@@ -58,6 +59,8 @@ typedef struct loads {
   long constraint_count;
   applied *forces;
   long force_count;
+  double (*places)[3]; /* [place_count] m */
+  long place_count;
   load_clock clock;
 } loads;
 
@@ -73,6 +76,11 @@ double loads_shares_of(const loads *l, int force, long *particles);
 /* A share of the deck's force of that number that is found elsewhere, as of a traction: m^2; the last
    one is to be followed by loads_links_added. */
 void loads_add_share(loads *l, int32_t particle, int component, int force, double share);
+/* The same of one that differs from place to place, with the value that it has at `at` (m), which the
+   shares of several particles may follow. False with a diagnostic where the formula has none there
+   when it begins. */
+bool loads_add_place(loads *l, const double at[3], int force, diagnostics *d);
+void loads_add_share_there(loads *l, int32_t particle, int component, int force, double share);
 
 /* A share of a force of the run's link of that number, which stands at `force` (N, N m) when it is
    known; the last one is to be followed by loads_links_added. */

@@ -64,6 +64,25 @@ static void place_points(integration_points *p, const mesh *m, int cell, int fir
         }
 }
 
+/* Of a cell of a mapped mesh, an element. */
+static void place_mapped(integration_points *p, const mesh *m, int cell, int first) {
+  const int i = cell % (m->nodes[0] - 1), j = cell / (m->nodes[0] - 1);
+  const double cells[2] = {m->nodes[0] - 1, m->nodes[1] - 1};
+  const int order = m->element_gauss[cell];
+  double place[MESH_MOST_GAUSS], weight[MESH_MOST_GAUSS];
+  gauss_rule(order, place, weight);
+  for (int n = 0; n < order * order; n++) {
+    const int a = n % order, b = n / order;
+    const double u[2] = {(i + 0.5 * (1 + place[a])) / cells[0],
+                         (j + 0.5 * (1 + place[b])) / cells[1]};
+    double slope[2][2];
+    quadrilateral_map(m->corners, u, p->at[first + n], slope);
+    p->area[first + n] =
+        0.25 * weight[a] * weight[b] / (cells[0] * cells[1]) * quadrilateral_jacobian(slope);
+    p->cell[first + n] = cell;
+  }
+}
+
 void integration_points_open(integration_points *p, const mesh *m) {
   const int cells = mesh_cell_count(m);
   *p = (integration_points){.first = must_alloc(((size_t)cells + 1) * sizeof *p->first)};
@@ -77,7 +96,8 @@ void integration_points_open(integration_points *p, const mesh *m) {
   p->area = must_alloc(count * sizeof *p->area);
   p->cell = must_alloc(count * sizeof *p->cell);
   for (int c = 0; c < cells; c++)
-    if (p->first[c + 1] > p->first[c]) place_points(p, m, c, p->first[c]);
+    if (p->first[c + 1] > p->first[c])
+      (m->mapped ? place_mapped : place_points)(p, m, c, p->first[c]);
 }
 
 void integration_points_close(integration_points *p) {

@@ -51,10 +51,25 @@ void mesh_settle(mesh *m) {
   }
 }
 
+void mesh_open_mapped(mesh *m, const int nodes[2], const double corners[4][2], double thickness,
+                      double support) {
+  double lower[2], upper[2];
+  quadrilateral_box(corners, lower, upper);
+  const double size[2] = {upper[0] - lower[0], upper[1] - lower[1]};
+  mesh_open(m, nodes, lower, size, thickness, support);
+  m->mapped = true;
+  memcpy(m->corners, corners, sizeof m->corners);
+  memset(m->element_free, 0, (size_t)mesh_node_count(m));
+  mesh_settle(m);
+}
+
 int mesh_cell_of(const mesh *m, const double at[2]) {
+  double unit[2];
   int place[2];
+  if (m->mapped) quadrilateral_unmap(m->corners, at, unit);
   for (int a = 0; a < 2; a++) {
-    const double cells = m->nodes[a] - 1, u = (at[a] - m->corner[a]) / m->spacing[a];
+    const double cells = m->nodes[a] - 1,
+                 u = m->mapped ? unit[a] * cells : (at[a] - m->corner[a]) / m->spacing[a];
     if (!(u >= -1e-9 * cells && u <= cells * (1 + 1e-9))) return -1;
     place[a] = (int)floor(u);
     if (place[a] < 0) place[a] = 0;

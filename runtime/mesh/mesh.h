@@ -9,13 +9,18 @@
        | F | F | F | I | E |      F  bilinear element
        o---o---o---o---x---x      I  interface, blended (shape_functions.h)
        | F | F | I | E | E |      E  element-free cell
-       o---o---o---x---x---x                                                                     */
+       o---o---o---x---x---x
+
+   A mesh of elements alone may fill a quadrilateral: its nodes stand where the bilinear map
+   (quadrilateral.h) takes those of equal spacings of the unit square. Within each cell the map is
+   bilinear, too: the cells are isoparametric elements.                                           */
 #ifndef PERILAT_RUNTIME_MESH_H
 #define PERILAT_RUNTIME_MESH_H
 
 #include <stdbool.h>
 
 #include "dsl/base/c_linkage.h"
+#include "runtime/geometry/quadrilateral.h"
 #include "runtime/mesh/crack_lines.h"
 
 C_LINKAGE_BEGIN
@@ -26,7 +31,9 @@ typedef enum mesh_cell { CELL_ABSENT, CELL_ELEMENT, CELL_INTERFACE, CELL_ELEMENT
 
 typedef struct mesh {
   int nodes[2];
-  double corner[2], spacing[2]; /* m */
+  double corner[2], spacing[2]; /* m; mapped: of the box around it, and its size over the cells */
+  bool mapped;                  /* it is a quadrilateral with */
+  double corners[4][2];         /* m, counter-clockwise, the first that of node (0, 0) */
   double thickness;             /* m */
   double support;               /* d_max: half width of a node's support, in spacings; 1.5 to 5.5 */
   int gauss;        /* background rule of element-free and interface cells: gauss x gauss points */
@@ -46,6 +53,10 @@ typedef struct mesh {
 void mesh_open(mesh *m, const int nodes[2], const double corner[2], const double size[2],
                double thickness, double support);
 void mesh_close(mesh *m);
+/* The convex quadrilateral with these corners, of elements alone; `support` only tells how their
+   values stand in memory. */
+void mesh_open_mapped(mesh *m, const int nodes[2], const double corners[4][2], double thickness,
+                      double support);
 /* Once nodes are flagged: which cells are what, and which nodes have moving least squares. Absent
    cells stay so. */
 void mesh_settle(mesh *m);
@@ -64,8 +75,15 @@ static inline double mesh_at(const mesh *m, int axis, int k) {
 }
 /* Where node n stands. */
 static inline void mesh_place(const mesh *m, int n, double at[2]) {
-  at[0] = mesh_at(m, 0, n % m->nodes[0]);
-  at[1] = mesh_at(m, 1, n / m->nodes[0]);
+  const int i = n % m->nodes[0], j = n / m->nodes[0];
+  if (m->mapped) {
+    const double u[2] = {(double)i / (m->nodes[0] - 1), (double)j / (m->nodes[1] - 1)};
+    double slope[2][2];
+    quadrilateral_map(m->corners, u, at, slope);
+    return;
+  }
+  at[0] = mesh_at(m, 0, i);
+  at[1] = mesh_at(m, 1, j);
 }
 /* Number of the cell at place (i, j), and its corners: lower left and right, upper left and right.
    */

@@ -1,5 +1,27 @@
 #include "runtime/mesh/shape_functions.h"
 
+/* The same where the mesh is mapped, whose map is the cell's own. */
+static void isoparametric(const mesh *m, int cell, const double at[2], point_shape *out) {
+  const int place[2] = {cell % (m->nodes[0] - 1), cell / (m->nodes[0] - 1)};
+  double unit[2], here[2], slope[2][2], along[2][2];
+  quadrilateral_unmap(m->corners, at, unit);
+  quadrilateral_map(m->corners, unit, here, slope);
+  const double turn = quadrilateral_jacobian(slope);
+  for (int a = 0; a < 2; a++) {
+    along[a][1] = unit[a] * (m->nodes[a] - 1) - place[a];
+    along[a][0] = 1 - along[a][1];
+  }
+  mesh_corners(m, cell, out->node);
+  out->count = 4;
+  for (int k = 0; k < 4; k++) {
+    const double nu = (k % 2 ? 1 : -1) * (m->nodes[0] - 1) * along[1][k / 2],
+                 nv = (k / 2 ? 1 : -1) * (m->nodes[1] - 1) * along[0][k % 2];
+    out->n[k] = along[0][k % 2] * along[1][k / 2];
+    out->nx[k] = (nu * slope[1][1] - nv * slope[1][0]) / turn;
+    out->ny[k] = (nv * slope[0][0] - nu * slope[0][1]) / turn;
+  }
+}
+
 /* The four of the cell's corners. */
 static void bilinear(const mesh *m, int cell, const double at[2], point_shape *out) {
   const int i = cell % (m->nodes[0] - 1), j = cell / (m->nodes[0] - 1);
@@ -60,7 +82,10 @@ static void blend(const mesh *m, const point_shape *corners, point_shape *s) {
 
 bool shape_functions(const mesh *m, int cell, const double at[2], point_shape *out) {
   if (m->cell[cell] == CELL_ELEMENT) {
-    bilinear(m, cell, at, out);
+    if (m->mapped)
+      isoparametric(m, cell, at, out);
+    else
+      bilinear(m, cell, at, out);
     return true;
   }
   const bool sees = moving_least_squares(m, at, out);

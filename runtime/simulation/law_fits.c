@@ -98,7 +98,13 @@ static bool mesh_can_have(const pl_law *law, const deck *k, int lattice, diagnos
   const char *why = NULL;
   if (!law->linear) {
     diag_report(d, DIAG_NOT_SUPPORTED, law_fits_where(k, lattice),
-                "the law `%s` is not linear: a mesh runs linear laws alone so far", law->name);
+                k->relaxation.solved
+                    ? "the law `%s` is not linear: `&static` solves equations of linear laws alone"
+                    : "the law `%s` is not linear: a mesh runs linear laws alone so far",
+                law->name);
+    if (k->relaxation.solved)
+      diag_hint(d, "`&relaxation increments = %d` in its place brings a body of any law to rest",
+                k->relaxation.increments);
     return false;
   }
   for (int n = 0; n < k->material_count && !item; n++)
@@ -121,13 +127,15 @@ static bool mesh_can_have(const pl_law *law, const deck *k, int lattice, diagnos
       item = &k->contacts[n].item;
       why = "contact";
     }
-  if (!item && k->relaxation.increments > 0) {
+  const bool relaxed = k->relaxation.increments > 0 && !k->relaxation.solved;
+  if (!item && relaxed) {
     item = &k->relaxation.item;
-    why = "quasi-static runs";
+    why = "quasi-static runs by relaxation";
   }
   if (!item) return true;
   diag_report(d, DIAG_NOT_SUPPORTED, item->where, "the mesh `%s` cannot have %s as yet", m->name,
               why);
+  if (relaxed) diag_hint(d, "`&static` in its place solves the equations of a linear law");
   return false;
 }
 

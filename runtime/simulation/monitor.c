@@ -7,6 +7,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/base/symmetric_tensor.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/group_monitor.h"
 #include "runtime/interaction/damage.h"
@@ -219,6 +220,28 @@ static monitor_time when_known(const monitor *m, const monitors *all) {
   }
 }
 
+static bool is_field_of_mesh(const deck_monitor *m) {
+  return m->kind == MONITOR_DISPLACEMENT || m->kind == MONITOR_OPENING ||
+         m->kind == MONITOR_VELOCITY || m->kind == MONITOR_ACCELERATION ||
+         m->kind == MONITOR_STRAIN || m->kind == MONITOR_STRESS;
+}
+
+/* Fields of a mesh (mesh_gauge.h). */
+static void take_gauges(monitor *m, const monitors *all, diagnostics *d) {
+  const bool opening = m->deck->kind == MONITOR_OPENING;
+  for (int end = 0; end < 1 + opening; end++) {
+    const run_body *of = m->of[end];
+    take_sites(m, end, all, opening ? m->deck->between[end] : m->deck->region);
+    m->gauge[end] = mesh_gauge_new(m->deck, m->indices[end], m->index_count[end], of->cells,
+                                   of->laws[0].parameters, of->loads, of->body, d);
+  }
+}
+
+/* All bodies of an opening are meshes. */
+static bool has_gauges(const monitor *m) {
+  return is_field_of_mesh(m->deck) && m->of[0] && m->of[0]->cells && (!m->of[1] || m->of[1]->cells);
+}
+
 /* What watched.h watches, of a region or of all particles. */
 static void watch(monitor *m, monitors *all, diagnostics *d) {
   const run_body *of = m->of[0];
@@ -270,6 +293,11 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
   for (int end = 0; end < 2; end++)
     m->of[end] = body_of(all->deck, all->bodies, all->body_count, m->deck, end);
   check_speed(m, all, d);
+  if (has_gauges(m)) {
+    take_gauges(m, all, d);
+    m->known = when_known(m, all);
+    return;
+  }
   switch (m->deck->kind) {
   case MONITOR_REACTION:
     take_reactions(m, 0, all, m->deck->region);
@@ -351,6 +379,8 @@ void monitors_free(monitors *m) {
     free(m->items[i].indices[0]);
     free(m->items[i].indices[1]);
     watched_free(m->items[i].own);
+    for (int end = 0; end < 2; end++)
+      mesh_gauge_free(m->items[i].gauge[end]);
   }
   for (int b = 0; m->forces && b < m->body_count; b++)
     bond_forces_free(m->forces[b]);
@@ -421,7 +451,25 @@ static char *slip_words(const monitors *all, const monitor *m, arena *a) {
                       rows_place_text(all->bodies[0].body->dimensions, here, text));
 }
 
+/* "stress xx at (3, 4) mm" */
+static char *gauge_words(const monitors *all, const monitor *m, arena *a) {
+  char text[ROWS_PLACE_TEXT];
+  const tensor_component *t;
+  const char *kind = m->deck->kind == MONITOR_STRESS ? "stress" : "strain";
+  tensor_components(2, &t);
+  rows_place_text(2, m->deck->at, text);
+  if (m->deck->kind == MONITOR_STRAIN || m->deck->kind == MONITOR_STRESS)
+    return arena_printf(a, "%s %s at %s", kind, t[m->deck->component].name, text);
+  const char *quantity = m->deck->kind == MONITOR_ACCELERATION ? "acceleration"
+                         : m->deck->kind == MONITOR_VELOCITY   ? "velocity"
+                                                               : "displacement";
+  const char *along = deck_component_name(2, m->deck->component);
+  if (m->deck->placed) return arena_printf(a, "%s along %s at %s", quantity, along, text);
+  return region_words(all, m, arena_printf(a, "mean %s", quantity), a);
+}
+
 static char *quantity_words(const monitors *all, const monitor *m, arena *a) {
+  if (m->gauge[0] && !m->gauge[1]) return gauge_words(all, m, a);
   switch (m->deck->kind) {
   case MONITOR_REACTION:
     return region_words(all, m, "reaction", a);
@@ -605,6 +653,8 @@ static double watched_now(const monitors *all, const monitor *m, long step, bool
 
 /* A value at the instant of the state observed. */
 static double value_now(const monitors *all, const monitor *m, long step) {
+  if (m->gauge[1]) return mesh_gauge_value(m->gauge[1], step) - mesh_gauge_value(m->gauge[0], step);
+  if (m->gauge[0]) return mesh_gauge_value(m->gauge[0], step);
   switch (m->deck->kind) {
   case MONITOR_REACTION:
     return reaction_sum(m, 0);
@@ -635,6 +685,8 @@ static double value_now(const monitors *all, const monitor *m, long step) {
 /* What a step has made known for a window: the velocity in it, the field of the state that it left;
    the same for all else. */
 static double value_of_step(const monitors *all, const monitor *m, long step) {
+  const bool moves = m->deck->kind == MONITOR_VELOCITY || m->deck->kind == MONITOR_ACCELERATION;
+  if (m->gauge[0] && moves) return mesh_gauge_velocity(m->gauge[0]);
   if (m->deck->kind == MONITOR_VELOCITY)
     return mean_at(m->of[0]->body->velocity[m->deck->component], m->indices[0], m->index_count[0]);
   if (m->deck->kind == MONITOR_FIELD) return field_mean(all, m, true);

@@ -14,6 +14,7 @@
 #include "dsl/base/diagnostics.h"
 #include "runtime/analysis/watched.h"
 #include "runtime/deck/deck.h"
+#include "runtime/loads/mesh_gauge.h"
 #include "runtime/simulation/run_body.h"
 #include "runtime/simulation/run_link.h"
 
@@ -42,6 +43,7 @@ typedef struct monitor {
   const run_law *law;   /* of a field monitor: that whose field it is */
   int field;            /* of a field monitor: the law's field, or field_count + output */
   const run_link *link; /* of a slip monitor */
+  mesh_gauge *gauge[2]; /* of fields of a mesh, of both regions; NULL of other bodies and kinds */
   watched_part *own;    /* NULL of kinds that are not watched.h's */
   double *ring;         /* [window] the last values, value of push k at k % window */
   long window;          /* steps; 1: no averaging */

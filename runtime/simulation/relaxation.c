@@ -42,6 +42,7 @@ relaxation *relaxation_new(const deck *k, const run_body *bodies, int count, dou
     const size_t size = (size_t)bodies[b].lattice_rows->size;
     const long ramp = ramp_of(bodies[b].lattice_rows, part);
     r->ramp = ramp > r->ramp ? ramp : r->ramp;
+    if (r->deck->solved) r->ramp = 1;
     largest = size > largest ? size : largest;
     for (int d = 0; d < bodies[b].body->dof; d++) {
       r->looked_at[b].displacement[d] = must_calloc(size, sizeof(double));
@@ -97,6 +98,12 @@ void relaxation_begin(relaxation *r) {
   for (int b = 0; b < r->body_count; b++)
     r->looked_at[b].state.rate = 2 * M_PI / ((double)r->ramp * r->bodies[b].body->time_step);
   relaxation_next(r, 0);
+}
+
+void relaxation_solved(relaxation *r, double unbalance) {
+  r->state.done++;
+  r->state.steps = 1;
+  r->state.unbalance = unbalance;
 }
 
 bool relaxation_due(const relaxation *r, int64_t step) {

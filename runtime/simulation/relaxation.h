@@ -14,7 +14,9 @@
    components that are not held, is at most `tolerance` times the same of the reactions, or of the
    forces and weights applied if that is larger. What once was needed does not sink below a
    hundredth of its largest value, so that a broken body comes to rest, too. Moments count over a
-   spacing. */
+   spacing.
+
+   Static runs (mesh_rest.h) have increments, too, of one step each, which solves K u = F. */
 #ifndef PERILAT_RUNTIME_RELAXATION_H
 #define PERILAT_RUNTIME_RELAXATION_H
 
@@ -57,6 +59,8 @@ void relaxation_free(relaxation *r);
 
 /* Before the first step. */
 void relaxation_begin(relaxation *r);
+/* In a static run the increment is done at once: each is one step. */
+void relaxation_solved(relaxation *r, double unbalance);
 /* The forces after that many steps should be observed and looked at. */
 bool relaxation_due(const relaxation *r, int64_t step);
 /* Looks at what was observed: damping of the coming steps; true when the increment is done. */

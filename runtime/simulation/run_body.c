@@ -239,7 +239,8 @@ static bool open_materials(run_body *b, const deck *k, rows *const *built, diagn
   return planes && mass && find_limit(b, k, d);
 }
 
-/* The value of an element-free node is a parameter, not its displacement: it cannot be held. */
+/* The value of an element-free node is a parameter, not its displacement: it cannot be held, but by
+   what bears nothing in a static run (mesh_rest.h). */
 static bool moves_elements_alone(const run_body *b, const deck_item *item, int region,
                                  diagnostics *d) {
   const region_sites *at = region >= 0 ? &b->loads->regions[region] : NULL;
@@ -263,7 +264,7 @@ static bool moves_elements_alone(const run_body *b, const deck_item *item, int r
 
 static bool holds_elements_alone(const run_body *b, const deck *k, diagnostics *d) {
   bool good = true;
-  for (int n = 0; n < k->support_count && b->loads; n++)
+  for (int n = 0; n < k->support_count && b->loads && !k->relaxation.solved; n++)
     good = moves_elements_alone(b, &k->supports[n].item, deck_find_region(k, k->supports[n].region),
                                 d) &&
            good;
@@ -274,25 +275,38 @@ static bool holds_elements_alone(const run_body *b, const deck *k, diagnostics *
   return good;
 }
 
-static void unit_traction(void *context, const double at[2], double traction[2]) {
-  (void)context;
-  (void)at;
-  traction[0] = 1;
-  traction[1] = 0;
+/* A traction as it is taken over: what each node bears of a unit stress on the line, m^2. */
+typedef struct taken_traction {
+  run_body *b;
+  const deck_traction *from;
+  int number;
+  double *share; /* [nodes]; NULL of one that differs from place to place */
+  bool good;
+  diagnostics *d;
+} taken_traction;
+
+static void take_point(void *context, const double at[2], double area, const point_shape *s) {
+  taken_traction *t = context;
+  const double here[3] = {at[0], at[1], 0};
+  for (int n = 0; n < s->count && t->share; n++)
+    t->share[s->node[n]] += area * s->n[n];
+  if (t->share || !t->good) return;
+  t->good = loads_add_place(t->b->loads, here, t->number, t->d);
+  for (int n = 0; n < s->count && t->good; n++)
+    loads_add_share_there(t->b->loads, s->node[n], t->from->component, t->number, area * s->n[n]);
 }
 
-/* What each node bears of a unit stress on the line: m^2. False where the line misses the mesh. */
+/* False where the line misses the mesh. */
 static bool add_traction(run_body *b, const deck *k, int number, diagnostics *d) {
   const deck_traction *f = &k->forces[number];
   const long nodes = b->lattice_rows->particle_count;
-  double *share[2] = {must_calloc((size_t)nodes, sizeof(double)),
-                      must_calloc((size_t)nodes, sizeof(double))};
-  const double loaded = line_load(&b->cells->mesh, f->from, f->to, unit_traction, NULL, share);
-  for (long n = 0; n < nodes; n++)
-    if (share[0][n] != 0) loads_add_share(b->loads, (int32_t)n, f->component, number, share[0][n]);
-  free(share[0]);
-  free(share[1]);
-  if (loaded > 0) return true;
+  taken_traction t = {.b = b, .from = f, .number = number, .good = true, .d = d};
+  if (!time_function_varies(&f->force)) t.share = must_calloc((size_t)nodes, sizeof(double));
+  const double loaded = line_visit(&b->cells->mesh, f->from, f->to, take_point, &t);
+  for (long n = 0; n < nodes && t.share; n++)
+    if (t.share[n] != 0) loads_add_share(b->loads, (int32_t)n, f->component, number, t.share[n]);
+  free(t.share);
+  if (loaded > 0) return t.good;
   diag_report(d, DIAG_EMPTY_REGION, deck_where(&f->item, "from"),
               "the line that is loaded lies outside the mesh `%s`", b->name);
   return false;
@@ -389,6 +403,7 @@ bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d) {
   b->body = b->state->body;
   loads_point_masses(b->loads, b->body);
   if (k->gravity_count > 0) body_add_gravity(b->body);
+  if (b->cells && k->relaxation.solved) b->rest = mesh_rest_new(b->cells, b->loads, b->body);
   return loads_initial_motion(b->loads, b->body, d);
 }
 
@@ -400,6 +415,7 @@ damage_law *run_body_damages(const run_body *b) {
 }
 
 void run_body_free(run_body *b) {
+  mesh_rest_free(b->rest);
   loads_free(b->loads);
   sweep_free(b->state);
   for (int n = 0; n < b->law_count; n++) {

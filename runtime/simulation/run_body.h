@@ -13,6 +13,7 @@
 #include "runtime/lattice/law_parts.h"
 #include "runtime/lattice/parameter_planes.h"
 #include "runtime/loads/loads.h"
+#include "runtime/loads/mesh_rest.h"
 #include "runtime/simulation/ledger.h"
 
 typedef struct run_law { /* a law at work on a body: an interaction of the run */
@@ -43,6 +44,7 @@ typedef struct run_body {
   body *body;        /* of the state */
   loads *loads;
   cells *cells;          /* of a mesh; else NULL */
+  mesh_rest *rest;       /* of a mesh in a static run; else NULL */
   const tip_law *cracks; /* [cracks of the deck] their laws */
   step_limit limit;      /* of this body alone; `step` is that of the run */
   ledger ledger;

@@ -142,6 +142,19 @@ static void open_clock(simulation *s) {
   s->clock.at.last_frame_step = s->clock.at.stop = s->observed_step = -1;
 }
 
+/* Everything that a static run is to solve has a solution. */
+static bool can_stand(const simulation *s, diagnostics *d) {
+  const deck *k = s->deck;
+  bool good = true;
+  for (int b = 0; b < s->body_count; b++)
+    good = (!s->bodies[b].rest ||
+            mesh_rest_check(s->bodies[b].rest, s->bodies[b].name,
+                            deck_where(&k->lattices[s->bodies[b].lattice].item, "name"),
+                            k->relaxation.increments, s->relaxation->interval, d)) &&
+           good;
+  return good;
+}
+
 static bool open_monitors(simulation *s, diagnostics *d) {
   const deck *k = s->deck;
   s->monitors = monitors_new(k, s->bodies, s->body_count, s->links, s->link_count,
@@ -165,6 +178,7 @@ static bool set_up(simulation *s, rows *const *lattices, diagnostics *d) {
   if (!step_fits(s->deck, &s->limit, d) || !step_plan_make(s->deck, &s->limit, &s->plan, d))
     return false;
   open_clock(s);
+  if (!can_stand(s, d)) return false;
   if (!open_monitors(s, d) || !open_frames(s, d)) return false;
   run_contacts_warn(s->deck, s->bodies, d);
   s->bad = bad_search_new(s->bodies, s->body_count, &s->clock);
@@ -258,6 +272,10 @@ double simulation_omega(const simulation *s, int number) {
 
 const rows *simulation_rows(const simulation *s, int number) {
   return s->bodies[number].lattice_rows;
+}
+
+const cells *simulation_cells(const simulation *s, int number) {
+  return s->bodies[number].cells;
 }
 
 const step_limit *simulation_step_limit(const simulation *s) {

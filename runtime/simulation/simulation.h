@@ -61,6 +61,8 @@ const deck *simulation_deck(const simulation *s);
 /* rad/s of a mode, from 1, that the deck gives something by. */
 double simulation_omega(const simulation *s, int mode);
 const rows *simulation_rows(const simulation *s, int body);
+/* The cells of a mesh (runtime/continuum/cells.h); NULL of other bodies. */
+const struct cells *simulation_cells(const simulation *s, int body);
 /* Of an interaction of the deck: the rows of its body with the bonds that the law has a part in,
    and the parameters that differ in space (NULL without). */
 const rows *simulation_law_rows(const simulation *s, int interaction);

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "dsl/base/elementary.h"
 #include "runtime/base/clock.h"
 #include "runtime/base/subnormals.h"
 #include "runtime/loads/load_steps.h"
@@ -312,6 +313,39 @@ static void run_team(simulation *s) {
   }
 }
 
+/* --- static runs ------------------------------------------------------------------------------ */
+
+/* An increment: places, what is seen there, a sample. */
+static void stand(simulation *s) {
+  const load_clock clock = relaxation_clock(s->relaxation, s->clock.at.step);
+  double unbalance = 0;
+  for (int b = 0; b < s->body_count; b++)
+    unbalance = pl_fmax(unbalance, mesh_rest_solve(s->bodies[b].rest, clock));
+  relaxation_solved(s->relaxation, unbalance);
+  s->clock.at.step++;
+  observe_all(s);
+  look_at_loads(s);
+  s->observed_step = s->clock.at.step;
+  for (int b = 0; b < s->body_count; b++) {
+    mesh_rest_work(s->bodies[b].rest);
+    cells_look(s->bodies[b].state);
+  }
+  monitors_look(s->monitors, (long)s->clock.at.step, (long)run_clock_position(&s->clock));
+  record_sample(s);
+  if (run_clock_position(&s->clock) == run_clock_end(&s->clock) && s->clock.at.status == STEP_OK)
+    s->clock.at.status = STEP_END;
+}
+
+/* Up to the next frame; one that is due but not taken holds nothing up. */
+static void stand_on(simulation *s) {
+  bool more = s->clock.at.status == STEP_OK && !(s->interrupted && *s->interrupted);
+  while (more) {
+    stand(s);
+    more = s->clock.at.status == STEP_OK && !frames_due(s->frames) &&
+           !(s->interrupted && *s->interrupted);
+  }
+}
+
 step_status time_loop_run(simulation *s, long steps, const volatile sig_atomic_t *interrupted) {
   if (s->clock.at.status != STEP_OK) return (step_status)s->clock.at.status;
   s->until = next_stop(s, steps);
@@ -320,7 +354,9 @@ step_status time_loop_run(simulation *s, long steps, const volatile sig_atomic_t
   const double begun = s->profile ? monotonic_seconds() : 0;
   begin(s);
   s->observe = s->clock.at.samples == 0;
+  if (s->relaxation && s->relaxation->deck->solved) s->go_on = false;
   run_team(s);
+  if (s->relaxation && s->relaxation->deck->solved) stand_on(s);
   if (s->profile) {
     s->profile->elapsed += monotonic_seconds() - begun;
     profile_sum(s->profile, s->bodies, s->body_count, s->blocks);

@@ -36,6 +36,27 @@ static void hooke_tangent(const pl_law *law, const double *uniforms, const pl_po
       p->tangent[k][q] = D[k];
 }
 
+/* Stress xx, yy, xy and none across the thickness. */
+static void hooke_step(const pl_law *law, const double *uniforms, const pl_points *p) {
+  (void)law;
+  for (long q = 0; q < p->count; q++) {
+    const double x = p->strain[0][q], y = p->strain[1][q];
+    p->stress[0][q] = uniforms[0] * x + uniforms[1] * y;
+    p->stress[1][q] = uniforms[1] * x + uniforms[0] * y;
+    p->stress[2][q] = 2 * uniforms[2] * p->strain[2][q];
+    p->stress[3][q] = 0;
+  }
+}
+
+static void hooke_observe(const pl_law *law, const double *uniforms, const pl_points *p) {
+  (void)law;
+  for (long q = 0; q < p->count; q++) {
+    const double x = p->strain[0][q], y = p->strain[1][q], xy = p->strain[2][q];
+    p->observed[0][q] =
+        0.5 * uniforms[0] * (x * x + y * y) + uniforms[1] * x * y + 2 * uniforms[2] * xy * xy;
+  }
+}
+
 static const pl_law hooke_law = {.abi = PL_KERNEL_ABI,
                                  .size = sizeof(pl_law),
                                  .kind = PL_CONTINUUM,
@@ -50,6 +71,8 @@ static const pl_law hooke_law = {.abi = PL_KERNEL_ABI,
                                  .uniform_count = 3,
                                  .prepare = hooke_prepare,
                                  .bounds = hooke_bounds,
+                                 .point_step = hooke_step,
+                                 .point_observe = hooke_observe,
                                  .point_tangent = hooke_tangent,
                                  .linear = 1};
 

@@ -1,0 +1,89 @@
+#include "generator/run/report_mesh.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "generator/run/print_quantity.h"
+#include "runtime/continuum/cells.h"
+
+/* "336 finite elements, 1362 element-free, 54 blended" */
+static void print_cells(const mesh *m) {
+  static const char *const words[] = {"absent", "finite elements", "blended", "element-free"};
+  long count[4] = {0};
+  const char *before = ": ";
+  for (int c = 0; c < mesh_cell_count(m); c++)
+    count[m->cell[c]]++;
+  for (int k = 0; k < 4; k++) {
+    if (count[k] == 0) continue;
+    printf("%s%ld %s", before, count[k], words[k]);
+    before = ", ";
+  }
+}
+
+/* "mesh       beam: 74 x 25 nodes, 3.13151 x 3.175 mm apart, 1752 cells: ...; 24048 points" */
+static void announce_cells(const cells *c, const deck_mesh *k) {
+  const mesh *m = &c->mesh;
+  printf("  mesh       %s: %d x %d nodes, ", k->name, m->nodes[0], m->nodes[1]);
+  if (m->mapped)
+    printf("at least %.6g mm apart", 1e3 * k->spacing);
+  else
+    printf("%.6g x %.6g mm apart", 1e3 * m->spacing[0], 1e3 * m->spacing[1]);
+  printf(", %d cells", mesh_cell_count(m));
+  print_cells(m);
+  printf("; %d points\n", c->points.count);
+}
+
+static const char *path_of(const run *r, int interaction) {
+  const char *path = r->model_of[interaction] ? r->model_of[interaction]->path : NULL;
+  return path && strncmp(path, "./", 2) == 0 ? path + 2 : path;
+}
+
+/* "law        elastic (elastic.plm): linear; waves of 3690 and 2334 m/s" */
+static void announce_law(const run *r, int interaction, const cells *c) {
+  const pl_law *kernel = r->laws[interaction].law;
+  const char *path = path_of(r, interaction);
+  const double(*D)[3] = c->stiffness.D,
+        rho = material_density(kernel, r->laws[interaction].parameters);
+  printf("  law        %s", kernel->name);
+  if (path) printf(" (%s)", path);
+  printf(": %s; waves of %.4g and %.4g m/s%s\n", kernel->linear ? "linear" : "not linear",
+         sqrt(D[0][0] / rho), sqrt(D[2][2] / rho), kernel->linear ? "" : " at rest");
+}
+
+/* "crack      notch: 19.05 mm, grows by lefm; its 1 tip is looked at every 42 us" */
+static void announce_crack(const tips *t, const deck_crack *k, double step, bool at_rest) {
+  int count = 0;
+  for (int n = 0; n < t->count; n++)
+    count += t->items[n].of == k;
+  double length = 0;
+  for (int n = 1; n < k->point_count; n++)
+    length +=
+        hypot(k->points[2 * n] - k->points[2 * n - 2], k->points[2 * n + 1] - k->points[2 * n - 1]);
+  printf("  crack      %s: %.6g mm, ", k->name, 1e3 * length);
+  if (k->grows)
+    printf("grows by %s", k->model);
+  else
+    fputs("does not grow", stdout);
+  if (at_rest) {
+    putchar('\n');
+    return;
+  }
+  printf("; %s looked at every %.4g us\n",
+         count == 0   ? "it has no tip to be"
+         : count == 1 ? "its tip is"
+                      : "its tips are",
+         1e6 * step * (double)t->check_steps);
+}
+
+void announce_mesh(const run *r, int lattice) {
+  const cells *c = simulation_cells(r->simulation, lattice);
+  const deck *k = r->deck;
+  announce_cells(c, &k->lattices[lattice]);
+  for (int n = 0; n < k->interaction_count; n++)
+    if (k->interactions[n].lattice == lattice) announce_law(r, n, c);
+  for (int n = 0; n < k->crack_count && c->tips; n++)
+    if (strcmp(k->cracks[n].mesh, k->lattices[lattice].name) == 0)
+      announce_crack(c->tips, &k->cracks[n], simulation_step_limit(r->simulation)->step,
+                     k->relaxation.solved);
+}

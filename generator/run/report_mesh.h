@@ -1,0 +1,10 @@
+/* What a run says of its meshes before it begins: nodes, cells, law, cracks. */
+#ifndef PERILAT_GENERATOR_REPORT_MESH_H
+#define PERILAT_GENERATOR_REPORT_MESH_H
+
+#include "generator/run/run_state.h"
+
+/* Of the deck's lattice of that number, a &mesh: a line each for the mesh, its law, its cracks. */
+void announce_mesh(const run *r, int lattice);
+
+#endif

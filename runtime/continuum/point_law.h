@@ -1,0 +1,25 @@
+/* A law of a continuum at a single point in the plane: stress, stored energy, tangent. Points in strips
+   are what steps use; this is for what is asked now and then. */
+#ifndef PERILAT_RUNTIME_POINT_LAW_H
+#define PERILAT_RUNTIME_POINT_LAW_H
+
+#include "runtime/kernel.h"
+
+typedef struct point_law point_law;
+
+/* parameters[law->parameter_count], SI. Both must outlive it. */
+point_law *point_law_new(const pl_law *law, const double *parameters);
+void point_law_free(point_law *p);
+
+/* States from now on, [law->field_count] SI; NULL: those of a virgin point, as at first. */
+void point_law_states(point_law *p, const double *field);
+
+/* All at a strain xx, yy, xy (of tensors), at rest, in a cell of the size h (m). */
+/* Stress xx, yy, xy, zz, Pa. */
+void point_law_stress(point_law *p, const double strain[3], double h, double stress[4]);
+/* Stored energy, J/m^3, and the law's outputs: observed[1 + law->output_count]. */
+void point_law_observe(point_law *p, const double strain[3], double h, double *observed);
+/* xx, yy, xy by xx, yy, xy, Pa; shears of strains are those of engineers. */
+void point_law_tangent(point_law *p, const double strain[3], double h, double tangent[3][3]);
+
+#endif

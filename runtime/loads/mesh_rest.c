@@ -1,0 +1,270 @@
+#include "runtime/loads/mesh_rest.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
+#include "runtime/continuum/static_solution.h"
+
+/* A reaction of that part of the largest force is rounding. */
+static const double NO_REACTION = 1e-6;
+
+struct mesh_rest {
+  const cells *c;
+  loads *l;
+  body *w;
+  static_factors *factors;
+  unsigned char *held, *factored; /* [2 nodes]; those of the factors */
+  double *force[2], *u[2], *reaction[2];
+  /* at the last increment: places, forces, reactions, weight */
+  double *place[2], *pushed, *reacted, gravity[2];
+};
+
+mesh_rest *mesh_rest_new(const cells *c, loads *l, body *w) {
+  const size_t nodes = (size_t)mesh_node_count(&c->mesh);
+  mesh_rest *r = must_calloc(1, sizeof *r);
+  *r = (mesh_rest){.c = c, .l = l, .w = w};
+  r->held = must_calloc(2 * nodes, 1);
+  r->factored = must_calloc(2 * nodes, 1);
+  for (int d = 0; d < 2; d++) {
+    r->force[d] = must_calloc(nodes, sizeof(double));
+    r->u[d] = must_calloc(nodes, sizeof(double));
+    r->reaction[d] = must_calloc(nodes, sizeof(double));
+    r->place[d] = must_calloc(nodes, sizeof(double));
+  }
+  r->pushed = must_calloc((size_t)l->force_count + 1, sizeof(double));
+  r->reacted = must_calloc((size_t)l->constraint_count + 1, sizeof(double));
+  return r;
+}
+
+void mesh_rest_free(mesh_rest *r) {
+  if (!r) return;
+  static_factors_free(r->factors);
+  for (int d = 0; d < 2; d++) {
+    free(r->force[d]);
+    free(r->u[d]);
+    free(r->reaction[d]);
+    free(r->place[d]);
+  }
+  free(r->held);
+  free(r->factored);
+  free(r->pushed);
+  free(r->reacted);
+  free(r);
+}
+
+/* --- an increment ----------------------------------------------------------------------------- */
+
+static int node_of(const mesh_rest *r, int64_t site) {
+  return r->w->lattice->site_particle[site];
+}
+
+static int node_count(const mesh_rest *r) {
+  return mesh_node_count(&r->c->mesh);
+}
+
+/* What holds in the present increment. */
+static void find_held(mesh_rest *r) {
+  memset(r->held, 0, 2 * (size_t)node_count(r));
+  for (long i = 0; i < r->l->constraint_count; i++) {
+    const constraint *c = &r->l->constraints[i];
+    if (load_steps_holds(r->l, r->w, c)) r->held[2 * node_of(r, c->site) + c->component] = 1;
+  }
+}
+
+/* False where something is loose, which *found says. */
+static bool has_factors(mesh_rest *r, static_result *found) {
+  const size_t size = 2 * (size_t)node_count(r);
+  if (r->factors && memcmp(r->held, r->factored, size) == 0) return true;
+  static_factors_free(r->factors);
+  r->factors = static_factors_new(&r->c->stencil, r->held, found);
+  memcpy(r->factored, r->held, size);
+  return r->factors != NULL;
+}
+
+/* As the last increment has left it. */
+static void keep(mesh_rest *r) {
+  for (int d = 0; d < 2; d++) {
+    r->gravity[d] = r->w->gravity[d];
+    for (int n = 0; n < node_count(r); n++)
+      r->place[d][n] = r->w->displacement[d][r->w->lattice->particle_site[n]];
+  }
+  for (long i = 0; i < r->l->force_count; i++)
+    r->pushed[i] = r->l->forces[i].now;
+  for (long i = 0; i < r->l->constraint_count; i++)
+    r->reacted[i] = r->l->constraints[i].reaction;
+}
+
+static void prescribe(mesh_rest *r, long step) {
+  for (long i = 0; i < r->l->constraint_count; i++) {
+    constraint *c = &r->l->constraints[i];
+    if (!c->active) continue;
+    c->held = c->anchor + load_steps_motion(r->l, r->w, c, step);
+    r->u[c->component][node_of(r, c->site)] = c->held;
+  }
+}
+
+static void push(mesh_rest *r, long step) {
+  load_steps_weigh(r->l, r->w, step);
+  for (int d = 0; d < 2; d++)
+    for (int n = 0; n < node_count(r); n++) {
+      const long site = r->w->lattice->particle_site[n];
+      r->force[d][n] = r->w->gravity[d] * body_mass(r->w, d, site) * (r->w->weight ? 1 : 0);
+    }
+  for (long i = 0; i < r->l->force_count; i++) {
+    applied *f = &r->l->forces[i];
+    f->now = f->share * load_steps_factor(r->l, r->w, f, step);
+    r->force[f->component][node_of(r, f->site)] += f->now;
+  }
+}
+
+double mesh_rest_solve(mesh_rest *r, load_clock clock) {
+  const long end = (long)(clock.first + clock.ramp);
+  static_result found = {.solved = false};
+  keep(r);
+  load_steps_increment(r->l, r->w, clock);
+  find_held(r);
+  if (!has_factors(r, &found)) return NAN; /* mesh_rest_check has told */
+  prescribe(r, end);
+  push(r, end);
+  found = static_factors_solve(r->factors, (const double *const *)r->force, r->u, r->reaction);
+  for (int d = 0; d < 2; d++)
+    for (int n = 0; n < node_count(r); n++)
+      r->w->displacement[d][r->w->lattice->particle_site[n]] = r->u[d][n];
+  return found.residual;
+}
+
+/* Loads go evenly from increment to increment, and so do places and reactions of a linear law: the
+   mean force works over the whole way. */
+void mesh_rest_work(mesh_rest *r) {
+  const body *w = r->w;
+  for (long i = 0; i < r->l->force_count; i++) {
+    applied *f = &r->l->forces[i];
+    const double way =
+        w->displacement[f->component][f->site] - r->place[f->component][node_of(r, f->site)];
+    f->sums.work += 0.5 * (r->pushed[i] + f->now) * way;
+  }
+  for (long i = 0; i < r->l->constraint_count; i++) {
+    constraint *c = &r->l->constraints[i];
+    const double way =
+        w->displacement[c->component][c->site] - r->place[c->component][node_of(r, c->site)];
+    c->sums.work += 0.5 * (r->reacted[i] + c->reaction) * way;
+  }
+  for (int d = 0; d < 2 && w->row_gravity; d++)
+    for (int n = 0; n < node_count(r); n++) {
+      const long site = w->lattice->particle_site[n];
+      w->row_gravity[rows_row(w->lattice, site)] += 0.5 * (r->gravity[d] + w->gravity[d]) *
+                                                    body_mass(w, d, site) *
+                                                    (w->displacement[d][site] - r->place[d][n]);
+    }
+}
+
+/* --- before a run ----------------------------------------------------------------------------- */
+
+static bool has_single_points(const mesh *m) {
+  for (int c = 0; c < mesh_cell_count(m); c++)
+    if (m->cell[c] == CELL_ELEMENT && m->element_gauss[c] == 1) return true;
+  return false;
+}
+
+static bool is_stiff(mesh_rest *r, const char *name, span where, diagnostics *d) {
+  static_result found = {.solved = false};
+  double at[2];
+  find_held(r);
+  if (has_factors(r, &found)) return true;
+  mesh_place(&r->c->mesh, found.loose, at);
+  diag_report(d, DIAG_BAD_VALUE, where,
+              "the mesh `%s` can move freely: nothing holds its node at (%.6g, %.6g) mm along %s",
+              name, 1e3 * at[0], 1e3 * at[1], found.loose_axis ? "y" : "x");
+  diag_hint(d, has_single_points(&r->c->mesh)
+                   ? "elements with one point of integration have motions without stiffness: give "
+                     "`gauss = 2`; and hold the mesh so that it can neither slide nor turn"
+                   : "hold it by a `&support` so that it can neither slide nor turn: both "
+                     "directions of one node, and one of another");
+  return false;
+}
+
+static const constraint *pin_with_reaction(const mesh_rest *r, double *reaction) {
+  double most = 0;
+  for (int n = 0; n < 2 * node_count(r); n++)
+    most = pl_max(most, pl_max(fabs(r->force[n % 2][n / 2]), fabs(r->reaction[n % 2][n / 2])));
+  for (long i = 0; i < r->l->constraint_count; i++) {
+    const constraint *c = &r->l->constraints[i];
+    const int node = node_of(r, c->site);
+    *reaction = r->reaction[c->component][node];
+    if (r->c->mesh.element_free[node] && fabs(*reaction) > NO_REACTION * most) return c;
+  }
+  return NULL;
+}
+
+/* The value of an element-free node is no displacement: it may stand for a motion of the whole, and
+   must bear nothing. */
+static bool pins_bear_nothing(const mesh_rest *r, span where, diagnostics *d) {
+  double reaction, at[2];
+  const constraint *c = pin_with_reaction(r, &reaction);
+  if (!c) return true;
+  mesh_place(&r->c->mesh, node_of(r, c->site), at);
+  diag_report(d, DIAG_CONFLICT, where,
+              "the support at (%.6g, %.6g) mm bears %.4g N along %s, but its node is element-free: "
+              "what is held there is no displacement",
+              1e3 * at[0], 1e3 * at[1], reaction, c->component ? "y" : "x");
+  diag_hint(d, "make its node one of finite elements by a &zone; only a support that bears nothing "
+               "may stand on an element-free node");
+  return false;
+}
+
+static bool has_pins(const mesh_rest *r) {
+  for (long i = 0; i < r->l->constraint_count; i++)
+    if (r->c->mesh.element_free[node_of(r, r->l->constraints[i].site)]) return true;
+  return false;
+}
+
+/* All loads and places as they are before the run. */
+typedef struct kept_loads {
+  constraint *constraints;
+  applied *forces;
+  load_clock clock;
+} kept_loads;
+
+static kept_loads keep_loads(const loads *l) {
+  const size_t held = (size_t)l->constraint_count * sizeof(constraint),
+               pushed = (size_t)l->force_count * sizeof(applied);
+  kept_loads k = {must_alloc(held + 1), must_alloc(pushed + 1), l->clock};
+  if (held) memcpy(k.constraints, l->constraints, held);
+  if (pushed) memcpy(k.forces, l->forces, pushed);
+  return k;
+}
+
+static void put_back(mesh_rest *r, kept_loads *k) {
+  loads *l = r->l;
+  if (l->constraint_count > 0)
+    memcpy(l->constraints, k->constraints, (size_t)l->constraint_count * sizeof(constraint));
+  if (l->force_count > 0) memcpy(l->forces, k->forces, (size_t)l->force_count * sizeof(applied));
+  l->clock = k->clock;
+  for (int d = 0; d < 2; d++) {
+    r->w->gravity[d] = 0;
+    for (int n = 0; n < node_count(r); n++)
+      r->w->displacement[d][r->w->lattice->particle_site[n]] = r->u[d][n] = 0;
+  }
+  free(k->constraints);
+  free(k->forces);
+}
+
+bool mesh_rest_check(mesh_rest *r, const char *name, span where, int increments, double interval,
+                     diagnostics *d) {
+  bool good = true;
+  kept_loads kept = keep_loads(r->l);
+  const bool pins = has_pins(r);
+  for (int k = 0; k < increments && good; k++) {
+    const load_clock clock = {k * interval, (k + 1) * interval, k, 1};
+    r->l->clock = clock;
+    good = is_stiff(r, name, where, d);
+    if (!good || !pins) continue;
+    mesh_rest_solve(r, clock);
+    good = pins_bear_nothing(r, where, d);
+  }
+  put_back(r, &kept);
+  return good;
+}
