@@ -464,7 +464,8 @@ sweep *cells_sweep(cells *c, const deck *k, const double *parameters, const tip_
 }
 
 /* --- what others ask -------------------------------------------------------------------------- */
-void cells_look(const sweep *w) {
+
+void cells_look_at_tips(const sweep *w) {
   const cells *c = own(w)->of;
   if (c->tips) tips_at_rest(c->tips, w->body, &c->stencil);
 }
@@ -496,7 +497,7 @@ void cells_restored(sweep *w) {
   if (c->tips) tips_replay(c->tips, &c->mesh, &c->stencil);
 }
 
-void cells_look(cells *c, double part, double time) {
+void cells_watch_stiffness(cells *c, double part, double time) {
   const point_forces *p = c->by_points;
   if (!p) return;
   c->stiffened.now = 0;

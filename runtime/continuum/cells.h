@@ -64,7 +64,7 @@ sweep *cells_sweep(cells *c, const deck *k, const double *parameters, const tip_
 
 /* After a state was observed, at that time: how stiff points are. `part` of the longest step at rest
    is taken. No frequency of the mesh is above the root of `stiffened.now` times the highest at rest. */
-void cells_look(cells *c, double part, double time);
+void cells_watch_stiffness(cells *c, double part, double time);
 /* Where a node had a velocity that is no number or too large: of the points that push it the one
    with the largest stress, with the nodes where they were before the step. False with a linear law. `out`
    has memory for the law's fields. */
@@ -77,7 +77,7 @@ bool cells_states_near(const cells *c, const double at[2], double *field);
 /* B, of what the body does not count. */
 double cells_bytes(const cells *c);
 /* Stress intensities at the tips, where the body stands still. */
-void cells_look(const sweep *w);
+void cells_look_at_tips(const sweep *w);
 
 /* What the engine remembers from step to step, for checkpoints; and after one was read. */
 enum { CELLS_PLANES = 9 };

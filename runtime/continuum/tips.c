@@ -10,6 +10,7 @@
 #include "runtime/crack/hoop_stress.h"
 #include "runtime/mesh/mesh_fields.h"
 
+static const double MET = 1e-9;       /* of an advance: nearer is where it begins */
 static const double ON_BORDER = 1e-6; /* spacings */
 static const double OVERLAP = 0.01;   /* of the largest K_I: less is noise */
 
@@ -513,16 +514,31 @@ static void decide(tips *t, mesh_tip *p, const mesh *m) {
   p->now.segments++;
 }
 
-/* Part of a -> b until it meets c -> d; 1: it does not. */
-static double until_met(const double a[2], const double b[2], const crack_piece *other) {
-  const double u[2] = {b[0] - a[0], b[1] - a[1]},
-               v[2] = {other->b[0] - other->a[0], other->b[1] - other->a[1]},
-               w[2] = {other->a[0] - a[0], other->a[1] - a[1]};
-  const double cross = u[0] * v[1] - u[1] * v[0];
-  if (cross == 0) return 1;
-  const double along = (w[0] * v[1] - w[1] * v[0]) / cross,
-               there = (w[0] * u[1] - w[1] * u[0]) / cross;
-  return along > 1e-9 && along < 1 && there >= 0 && there <= 1 ? along : 1;
+static double cross(const double a[2], const double b[2]) {
+  return a[0] * b[1] - a[1] * b[0];
+}
+
+/* Of pieces on one line: until the nearer end of the other one ahead; 0 where that begins here. */
+static double until_met_ahead(const double u[2], const double c[2], const double d[2]) {
+  const double square = u[0] * u[0] + u[1] * u[1], to_c = (c[0] * u[0] + c[1] * u[1]) / square,
+               to_d = (d[0] * u[0] + d[1] * u[1]) / square;
+  const double nearer = pl_min(to_c, to_d), farther = pl_max(to_c, to_d);
+  if (farther <= MET) return 1;
+  return nearer > MET ? pl_min(nearer, 1) : 0;
+}
+
+/* Part of a -> b until it meets the other piece; 1: it does not. Both are on one line where they are
+   nearer than `hardly`. */
+static double until_met(const double a[2], const double b[2], const crack_piece *other,
+                        double hardly) {
+  const double u[2] = {b[0] - a[0], b[1] - a[1]}, c[2] = {other->a[0] - a[0], other->a[1] - a[1]},
+               d[2] = {other->b[0] - a[0], other->b[1] - a[1]}, v[2] = {d[0] - c[0], d[1] - c[1]};
+  const double near = hardly * pl_hypot(u[0], u[1]);
+  if (fabs(cross(u, c)) < near && fabs(cross(u, d)) < near) return until_met_ahead(u, c, d);
+  const double turn = cross(u, v);
+  if (turn == 0) return 1;
+  const double along = cross(c, v) / turn, there = cross(c, u) / turn;
+  return along > MET && along < 1 && there >= 0 && there <= 1 ? along : 1;
 }
 
 static double until_left(const double a[2], const double b[2], const double lower[2],
@@ -579,7 +595,7 @@ static void advance(tips *t, mesh_tip *p, const body *w, mesh *m, node_stencil *
   double part = until_left(a, b, t->lower, t->upper);
   tip_end why = part < 1 ? TIP_HAS_LEFT : TIP_ALIVE;
   for (int n = 0; n < m->cracks.count; n++) {
-    const double met = until_met(a, b, &m->cracks.pieces[n]);
+    const double met = until_met(a, b, &m->cracks.pieces[n], ON_BORDER * m->spacing[0]);
     if (met >= part) continue;
     part = met;
     why = TIP_HAS_MET;
@@ -663,8 +679,10 @@ void tips_after(tips *t, const body *w, double *const last_resistance[2], mesh *
 }
 
 void tips_at_rest(tips *t, const body *w, const node_stencil *k) {
-  for (int n = 0; n < t->count; n++)
+  for (int n = 0; n < t->count; n++) {
     look_at(t, &t->items[n], w, k); /* velocities and accelerations are 0, as they began */
+    note_overlap(t, &t->items[n], w);
+  }
 }
 
 void tips_replay(tips *t, mesh *m, node_stencil *k) {

@@ -177,7 +177,7 @@ static void look_at_cells(simulation *s) {
   for (int b = 0; b < s->body_count; b++) {
     const run_body *of = &s->bodies[b];
     if (of->cells)
-      cells_look(of->cells, of->limit.step / of->limit.limit, run_clock_time(&s->clock));
+      cells_watch_stiffness(of->cells, of->limit.step / of->limit.limit, run_clock_time(&s->clock));
   }
 }
 
@@ -343,7 +343,7 @@ static void stand(simulation *s) {
   s->observed_step = s->clock.at.step;
   for (int b = 0; b < s->body_count; b++) {
     mesh_rest_work(s->bodies[b].rest);
-    cells_look(s->bodies[b].state);
+    cells_look_at_tips(s->bodies[b].state);
   }
   monitors_look(s->monitors, (long)s->clock.at.step, (long)run_clock_position(&s->clock));
   record_sample(s);
