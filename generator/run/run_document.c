@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "generator/run/bad_bond.h"
+#include "generator/run/run_cracks.h"
 
 static double last_of(const double *values, long samples) {
   return samples > 0 ? values[samples - 1] + 0.0 : NAN; /* no minus before zeros */
@@ -87,5 +88,6 @@ void put_run(json *w, const run *r) {
   json_put_number(w, "wall", r->wall);
   put_energy(w, r, samples);
   put_monitors(w, r, samples);
+  put_cracks(w, r);
   put_files(w, r);
 }

@@ -245,7 +245,7 @@ static void turn(sweep *w) {
     exchange(&e->added_before[d], &e->added[d]);
   }
   e->begun = 1;
-  if (e->of->tips) tips_after(e->of->tips, w->body, &e->of->mesh, &e->of->stencil);
+  if (e->of->tips) tips_after(e->of->tips, w->body, e->before, &e->of->mesh, &e->of->stencil);
 }
 
 static void observe_rows(sweep *w, int block) {

@@ -10,7 +10,9 @@
 #include "runtime/crack/hoop_stress.h"
 #include "runtime/mesh/mesh_fields.h"
 
+static const double MET = 1e-9;       /* of an advance: nearer is where it begins */
 static const double ON_BORDER = 1e-6; /* spacings */
+static const double OVERLAP = 0.01;   /* of the largest K_I: less is noise */
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
@@ -181,6 +183,7 @@ bool tips_new(const deck *k, const char *name, mesh *m, tips **out, diagnostics 
   tips *t = must_calloc(1, sizeof *t);
   bool good = true, any = false;
   t->options = &k->tips;
+  t->beta_1 = k->newmark.beta_1;
   t->half_size = k->tips.half_size * m->spacing[0];
   for (int n = 0; n < k->crack_count; n++)
     if (strcmp(k->cracks[n].mesh, name) == 0) {
@@ -236,11 +239,25 @@ static double *lanes(int count) {
   return must_calloc((size_t)count * PL_LANES + 1, sizeof(double));
 }
 
+/* The only parameter that is one, if there is just one. */
+static double toughness_of(const tip_law *l) {
+  double found = 0;
+  int count = 0;
+  for (int n = 0; n < l->law->parameter_count; n++)
+    if (strcmp(l->law->parameters[n].unit, "Pa*m^(1/2)") == 0) {
+      found = l->parameters[n];
+      count++;
+    }
+  return count == 1 ? found : 0;
+}
+
 /* Each tip has the law's states for itself. */
 static void give_law(mesh_tip *p, const tip_law *l) {
   const pl_bond_class none = {.size = sizeof none};
   const pl_law *law = l->law;
-  if (!law || !p->of->grows) return;
+  if (!law) return;
+  p->toughness = toughness_of(l);
+  if (!p->of->grows) return;
   p->law = law;
   p->uniforms = must_calloc((size_t)law->uniform_count + 1, sizeof(double));
   p->field = lanes(law->field_count);
@@ -258,6 +275,7 @@ void tips_take(tips *t, const deck *k, const plane_stiffness *law, double densit
   t->medium = crack_medium_of(law->D[0][0], law->D[0][1], law->D[2][2], density);
   t->check_steps = o->check_every > 0 ? llround(o->check_every / time_step) : o->check_steps;
   if (t->check_steps < 1) t->check_steps = 1;
+  t->first_step = (int64_t)ceil(o->from / time_step - 1e-6);
   t->update_steps = t->check_steps / o->updates;
   if (t->update_steps < 1) t->update_steps = 1;
   for (int n = 0; n < t->count; n++)
@@ -271,7 +289,7 @@ static double tips_speed(const tips *t, const mesh_tip *p) {
 }
 
 static bool is_time(const tips *t, int64_t step) {
-  return t->count > 0 && step % t->check_steps == 0;
+  return t->count > 0 && step >= t->first_step && step % t->check_steps == 0;
 }
 
 void tips_before(tips *t, const body *w, const node_stencil *k) {
@@ -282,7 +300,8 @@ void tips_before(tips *t, const body *w, const node_stencil *k) {
 }
 
 /* Velocities and accelerations of the nodes at the present instant; their places are there. */
-static void find_motion(tips *t, const body *w, const node_stencil *k) {
+static void find_motion(tips *t, const body *w, double *const last_resistance[2],
+                        const node_stencil *k) {
   pool *memory = pool_new();
   double *const force[2] = {pool_doubles(memory, k->layout.size),
                             pool_doubles(memory, k->layout.size)};
@@ -291,10 +310,12 @@ static void find_motion(tips *t, const body *w, const node_stencil *k) {
     for (int n = 0; n < mesh_node_count(k->of); n++) {
       const long site = node_layout_at(&k->layout, n);
       const double before = w->velocity[d][site];
-      const double a = t->loaded[n] ? (before - t->kept[d][n]) / w->time_step
-                                    : -force[d][site] / body_mass(w, d, site);
+      const double mass = body_mass(w, d, site);
+      const double a =
+          t->loaded[n] ? (before - t->kept[d][n]) / w->time_step : -force[d][site] / mass;
+      const double last = t->loaded[n] ? a : -last_resistance[d][site] / mass;
       t->acceleration[d][n] = a;
-      t->velocity[d][n] = before + 0.5 * w->time_step * a;
+      t->velocity[d][n] = before + w->time_step * (0.5 * a + (t->beta_1 - 0.5) * (a - last));
     }
   pool_free(memory);
 }
@@ -387,6 +408,22 @@ static void look_at(tips *t, mesh_tip *p, const body *w, const node_stencil *k) 
   p->now.K[1] = 0;
 }
 
+bool tip_overlaps(const tip_state *p) {
+  return p->least < -OVERLAP * p->largest;
+}
+
+static void note_overlap(const tips *t, mesh_tip *p, const body *w) {
+  const double time = (double)t->step * w->time_step, K = p->now.K[0];
+  p->now.largest = pl_max(p->now.largest, fabs(K));
+  if (K < 0 && K < p->now.first / OVERLAP) {
+    p->now.first = K;
+    p->now.first_time = time;
+  }
+  if (!(K < p->now.least)) return;
+  p->now.least = K;
+  p->now.least_time = time;
+}
+
 /* --- growth ----------------------------------------------------------------------------------- */
 
 /* What the law says of a tip: [PL_TIP_RESULTS]. */
@@ -452,16 +489,31 @@ static void decide(tips *t, mesh_tip *p, const mesh *m) {
   p->now.segments++;
 }
 
-/* Part of a -> b until it meets c -> d; 1: it does not. */
-static double until_met(const double a[2], const double b[2], const crack_piece *other) {
-  const double u[2] = {b[0] - a[0], b[1] - a[1]},
-               v[2] = {other->b[0] - other->a[0], other->b[1] - other->a[1]},
-               w[2] = {other->a[0] - a[0], other->a[1] - a[1]};
-  const double cross = u[0] * v[1] - u[1] * v[0];
-  if (cross == 0) return 1;
-  const double along = (w[0] * v[1] - w[1] * v[0]) / cross,
-               there = (w[0] * u[1] - w[1] * u[0]) / cross;
-  return along > 1e-9 && along < 1 && there >= 0 && there <= 1 ? along : 1;
+static double cross(const double a[2], const double b[2]) {
+  return a[0] * b[1] - a[1] * b[0];
+}
+
+/* Of pieces on one line: until the nearer end of the other one ahead; 0 where that begins here. */
+static double until_met_ahead(const double u[2], const double c[2], const double d[2]) {
+  const double square = u[0] * u[0] + u[1] * u[1], to_c = (c[0] * u[0] + c[1] * u[1]) / square,
+               to_d = (d[0] * u[0] + d[1] * u[1]) / square;
+  const double nearer = pl_min(to_c, to_d), farther = pl_max(to_c, to_d);
+  if (farther <= MET) return 1;
+  return nearer > MET ? pl_min(nearer, 1) : 0;
+}
+
+/* Part of a -> b until it meets the other piece; 1: it does not. Both are on one line where they are
+   nearer than `hardly`. */
+static double until_met(const double a[2], const double b[2], const crack_piece *other,
+                        double hardly) {
+  const double u[2] = {b[0] - a[0], b[1] - a[1]}, c[2] = {other->a[0] - a[0], other->a[1] - a[1]},
+               d[2] = {other->b[0] - a[0], other->b[1] - a[1]}, v[2] = {d[0] - c[0], d[1] - c[1]};
+  const double near = hardly * pl_hypot(u[0], u[1]);
+  if (fabs(cross(u, c)) < near && fabs(cross(u, d)) < near) return until_met_ahead(u, c, d);
+  const double turn = cross(u, v);
+  if (turn == 0) return 1;
+  const double along = cross(c, v) / turn, there = cross(c, u) / turn;
+  return along > MET && along < 1 && there >= 0 && there <= 1 ? along : 1;
 }
 
 static double until_left(const double a[2], const double b[2], const double lower[2],
@@ -474,11 +526,19 @@ static double until_left(const double a[2], const double b[2], const double lowe
   return pl_max(part, 0);
 }
 
-static void finish(tips *t, mesh_tip *p, const char *why) {
-  p->now.done = 1;
+const char *const tip_end_words[TIP_ENDS] = {
+    [TIP_ALIVE] = "",
+    [TIP_HAS_LEFT] = "has left where cracks grow",
+    [TIP_HAS_MET] = "has met another crack",
+    [TIP_AT_HOLE] = "has run into a hole",
+    [TIP_AT_ELEMENTS] = "has come to finite elements, which do not see it",
+    [TIP_HAS_TOO_MANY] = "has grown by more pieces than can be kept",
+};
+
+static void finish(const tips *t, mesh_tip *p, const body *w, tip_end why) {
+  p->now.done = why;
+  p->now.done_time = (double)t->step * w->time_step;
   p->now.speed = 0;
-  snprintf(t->said, sizeof t->said, "the tip of `%s` at (%.6g, %.6g) mm %s", p->of->name,
-           1e3 * p->now.at[0], 1e3 * p->now.at[1], why);
 }
 
 enum { PIECE_GOES_ON, PIECE_BEGINS_LEG, PIECE_IN_HOLE };
@@ -503,34 +563,37 @@ static void part_hole(tips *t, const mesh_tip *p, const double from[2], mesh *m,
 }
 
 /* By its way over the time between two advances; shorter where something ends it. */
-static void advance(tips *t, mesh_tip *p, double way, mesh *m, node_stencil *k) {
+static void advance(tips *t, mesh_tip *p, const body *w, mesh *m, node_stencil *k) {
+  const double way = p->now.speed * w->time_step * (double)t->update_steps;
   const double *a = p->now.at,
                b[2] = {a[0] + way * pl_cos(p->now.angle), a[1] + way * pl_sin(p->now.angle)};
   double part = until_left(a, b, t->lower, t->upper);
-  const char *why = part < 1 ? "has left where cracks grow" : NULL;
+  tip_end why = part < 1 ? TIP_HAS_LEFT : TIP_ALIVE;
   for (int n = 0; n < m->cracks.count; n++) {
-    const double met = until_met(a, b, &m->cracks.pieces[n]);
+    const double met = until_met(a, b, &m->cracks.pieces[n], ON_BORDER * m->spacing[0]);
     if (met >= part) continue;
     part = met;
-    why = "has met another crack";
+    why = TIP_HAS_MET;
   }
   const double hole = holes_until(&m->holes, a, b);
   if (hole < part) {
     part = hole;
-    why = "has run into a hole";
+    why = TIP_AT_HOLE;
   }
   const double to[2] = {a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])},
                from[2] = {a[0], a[1]};
   const int cell = mesh_cell_of(m, to);
   if (cell >= 0 && m->cell[cell] == CELL_ELEMENT) {
-    finish(t, p, "has come to the finite elements, which do not see it");
+    finish(t, p, w, TIP_AT_ELEMENTS);
     return;
   }
   if (t->pieces.count == TIPS_MOST_PIECES) {
-    finish(t, p, "has grown by more pieces than can be kept");
+    finish(t, p, w, TIP_HAS_TOO_MANY);
     return;
   }
   if (part * way > 0) {
+    t->rated +=
+        part * way * m->thickness * tip_energy_release(&t->medium, tips_speed(t, p), p->now.K);
     keep_piece(t, p, from, to, p->now.last == 0 ? PIECE_BEGINS_LEG : PIECE_GOES_ON);
     node_stencil_grow(k, m, from, to, p->number);
     p->now.last += part * way;
@@ -539,16 +602,16 @@ static void advance(tips *t, mesh_tip *p, double way, mesh *m, node_stencil *k) 
     p->now.grown = 1;
   }
   if (hole < 1 && part == hole) part_hole(t, p, from, m, k);
-  if (why) finish(t, p, why);
+  if (why != TIP_ALIVE) finish(t, p, w, why);
 }
 
-/* u K u/2 of the places at hand. */
+/* u_n K u_(n-1)/2 of the last step. */
 static double stored(const body *w, const node_stencil *k, double *const product[2]) {
   double sum = 0;
   node_stencil_multiply(k, (const double *const *)w->displacement, product, 0, k->layout.nodes[1]);
   for (int d = 0; d < 2; d++)
     for (long q = 0; q < k->layout.size; q++)
-      sum += 0.5 * product[d][q] * w->displacement[d][q];
+      sum += 0.5 * product[d][q] * (w->displacement[d][q] - w->time_step * w->velocity[d][q]);
   return sum;
 }
 
@@ -565,32 +628,36 @@ static void grow(tips *t, const body *w, mesh *m, node_stencil *k) {
   const double before = stored(w, k, product);
   for (int n = 0; n < t->count; n++) {
     mesh_tip *p = &t->items[n];
-    if (p->now.speed > 0 && !p->now.done)
-      advance(t, p, p->now.speed * w->time_step * (double)t->update_steps, m, k);
+    if (p->now.speed > 0 && !p->now.done) advance(t, p, w, m, k);
   }
   t->released += before - stored(w, k, product);
   pool_free(memory);
 }
 
-static void look(tips *t, const body *w, const mesh *m, const node_stencil *k) {
-  find_motion(t, w, k);
+static void look(tips *t, const body *w, double *const last_resistance[2], const mesh *m,
+                 const node_stencil *k) {
+  find_motion(t, w, last_resistance, k);
   for (int n = 0; n < t->count; n++) {
     mesh_tip *p = &t->items[n];
     if (p->now.done) continue;
     look_at(t, p, w, k);
+    note_overlap(t, p, w);
     if (p->law) decide(t, p, m);
   }
 }
 
-void tips_after(tips *t, const body *w, mesh *m, node_stencil *k) {
+void tips_after(tips *t, const body *w, double *const last_resistance[2], mesh *m,
+                node_stencil *k) {
+  if (t->step > 0 && t->step % t->update_steps == 0 && some_grows(t)) grow(t, w, m, k);
   t->step++;
-  if (is_time(t, t->step)) look(t, w, m, k);
-  if (t->step % t->update_steps == 0 && some_grows(t)) grow(t, w, m, k);
+  if (is_time(t, t->step)) look(t, w, last_resistance, m, k);
 }
 
 void tips_at_rest(tips *t, const body *w, const node_stencil *k) {
-  for (int n = 0; n < t->count; n++)
+  for (int n = 0; n < t->count; n++) {
     look_at(t, &t->items[n], w, k); /* velocities and accelerations are 0, as they began */
+    note_overlap(t, &t->items[n], w);
+  }
 }
 
 void tips_replay(tips *t, mesh *m, node_stencil *k) {

@@ -80,7 +80,7 @@ typedef struct deck_lattice {
   mesh_method method;
   double support;   /* d_max, spacings */
   int gauss, parts; /* background rule: gauss x gauss points in each of parts x parts of a cell */
-  double rich;      /* radius of the enriched basis, spacings; 0: a linear basis */
+  double rich;      /* radius of the enriched basis, spacings along x; 0: a linear basis */
   bool smooth;      /* zones are blended by a smooth ramp */
 } deck_lattice;
 typedef deck_lattice deck_bar, deck_link, deck_mesh;
@@ -93,9 +93,14 @@ typedef struct deck_zone { /* a part of a mesh with the other method */
   deck_shape shape;
 } deck_zone;
 
+/* Of nodes that are driven: they go where their velocity takes them, or give way to the body by
+   dt^2 a/2 in each step. */
+typedef enum newmark_motion { MOTION_CONSISTENT, MOTION_VELOCITY_ONLY } newmark_motion;
+
 typedef struct deck_newmark { /* of meshes */
   deck_item item;
   double beta_1; /* 1/2: no numerical damping; up to 1 */
+  newmark_motion motion;
 } deck_newmark;
 
 typedef struct deck_placed {     /* a value that may differ from place to place */
@@ -156,6 +161,7 @@ typedef struct deck_tips { /* how stress intensities are found, and how often */
   tip_integral integral;
   double half_size;   /* of the box, spacings along x */
   int points;         /* own points: cells of 2 x 2 a quadrant along either axis; 0: the mesh's */
+  double from;        /* s: no look before */
   double check_every; /* s; 0: check_steps */
   int check_steps, updates;
   double segment; /* least length of a leg before the crack may turn, spacings along x */

@@ -32,9 +32,10 @@ static const deck_key_info mesh_keys[] = {
      .fallback = "= a rectangle",
      DECK_AT(mesh, corners),
      DECK_COUNT_AT(mesh, corner_count),
-     .doc = "x1, y1, ..., x4, y4: in place of `corner` and `size` the corners of a quadrilateral of "
-            "finite elements, counter-clockwise; the first two are the ends of the first row of "
-            "nodes"},
+     .doc =
+         "x1, y1, ..., x4, y4: in place of `corner` and `size` the corners of a quadrilateral of "
+         "finite elements, counter-clockwise; the first two are the ends of the first row of "
+         "nodes"},
     {.name = "nodes",
      .type = DECK_PAIR,
      .unit = "1",
@@ -81,6 +82,21 @@ static const deck_key_info mesh_keys[] = {
      .most = 8,
      DECK_AT(mesh, parts),
      .doc = "element-free: equal parts of a cell along either axis, each with its own points"},
+    {.name = "basis",
+     .type = DECK_WORD,
+     .choices = "linear|enriched",
+     .fallback = "'linear'",
+     DECK_NOT_KEPT,
+     .doc = "element-free: 1, x, y; around tips of cracks with sqrt(r) of the nearest one, too"},
+    {.name = "enriched_radius",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_POSITIVE,
+     .fallback = "4",
+     DECK_AT(mesh, rich),
+     .doc =
+         "how far from a tip the enriched basis reaches, in spacings along x; from half of it on "
+         "it blends into the linear one"},
     {.name = "ramp",
      .type = DECK_WORD,
      .choices = "linear|smooth",
@@ -133,6 +149,22 @@ static void check_gauss(deck_reader *r, const namelist_group *from, deck_mesh *i
                 "a cell has at least one part");
 }
 
+/* Without tips nothing is enriched: a radius alone would do nothing. */
+static void check_basis(deck_reader *r, const namelist_group *from, deck_mesh *item) {
+  const namelist_key *basis = namelist_find(from, "basis");
+  const bool enriched = basis && basis->values[0].text && basis->values[0].text[0] == 'e';
+  if (!enriched) item->rich = 0;
+  if (!enriched && namelist_find(from, "enriched_radius")) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "enriched_radius"),
+                "a linear basis has no `enriched_radius`");
+    diag_hint(r->d, "basis = 'enriched'");
+  } else if (enriched && item->method == MESH_FINITE_ELEMENTS) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "basis"),
+                "bilinear elements have no basis to enrich");
+    diag_hint(r->d, "method = 'element_free', with a `&zone` of finite elements");
+  }
+}
+
 /* A convex quadrilateral, whose box stands for the rectangle. */
 static bool take_corners(deck_reader *r, const namelist_group *from, deck_mesh *item) {
   const span where = deck_where(&item->item, "corners");
@@ -181,7 +213,8 @@ static bool has_extent(deck_reader *r, const namelist_group *from, deck_mesh *it
   if (item->corner_count > 0) return take_corners(r, from, item);
   if (namelist_find(from, "size")) return true;
   diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&mesh` has no `size`");
-  diag_hint(r->d, "size: extent of the rectangle along x and y (m); or `corners` of a quadrilateral");
+  diag_hint(r->d,
+            "size: extent of the rectangle along x and y (m); or `corners` of a quadrilateral");
   return false;
 }
 
@@ -194,6 +227,7 @@ static void check_mesh(deck_reader *r, const namelist_group *from, void *into) {
   deck_check_lattice_name(r, item);
   deck_check_places(r, from, &deck_group_mesh, 2);
   check_gauss(r, from, item);
+  check_basis(r, from, item);
   if (!has_extent(r, from, item) || !has_nodes(r, item) || !has_support(r, item)) return;
   item->spacing = spacing_of(item);
   item->origin[0] = item->corner[0];
@@ -284,8 +318,9 @@ static void check_crack(deck_reader *r, const namelist_group *from, void *into) 
 }
 
 DECK_LIST(crack, .identity = "name", .open = true, .check = check_crack,
-          .doc = "A crack in the element-free part of a mesh: nodes do not act across it; or on "
-                 "its edge, by `symmetry`. Every other key sets a parameter or an option of its law.");
+          .doc =
+              "A crack in the element-free part of a mesh: nodes do not act across it; or on "
+              "its edge, by `symmetry`. Every other key sets a parameter or an option of its law.");
 
 static const deck_key_info tips_keys[] = {
     {.name = "integral",
@@ -310,6 +345,13 @@ static const deck_key_info tips_keys[] = {
      DECK_AT(tips, points),
      .doc = "own points of the integral: so many cells of 2 x 2 along either axis of a quadrant of "
             "the box; 0: the mesh's points inside"},
+    {.name = "from",
+     .type = DECK_REAL,
+     .unit = "s",
+     .bound = BOUND_NOT_NEGATIVE,
+     .fallback = "0",
+     DECK_AT(tips, from),
+     .doc = "no look at the tips before that time: until then they stay, and no K is known"},
     {.name = "check_every",
      .type = DECK_REAL,
      .unit = "s",
@@ -379,6 +421,15 @@ static const deck_key_info newmark_keys[] = {
      DECK_AT(newmark, beta_1),
      .doc = "0.5, central differences, to 1; above 0.5 fast waves are damped, by "
             "`(beta_1 - 0.5) omega dt/2` of the critical damping"},
+    {.name = "motion",
+     .type = DECK_CHOICE,
+     .choices = "consistent|velocity_only",
+     .fallback = "'consistent'",
+     DECK_AT(newmark, motion),
+     .doc =
+         "of driven nodes: they go where their velocity takes them; or only that is set, and "
+         "each step moves them by `dt^2 a/2` of the body's forces, too, as some programs do: the "
+         "longer the step, the more they give way"},
 };
 
 static void check_newmark(deck_reader *r, const namelist_group *from, void *into) {

@@ -70,10 +70,12 @@ static const deck_key_info monitor_keys[] = {
      .type = DECK_PLACE,
      .unit = "m",
      DECK_AT(monitor, at),
-     .doc = "acceleration, stress, strain: in place of `region`, of the particle nearest to it, of a "
-            "mesh at the place itself, as there displacement and velocity, too; bar_force: of the bond, slip: of the tied particle nearest to it; force, moment: a "
-            "place of the section, which the moment is about; tip, tip_speed: where the crack "
-            "begins"},
+     .doc =
+         "acceleration, stress, strain: in place of `region`, of the particle nearest to it, of a "
+         "mesh at the place itself, as there displacement and velocity, too; bar_force: of the "
+         "bond, slip: of the tied particle nearest to it; force, moment: a "
+         "place of the section, which the moment is about; tip, tip_speed: where the crack "
+         "begins"},
     {.name = "normal",
      .type = DECK_PLACE,
      .unit = "1",

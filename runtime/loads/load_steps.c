@@ -149,6 +149,18 @@ static double velocity_at(const loads *l, const body *w, const constraint *c, lo
   return drive_of(l, c)->is_displacement ? slope_at(w, &f, t, false) : time_function_at(&f, t);
 }
 
+/* A driven node of a mesh that gives way to the body: a step moves it by dt v + dt^2 a/2, v being the
+   prescribed velocity and dt a what it would gain by itself, of a whole step that would take it to
+   the velocity `free`. */
+static bool gives_way(const loads *l, const constraint *c) {
+  return l->gives_way && c->drive >= 0;
+}
+
+static double velocity_given_way(const loads *l, const body *w, const constraint *c, long step,
+                                 double free) {
+  return velocity_at(l, w, c, step) + 0.5 * (free - c->velocity);
+}
+
 /* The step is the drive's last: it ends within half a step of its instant, or earlier. */
 static bool lets_go(const loads *l, const body *w, const constraint *c, long step) {
   if (c->drive < 0 || l->clock.ramp > 0) return false; /* supports do not */
@@ -522,6 +534,9 @@ static inline bool aims(const load_run *r, constraint *c, const cause_step *driv
   if (drive->lets_go) {
     const double free = w->velocity[c->component][c->site];
     *target = c->held + w->time_step * velocity_let_go(r->l, w, c, r->step, free);
+  } else if (gives_way(r->l, c)) {
+    const double free = w->velocity[c->component][c->site];
+    *target = c->held + w->time_step * velocity_given_way(r->l, w, c, r->step, free);
   } else {
     *target = c->anchor + motion_after(r, c, drive);
   }
@@ -654,6 +669,8 @@ static double loaded_velocity(const loads *l, const body *w, int component, int6
 static double prescribed_velocity(const loads *l, const body *w, const constraint *c, long step) {
   if (lets_go(l, w, c, step))
     return velocity_let_go(l, w, c, step, loaded_velocity(l, w, c->component, c->site));
+  if (gives_way(l, c))
+    return velocity_given_way(l, w, c, step, loaded_velocity(l, w, c->component, c->site));
   return (c->anchor + motion_at(l, w, c, step + 1) - c->held) / w->time_step;
 }
 

@@ -411,6 +411,8 @@ loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, 
   loads *l = must_calloc(1, sizeof *l);
   l->deck = k;
   l->lattice = w;
+  l->gives_way =
+      deck_lattice_is_mesh(&k->lattices[lattice]) && k->newmark.motion == MOTION_VELOCITY_ONLY;
   l->regions = regions_select(k, k->lattices[lattice].name, w, d);
   motions m = {.dof = dof, .law = law, .said = d};
   m.holder = must_calloc((size_t)dof * (size_t)w->particle_count + 1, sizeof *m.holder);

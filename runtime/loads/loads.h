@@ -40,17 +40,18 @@ typedef struct applied { /* part of a force that acts on one component of one pa
   int32_t component;
   int32_t cause;      /* index into the deck's forces, then end moments, then the run's links */
   const double *link; /* N, N m: of a link, what it exerts in the present state; else NULL */
-  int64_t place;      /* of what differs from place to place: one of loads.places + 1; 0: the site */
-  int64_t holder;     /* index of the constraint on the same component, or -1 */
-  double share;       /* force = share * time function */
-  double now;         /* N: force of the coming step */
-  double velocity;    /* m/s: after the last step */
+  int64_t place;   /* of what differs from place to place: one of loads.places + 1; 0: the site */
+  int64_t holder;  /* index of the constraint on the same component, or -1 */
+  double share;    /* force = share * time function */
+  double now;      /* N: force of the coming step */
+  double velocity; /* m/s: after the last step */
   load_sums sums;
 } applied;
 
 typedef struct loads {
   const deck *deck;
   const rows *lattice;
+  bool gives_way; /* of a mesh: driven nodes do (newmark_motion) */
   region_sites *regions; /* [deck->region_count] */
   /* Both in the order of their sites, so that each thread puts its own right, and sums in one order
      whatever the threads. */

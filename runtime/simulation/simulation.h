@@ -27,6 +27,7 @@ C_LINKAGE_BEGIN
 typedef struct simulation simulation;
 struct profile;
 struct sweep;
+struct tips;
 
 /* What the front end hands over for each interaction of the deck, in its order, and then for each of
    its cracks (without a law: all 0). NULL where a law or
@@ -119,6 +120,9 @@ typedef struct contact_said {
   double force, stored; /* N, of a pair; J */
 } contact_said;
 contact_said simulation_contact(const simulation *s, int contact);
+
+/* The tips of the cracks of a body's mesh; NULL without. */
+const struct tips *simulation_tips(const simulation *s, int body);
 
 /* History so far. Series 0.. are the deck's monitors, then the energy terms, in sum and, of several
    bodies, of each; of quasi-static runs

@@ -35,6 +35,7 @@ static void add_cells(part_list *l, cells_memory *m, tips *t) {
   if (!t) return;
   add_part(l, "steps of tips", &t->step, sizeof t->step);
   add_part(l, "released", &t->released, sizeof t->released);
+  add_part(l, "rated", &t->rated, sizeof t->rated);
   add_part(l, "pieces", &t->pieces.count, sizeof t->pieces.count);
   add_part(l, "pieces", t->pieces.items, TIPS_MOST_PIECES * sizeof *t->pieces.items);
   add_part(l, "pieces", t->pieces.tip, TIPS_MOST_PIECES * sizeof *t->pieces.tip);

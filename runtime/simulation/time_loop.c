@@ -336,11 +336,14 @@ static void stand(simulation *s) {
     s->clock.at.status = STEP_END;
 }
 
-/* Up to the next frame. */
+/* Up to the next frame; one that is due but not taken holds nothing up. */
 static void stand_on(simulation *s) {
-  while (s->clock.at.status == STEP_OK && !frames_due(s->frames) &&
-         !(s->interrupted && *s->interrupted))
+  bool more = s->clock.at.status == STEP_OK && !(s->interrupted && *s->interrupted);
+  while (more) {
     stand(s);
+    more = s->clock.at.status == STEP_OK && !frames_due(s->frames) &&
+           !(s->interrupted && *s->interrupted);
+  }
 }
 
 step_status time_loop_run(simulation *s, long steps, const volatile sig_atomic_t *interrupted) {

@@ -75,6 +75,41 @@ static void zones_flag_nodes(void **state) {
   small_close(&r);
 }
 
+static void an_enriched_basis_reaches_as_far_as_asked(void **state) {
+  (void)state;
+  small_run r;
+  mesh m;
+  char text[2048] = MESH;
+  char *at = strstr(text, "support = 2.6");
+  memcpy(at, "gauss = 3    ", 13);
+  for (int n = 0; n < 3; n++) {
+    const char *const keys[] = {"", "basis = 'enriched' ",
+                                "basis = 'enriched' enriched_radius = 2.5 "};
+    char with[4096];
+    snprintf(with, sizeof with, "%.*s%s%s", (int)(at - text), text, keys[n], at);
+    small_read(&r, with);
+    assert_non_null(r.deck);
+    assert_true(mesh_build(r.deck, 0, &m, &r.said));
+    assert_true(fabs(m.enriched - (double[]){0, 4, 2.5}[n] * 0.01) < 1e-15);
+    mesh_close(&m);
+    small_close(&r);
+  }
+  char *method = strstr(text, "method = 'element_free'");
+  for (int n = 0; n < 2; n++) {
+    const char *const keys[] = {"enriched_radius = 2",
+                                "basis = 'enriched' method = 'finite_elements'"};
+    char with[4096];
+    snprintf(with, sizeof with, "%.*s%s%s%s", (int)(method - text), text,
+             n ? "" : "method = 'element_free' ", keys[n], strstr(method, " gauss"));
+    char *gauss = strstr(with, "gauss = 3");
+    memset(gauss, ' ', 9);
+    small_read(&r, with);
+    assert_null(r.deck);
+    assert_true(says(&r, n ? "have no basis to enrich" : "has no `enriched_radius`"));
+    small_close(&r);
+  }
+}
+
 static void wrong(const char *text, const char *message) {
   small_run r;
   small_open(&r, &hooke_law, text);
@@ -99,6 +134,8 @@ static void what_cannot_be_is_refused(void **state) {
   wrong(MESH "&region name = 'right' shape = 'segment' from = 0.21, 0 to = 0.21, 0.1 /\n"
              "&support region = 'right' fix = 'x' /\n",
         "is element-free");
+  wrong(MESH "&support region = 'left' fix = 'x', 'y' /\n&tips from = '-1 ms' /\n", "negative");
+  wrong(MESH HELD "&newmark motion = 'slow' /\n", "cannot be `slow`");
   wrong(MESH HELD "&relaxation increments = 3 /\n", "cannot have quasi-static runs");
   wrong(MESH HELD "&material mesh = 'plate' model = 'hooke' region = 'left' E = 1e9 /\n",
         "cannot have a material of its own");
@@ -291,6 +328,7 @@ static void a_resumed_run_is_the_same(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(nodes_are_particles_in_rows),
                                      cmocka_unit_test(zones_flag_nodes),
+                                     cmocka_unit_test(an_enriched_basis_reaches_as_far_as_asked),
                                      cmocka_unit_test(what_cannot_be_is_refused),
                                      cmocka_unit_test(holes_that_cannot_be),
                                      cmocka_unit_test(a_plate_with_a_hole),

@@ -162,10 +162,36 @@ static void a_slanted_crack_has_both_modes_at_both_tips(void **state) {
   case_close(&c);
 }
 
+/* 2a = 0.8 in 2 x 4: 1.243 by sigma sqrt(pi a sec(pi a/W)) (Tada, Paris and Irwin), W = 2. */
+static void a_centre_crack_by_box(void **state) {
+  (void)state;
+  case_mesh c = {0};
+  double up[2] = {0, 1}, down[2] = {0, -1}, K[2];
+  mesh_open(&c.m, (int[2]){62, 122}, (double[2]){-1, -2}, (double[2]){2, 4}, 1, 2.1);
+  c.law = isotropic(1, 0.3, false);
+  crack_lines_add(&c.m.cracks, (double[2]){-0.4, 0}, (double[2]){0.4, 0});
+  case_settle(&c);
+  line_load(&c.m, (double[2]){-1, 2}, (double[2]){1, 2}, constant_traction, up, c.force);
+  line_load(&c.m, (double[2]){-1, -2}, (double[2]){1, -2}, constant_traction, down, c.force);
+  const int low = mesh_node(&c.m, 61, 0), high = mesh_node(&c.m, 61, 121);
+  c.held[2 * low] = c.held[2 * low + 1] = c.held[2 * high] = 1;
+  solve(&c);
+  for (int d = 2; d <= 6; d += 2)
+    for (int end = 0; end < 2; end++) {
+      const double tip[2] = {end ? 0.4 : -0.4, 0};
+      intensity(&c, tip, end ? 0 : M_PI, d * c.m.spacing[0], 0.8, WEIGHT_PYRAMID, K);
+      if (end) print_message("centre crack, box of %d spacings: %.4f of 1.243\n", d, K[0]);
+      assert_true(fabs(K[0] - 1.243) < 0.04 * 1.243 && fabs(K[1]) < 1e-3 * K[0]);
+      assert_true(K[0] > 1.202 && K[0] < 1.240);
+    }
+  case_close(&c);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(an_edge_crack_by_box_and_support),
                                      cmocka_unit_test(a_fine_mesh_has_the_theory),
                                      cmocka_unit_test(a_sheared_plate),
+                                     cmocka_unit_test(a_centre_crack_by_box),
                                      cmocka_unit_test(a_slanted_crack_has_both_modes_at_both_tips)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -108,6 +108,94 @@ static void zones_pass_the_patch_test_to_quadrature(void **state) {
   assert_true(fine_corner < 3e-6 && fine < 0.2 * usual);
 }
 
+/* --- quadrilaterals --------------------------------------------------------------------------- */
+
+static const double skew[4][2] = {{0.01, -0.02}, {0.12, 0.01}, {0.09, 0.08}, {-0.01, 0.05}};
+
+static void open_skew(case_mesh *c, int gauss) {
+  mesh_open_mapped(&c->m, (int[2]){9, 7}, skew, 0.03, 2.1);
+  memset(c->m.element_gauss, gauss, (size_t)mesh_cell_count(&c->m));
+  c->law = isotropic(200e9, 0.3, false);
+  case_settle(c);
+}
+
+static double linear_field(int component, const double at[2]) {
+  return component ? 2e-4 - 3e-3 * at[0] + 1e-3 * at[1] : 1e-4 + 2e-3 * at[0] - 4e-3 * at[1];
+}
+
+/* Prescribed on the border: inside, and at any place, it is the solution. */
+static void a_skew_mesh_passes_the_patch_test(void **state) {
+  (void)state;
+  for (int gauss = 1; gauss <= 2; gauss++) {
+    case_mesh c = {0};
+    double at[2], most = 0;
+    open_skew(&c, gauss);
+    for (int n = 0; n < mesh_node_count(&c.m); n++) {
+      const int i = n % 9, j = n / 9;
+      mesh_place(&c.m, n, at);
+      for (int d = 0; d < 2 && (i == 0 || j == 0 || i == 8 || j == 6); d++) {
+        c.held[2 * n + d] = 1;
+        c.u[d][n] = linear_field(d, at);
+      }
+    }
+    assert_true(solve(&c).solved);
+    for (int k = 0; k < 500; k++) {
+      const double u[2] = {random_unit(random_mix((uint64_t)k)),
+                           random_unit(random_mix((uint64_t)k + 1000))};
+      double slope[2][2], gradient[2][2] = {{0}}, value[2] = {0};
+      point_shape s;
+      quadrilateral_map(skew, u, at, slope);
+      shape_functions(&c.m, mesh_cell_of(&c.m, at), at, &s);
+      for (int q = 0; q < s.count; q++)
+        for (int d = 0; d < 2; d++) {
+          value[d] += s.n[q] * c.u[d][s.node[q]];
+          gradient[d][0] += s.nx[q] * c.u[d][s.node[q]];
+          gradient[d][1] += s.ny[q] * c.u[d][s.node[q]];
+        }
+      for (int d = 0; d < 2; d++)
+        most = larger_of(most, fabs(value[d] - linear_field(d, at)) / 1e-3);
+      most = larger_of(most, fabs(gradient[0][0] - 2e-3) / 2e-3);
+      most = larger_of(most, fabs(gradient[0][1] + 4e-3) / 4e-3);
+      most = larger_of(most, fabs(gradient[1][0] + 3e-3) / 3e-3);
+    }
+    assert_true(most < 1e-10);
+    case_close(&c);
+  }
+}
+
+/* Area by the points; a traction on a slanted edge, and on a line across the cells, as a whole and
+   its moment. */
+static void a_skew_mesh_weighs_and_bears_what_it_should(void **state) {
+  (void)state;
+  case_mesh c = {0};
+  double area = 0, push[2] = {3, -2}, sum[2], moment, at[2];
+  open_skew(&c, 2);
+  for (int n = 0; n < c.points.count; n++)
+    area += c.points.area[n];
+  assert_true(fabs(area - quadrilateral_area(skew)) < 1e-14 * area);
+  const double lines[2][2][2] = {{{0.12, 0.01}, {0.09, 0.08}}, {{0.02, 0.0}, {0.08, 0.06}}};
+  for (int k = 0; k < 2; k++) {
+    const double *from = lines[k][0], *to = lines[k][1],
+                 length = hypot(to[0] - from[0], to[1] - from[1]);
+    for (int d = 0; d < 2; d++)
+      memset(c.force[d], 0, (size_t)mesh_node_count(&c.m) * sizeof(double));
+    assert_true(fabs(line_load(&c.m, from, to, constant_traction, push, c.force) - length) <
+                1e-12 * length);
+    sum[0] = sum[1] = moment = 0;
+    for (int n = 0; n < mesh_node_count(&c.m); n++) {
+      mesh_place(&c.m, n, at);
+      sum[0] += c.force[0][n];
+      sum[1] += c.force[1][n];
+      moment += at[0] * c.force[1][n] - at[1] * c.force[0][n];
+    }
+    const double middle[2] = {0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])};
+    assert_true(fabs(sum[0] - 3 * 0.03 * length) < 1e-14);
+    assert_true(fabs(sum[1] + 2 * 0.03 * length) < 1e-14);
+    assert_true(fabs(moment - (middle[0] * sum[1] - middle[1] * sum[0])) < 1e-15);
+  }
+  case_close(&c);
+}
+
 /* --- a cracked plate -------------------------------------------------------------------------- */
 
 /* 1 x 3, crack of 0.475 from the left at mid height, pulled by 1. */
@@ -444,6 +532,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(elements_pass_the_patch_test),
       cmocka_unit_test(zones_pass_the_patch_test_to_quadrature),
+      cmocka_unit_test(a_skew_mesh_passes_the_patch_test),
+      cmocka_unit_test(a_skew_mesh_weighs_and_bears_what_it_should),
       cmocka_unit_test(a_cracked_plate_stores_the_known_energy),
       cmocka_unit_test(growth_in_pieces_is_assembly_afresh),
       cmocka_unit_test(the_stencil_gives_the_points_forces),

@@ -67,6 +67,10 @@ static void known_fields(void **state) {
       near(found[k], known[k], 3e-6);
   }
   near(rayleigh_function(&m, v), .223835, 3e-6);
+  /* A_I, A_II of Freund (1990): G = (1 - nu)/(2 mu) (A_I K_I^2 + A_II K_II^2) */
+  const double of_mode[] = {1.324471, 1.209071};
+  for (int mode = 1; mode <= 2; mode++)
+    near(m.mu / (0.8 * tip_factor(&m, mode, v)), of_mode[mode - 1], 1e-6);
   const double rest[2] = {1, 0};
   near(m.modulus * tip_energy_release(&m, 0.01 * m.c_s, rest), 1.000078, 1e-6);
 }

@@ -1,0 +1,99 @@
+#include "generator/run/run_cracks.h"
+
+#include <math.h>
+
+#include "generator/run/run_report.h"
+#include "runtime/continuum/tips.h"
+
+enum { NAME_TEXT = 256 };
+
+/* --- in words --------------------------------------------------------------------------------- */
+
+static void conclude_tip(const run *r, const tips *t, int tip) {
+  const tip_state *p = &t->items[tip].now;
+  char name[NAME_TEXT], when[MOMENT_TEXT];
+  if (!p->grown && !p->done) return;
+  printf("  crack      %s: %.6g mm long, its tip at (%.6g, %.6g) mm",
+         tip_folder(t, tip, name, sizeof name), 1e3 * p->length, 1e3 * p->at[0], 1e3 * p->at[1]);
+  if (p->done) printf(" %s at %s", tip_end_words[p->done], moment(r, p->done_time, when));
+  putchar('\n');
+}
+
+/* Faces that nothing keeps apart. */
+static void conclude_overlap(const run *r, const tips *t, int tip) {
+  const tip_state *p = &t->items[tip].now;
+  char name[NAME_TEXT], first[MOMENT_TEXT], when[MOMENT_TEXT];
+  if (!tip_overlaps(p)) return;
+  printf("  overlap    %s: its faces overlap (K_I < 0), first at %s; K_I at least %.4g MPa*m^(1/2)",
+         tip_folder(t, tip, name, sizeof name), moment(r, p->first_time, first), 1e-6 * p->least);
+  if (t->items[tip].toughness > 0) printf(", %.3g of K_Ic", p->least / t->items[tip].toughness);
+  printf(", at %s\n", moment(r, p->least_time, when));
+}
+
+void conclude_cracks(const run *r) {
+  double released = 0, rated = 0;
+  for (int b = 0; b < simulation_bodies(r->simulation); b++) {
+    const tips *t = simulation_tips(r->simulation, b);
+    for (int n = 0; t && n < t->count; n++)
+      conclude_tip(r, t, n);
+    for (int n = 0; t && n < t->count; n++)
+      conclude_overlap(r, t, n);
+    released += t ? t->released : 0;
+    rated += t ? t->rated : 0;
+  }
+  if (rated > 0)
+    printf("  growth     released %.5g J, %.2g of the energy release rate over its way, %.5g J\n",
+           released, released / rated, rated);
+}
+
+/* --- for other programs ----------------------------------------------------------------------- */
+
+static void put_overlap(json *w, const mesh_tip *p) {
+  json_key(w, "overlap");
+  if (!tip_overlaps(&p->now)) {
+    json_null(w);
+    return;
+  }
+  json_object(w);
+  json_put_number(w, "first_time", p->now.first_time);
+  json_put_number(w, "K_I", p->now.least);
+  json_put_number(w, "time", p->now.least_time);
+  json_object_end(w);
+}
+
+static void put_tip(json *w, const tips *t, int tip) {
+  const mesh_tip *p = &t->items[tip];
+  char name[NAME_TEXT];
+  json_object(w);
+  json_put_text(w, "name", tip_folder(t, tip, name, sizeof name));
+  json_put_number(w, "x", p->now.at[0]);
+  json_put_number(w, "y", p->now.at[1]);
+  json_put_number(w, "length", p->now.length);
+  json_put_number(w, "speed", p->now.speed);
+  json_put_text(w, "finished", p->now.done ? tip_end_words[p->now.done] : NULL);
+  json_put_number(w, "finished_time", p->now.done ? p->now.done_time : NAN);
+  put_overlap(w, p);
+  json_object_end(w);
+}
+
+void put_cracks(json *w, const run *r) {
+  double released = 0, rated = 0;
+  json_put_array(w, "cracks");
+  for (int b = 0; b < simulation_bodies(r->simulation); b++) {
+    const tips *t = simulation_tips(r->simulation, b);
+    for (int n = 0; t && n < t->count; n++)
+      put_tip(w, t, n);
+    released += t ? t->released : 0;
+    rated += t ? t->rated : 0;
+  }
+  json_array_end(w);
+  json_key(w, "growth");
+  if (!(rated > 0)) {
+    json_null(w);
+    return;
+  }
+  json_object(w);
+  json_put_number(w, "released", released);
+  json_put_number(w, "energy_release", rated);
+  json_object_end(w);
+}

@@ -1,0 +1,14 @@
+/* What the cracks of a run's meshes have done: in words at its end, and for other programs. */
+#ifndef PERILAT_GENERATOR_RUN_CRACKS_H
+#define PERILAT_GENERATOR_RUN_CRACKS_H
+
+#include "dsl/base/json.h"
+#include "generator/run/run_state.h"
+
+/* Of each tip that has grown where it is, of those that are finished why; what growth has released;
+   whose faces overlap. Nothing without cracks. */
+void conclude_cracks(const run *r);
+/* "cracks": [...], "growth": {...} or null. */
+void put_cracks(json *w, const run *r);
+
+#endif
