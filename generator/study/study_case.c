@@ -16,6 +16,8 @@
 #include "generator/study/study_cost.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/material.h"
+#include "runtime/continuum/tips.h"
+#include "runtime/deck/deck_check.h"
 #include "runtime/deck/deck_read.h"
 #include "runtime/deck/lattice_kind.h"
 
@@ -210,10 +212,23 @@ static bool take_law(const deck *k, int interaction, study_case *c, uint64_t *ha
   return good;
 }
 
+/* "notch/K_I", "notch/start/K_I" of a crack of the deck. */
+static bool is_of_tip(const deck *k, const char *name) {
+  for (int c = 0; c < k->crack_count; c++) {
+    const size_t length = strlen(k->cracks[c].name);
+    if (strncmp(name, k->cracks[c].name, length) != 0 || name[length] != '/') continue;
+    const char *series = name + length + 1;
+    if (strncmp(series, "start/", 6) == 0) series += 6;
+    if (deck_is_one_of(series, tip_series_names, TIP_SERIES_COUNT)) return true;
+  }
+  return false;
+}
+
 /* The energies' last parts are histories, too. */
 static bool is_history(const deck *k, const char *name) {
   static const char *const energies[] = {"kinetic", "stored", "external", "imbalance"};
-  if (!name || strcmp(name, "time") == 0 || deck_find_monitor(k, name) >= 0) return true;
+  if (!name || strcmp(name, "time") == 0 || deck_find_monitor(k, name) >= 0 || is_of_tip(k, name))
+    return true;
   bool energy = strncmp(name, "energy/", 7) == 0 || strncmp(name, "dissipated", 10) == 0;
   for (size_t e = 0; e < sizeof energies / sizeof *energies; e++)
     energy = energy || strcmp(name, energies[e]) == 0;

@@ -35,37 +35,59 @@ int32_t cells_particle(const cells *c, int node) {
   return c->nodes->site_particle[cells_site(c, node)];
 }
 
-/* The weights of few nodes beside a hole may outweigh each other. */
-static void report_massless(const deck *k, const cells *c, int node, diagnostics *d) {
-  double at[2];
+/* Where holes leave so few nodes that they bear no linear field. */
+static void report_too_few(const deck *k, const double at[2], diagnostics *d) {
   int n = 0;
-  while (n + 1 < k->notch_count && !(k->notchs[n].mesh))
+  while (!k->notchs[n].mesh)
     n++;
-  mesh_place(&c->mesh, node, at);
-  diag_report(d, DIAG_NOT_SUPPORTED, k->notch_count > 0 ? k->notchs[n].item.where : (span){0},
-              "the node at (%.6g, %.6g) mm has no mass", 1e3 * at[0], 1e3 * at[1]);
-  diag_hint(d, "the material left around it is too little: move the hole by a fraction of a "
-               "spacing, or take more nodes or a smaller `support`");
+  diag_report(d, DIAG_NOT_SUPPORTED, k->notchs[n].item.where,
+              "holes leave too few nodes around (%.6g, %.6g) mm", 1e3 * at[0], 1e3 * at[1]);
+  diag_hint(d, "take more nodes, a wider `support`, or move the hole by a part of a spacing");
+}
+
+/* A point that no node acts at. */
+static int lonely_point(const cells *c) {
+  point_shape s;
+  int n = 0;
+  while (n < c->points.count) {
+    shape_functions(&c->mesh, c->points.cell[n], c->points.at[n], &s);
+    if (s.count == 0) break;
+    n++;
+  }
+  return n;
+}
+
+static bool nodes_bear(const deck *k, const cells *c, const double *volume, diagnostics *d) {
+  const mesh *m = &c->mesh;
+  double sum = 0, whole = 0, at[2];
+  if (m->holes.count == 0) return true;
+  for (int n = 0; n < mesh_node_count(m); n++) {
+    sum += volume[n];
+    if (m->gone[n] || volume[n] > 0) continue;
+    mesh_place(m, n, at);
+    report_too_few(k, at, d);
+    return false;
+  }
+  for (int n = 0; n < c->points.count; n++)
+    whole += m->thickness * c->points.area[n];
+  if (fabs(sum - whole) <= 1e-9 * whole) return true;
+  const int lonely = lonely_point(c);
+  report_too_few(k, c->points.at[lonely < c->points.count ? lonely : 0], d);
+  return false;
 }
 
 /* Volumes of the nodes by the row sums, M = rho V: they sum to the mesh's. */
 static bool find_volumes(const deck *k, const cells *c, rows *nodes, diagnostics *d) {
   const double density = 1;
   double *volume = must_calloc((size_t)mesh_node_count(&c->mesh), sizeof *volume);
-  bool good = true;
   node_masses(&c->mesh, &c->points, &density, NULL, volume);
+  const bool good = nodes_bear(k, c, volume, d);
   nodes->site_volume = rows_array(nodes->size, sizeof(double));
   nodes->site_mass = rows_array(nodes->size, sizeof(double));
   for (long q = 0; q < nodes->size; q++)
     nodes->site_volume[q] = nodes->volume; /* of absent sites, so that nothing is divided by 0 */
-  for (long p = 0; p < nodes->particle_count && good; p++) {
-    const int node = cells_node(c, nodes->particle_site[p]);
-    good = volume[node] > 0;
-    if (good)
-      nodes->site_volume[nodes->particle_site[p]] = volume[node];
-    else
-      report_massless(k, c, node, d);
-  }
+  for (long p = 0; p < nodes->particle_count && good; p++)
+    nodes->site_volume[nodes->particle_site[p]] = volume[cells_node(c, nodes->particle_site[p])];
   free(volume);
   return good;
 }

@@ -555,7 +555,7 @@ const char *const tip_end_words[TIP_ENDS] = {
     [TIP_ALIVE] = "",
     [TIP_HAS_LEFT] = "has left where cracks grow",
     [TIP_HAS_MET] = "has met another crack",
-    [TIP_IN_HOLE] = "has run into a hole",
+    [TIP_AT_HOLE] = "has run into a hole",
     [TIP_AT_ELEMENTS] = "has come to finite elements, which do not see it",
     [TIP_HAS_TOO_MANY] = "has grown by more pieces than can be kept",
 };
@@ -603,7 +603,7 @@ static void advance(tips *t, mesh_tip *p, const body *w, mesh *m, node_stencil *
   const double hole = holes_until(&m->holes, a, b);
   if (hole < part) {
     part = hole;
-    why = TIP_IN_HOLE;
+    why = TIP_AT_HOLE;
   }
   const double to[2] = {a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1])},
                from[2] = {a[0], a[1]};

@@ -35,7 +35,7 @@ typedef enum tip_end {
   TIP_ALIVE,
   TIP_HAS_LEFT,
   TIP_HAS_MET,
-  TIP_IN_HOLE,
+  TIP_AT_HOLE,
   TIP_AT_ELEMENTS,
   TIP_HAS_TOO_MANY,
   TIP_ENDS

@@ -1,5 +1,6 @@
 #include "runtime/mesh/cut_cells.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,7 +8,8 @@
 #include "dsl/base/elementary.h"
 #include "runtime/mesh/gauss_rule.h"
 
-static const double NOTHING = 1e-9; /* of a cell's area or side: as good as none */
+static const double NOTHING = 1e-9; /* of a cell's area: as good as none */
+static const double SETTLED = 1e-6; /* likewise: an area is known */
 
 /* --- where a cell is divided ------------------------------------------------------------------ */
 
@@ -51,24 +53,6 @@ static cut_cell cell_of(const mesh *m, int cell) {
   return c;
 }
 
-/* Along an axis a disc begins and ends with an upright tangent, near which Gauss's places do badly:
-   whether it does so in the cell. */
-static bool begins_round(const cut_cell *c, int axis) {
-  for (int n = 0; n < c->near.count; n++) {
-    const deck_shape *s = &c->near.items[n].shape;
-    const int across = 1 - axis;
-    if (s->kind != SHAPE_DISC || s->centre[across] < c->lower[across] ||
-        s->centre[across] > c->upper[across])
-      continue;
-    for (int side = -1; side <= 1; side += 2)
-      for (int inner = 0; inner < 2; inner++) {
-        const double at = s->centre[axis] + side * (inner ? s->inner_radius : s->radius);
-        if (at > c->lower[axis] && at < c->upper[axis]) return true;
-      }
-  }
-  return false;
-}
-
 /* Where the outlines begin and end, have corners, and cross the two sides along the axis. */
 static void divide_by_outlines(const cut_cell *c, int axis, divisions *d) {
   enum { MOST_LEVELS = 256 };
@@ -88,12 +72,9 @@ static void divide_by_outlines(const cut_cell *c, int axis, divisions *d) {
   }
 }
 
-/* Outlines that cross each other, and round ones that begin, are met by smaller parts. */
 static divisions divide(const cut_cell *c, int axis) {
-  enum { SMALL_PARTS = 4 };
   divisions d = {.count = 0};
-  const bool hard = c->near.count > 1 || begins_round(c, axis);
-  const int parts = c->m->gauss_parts * (hard ? SMALL_PARTS : 1);
+  const int parts = c->m->gauss_parts;
   const double size = c->upper[axis] - c->lower[axis];
   for (int k = 0; k <= parts; k++)
     divide_at(&d, k == parts ? c->upper[axis] : c->lower[axis] + size * k / parts, c->lower[axis],
@@ -120,43 +101,63 @@ typedef struct rule {
   double place[MESH_MOST_GAUSS], weight[MESH_MOST_GAUSS];
 } rule;
 
-/* Of the line across the cell at `level` along the axis; it stands for `width` of it. */
-static void add_line(const cut_cell *c, int axis, const rule *g, double level, double width,
-                     cut_points *to) {
-  double a[2], b[2], *u;
+/* Of the line across the cell at `level` along the axis; it stands for `width` of it. Returns its area
+   outside; to: NULL for that alone. */
+static double add_line(const cut_cell *c, int axis, const rule *g, double level, double width,
+                       cut_points *to) {
+  double a[2], b[2], *u, outside = 0;
   a[axis] = b[axis] = level;
   a[1 - axis] = c->lower[1 - axis];
   b[1 - axis] = c->upper[1 - axis];
   const double size = b[1 - axis] - a[1 - axis];
   const int count = holes_cuts(&c->near, a, b, &u), parts = c->m->gauss_parts;
   for (int k = 0; k + 1 < count; k++) {
-    const double middle = a[1 - axis] + 0.5 * (u[k] + u[k + 1]) * size;
     double at[2] = {level, level};
-    at[1 - axis] = middle;
+    at[1 - axis] = a[1 - axis] + 0.5 * (u[k] + u[k + 1]) * size;
     if (u[k + 1] - u[k] <= 0 || holes_near(&c->near, at, 0)) continue;
+    outside += (u[k + 1] - u[k]) * size * width;
     const double part = (u[k + 1] - u[k]) * size / parts;
-    for (int n = 0; n < parts; n++)
+    for (int n = 0; n < parts && to; n++)
       for (int q = 0; q < g->order; q++) {
         at[1 - axis] = a[1 - axis] + u[k] * size + part * (n + 0.5 * (1 + g->place[q]));
         add(to, at, 0.5 * g->weight[q] * part * width);
       }
   }
   free(u);
+  return outside;
 }
 
-void cut_cell_points(const mesh *m, int cell, cut_points *to) {
-  cut_cell c = cell_of(m, cell);
-  const int axis = begins_round(&c, 0) && !begins_round(&c, 1) ? 1 : 0;
-  divisions d = divide(&c, axis);
-  rule g = {.order = m->gauss};
+/* Divided along the axis, each division into so many parts. Returns the area outside. */
+static double add_lines(const cut_cell *c, int axis, int parts, cut_points *to) {
+  divisions d = divide(c, axis);
+  rule g = {.order = c->m->gauss};
+  double outside = 0;
   gauss_rule(g.order, g.place, g.weight);
   for (int k = 0; k + 1 < d.count; k++) {
-    const double size = d.at[k + 1] - d.at[k];
-    if (size <= 1e-12 * (c.upper[axis] - c.lower[axis])) continue;
-    for (int q = 0; q < g.order; q++)
-      add_line(&c, axis, &g, d.at[k] + 0.5 * size * (1 + g.place[q]), 0.5 * g.weight[q] * size, to);
+    const double size = (d.at[k + 1] - d.at[k]) / parts;
+    if (size <= 1e-12 * (c->upper[axis] - c->lower[axis])) continue;
+    for (int n = 0; n < parts * g.order; n++)
+      outside +=
+          add_line(c, axis, &g, d.at[k] + size * (n / g.order + 0.5 * (1 + g.place[n % g.order])),
+                   0.5 * g.weight[n % g.order] * size, to);
   }
   free(d.at);
+  return outside;
+}
+
+/* Where a round outline is upright along an axis, and where outlines cross, Gauss's places do badly:
+   the other axis or more parts, until twice as many change nothing. */
+void cut_cell_points(const mesh *m, int cell, cut_points *to) {
+  enum { MOST_PARTS = 16 };
+  cut_cell c = cell_of(m, cell);
+  const double whole = m->spacing[0] * m->spacing[1];
+  int axis = 0, parts = 1;
+  while (parts < MOST_PARTS && fabs(add_lines(&c, axis, 2 * parts, NULL) -
+                                    add_lines(&c, axis, parts, NULL)) > SETTLED * whole) {
+    parts *= axis == 1 ? 2 : 1;
+    axis = 1 - axis;
+  }
+  add_lines(&c, axis, parts, to);
   holes_close(&c.near);
 }
 

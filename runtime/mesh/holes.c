@@ -5,9 +5,9 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 
-/* A way around a hole that is longer by less does not hide: at a smooth outline nodes just beyond its
-   horizon act, as they would without it, and functions have no jumps there. */
-static const double LONGER = 1.1;
+/* A way around a hole that is longer by less hides nothing: around a round outline and a corner nodes
+   act as they would without the hole, and functions have no jumps there. */
+static const double LONGER = 1.5;
 
 void holes_open(mesh_holes *h) {
   *h = (mesh_holes){.count = 0};

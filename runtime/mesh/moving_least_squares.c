@@ -261,7 +261,10 @@ bool moving_least_squares(const mesh *m, const double at[2], point_shape *out) {
   const bool sees = moments_of(n, count, LINEAR, &a);
   if (!sees) {
     count = visible_nodes(m, at, true, n);
-    moments_of(n, count, LINEAR, &a);
+    if (!moments_of(n, count, LINEAR, &a)) {
+      out->count = 0;
+      return false;
+    }
   }
   functions(n, count, &a, p, p_slope, out);
   if (sees && m->enriched > 0) enrich(m, at, n, count, out);

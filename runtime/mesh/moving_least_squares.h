@@ -28,7 +28,7 @@ typedef struct point_shape {
 
 /* The functions at a point. Nodes without one (mesh.moving) are left out, and so are those that
    cracks or holes hide; where what is left is too little (fewer than 3 nodes, or a pivot of A below
-   1e-9) the point ignores both: false. */
+   1e-9) the point ignores both: false. Where holes leave too few nodes even so, none acts. */
 bool moving_least_squares(const mesh *m, const double at[2], point_shape *out);
 
 /* w(r) and dw/dr of the weight above; r >= 0. */

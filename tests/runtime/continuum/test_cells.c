@@ -139,10 +139,77 @@ static void what_cannot_be_is_refused(void **state) {
   wrong(MESH HELD "&material mesh = 'plate' model = 'hooke' region = 'left' E = 1e9 /\n",
         "cannot have a material of its own");
   wrong(MESH HELD "&notch lattice = 'plate' shape = 'disc' centre = 0.1, 0.1 radius = 0.01 /\n",
-        "which notches do not cut");
+        "is a mesh, not a lattice");
   wrong(MESH HELD "&zone mesh = 'plat' method = 'finite_elements' shape = 'disc' centre = 9, 9 "
                   "radius = 1 /\n",
         "there is no mesh `plat`");
+}
+
+#define HOLE "&notch mesh = 'plate' shape = 'disc' centre = '110 mm', '50 mm' radius = '24 mm' /\n"
+
+static void holes_that_cannot_be(void **state) {
+  (void)state;
+  wrong(MESH HELD "&notch mesh = 'plate' shape = 'segment' from = 0.1, 0 to = 0.1, 0.05 /\n",
+        "has no inside");
+  wrong(MESH HELD "&notch mesh = 'plat' shape = 'disc' centre = 0.1, 0.05 radius = 0.01 /\n",
+        "there is no mesh `plat`");
+  wrong(MESH HELD "&notch shape = 'disc' centre = 0.1, 0.05 radius = 0.01 /\n",
+        "`&notch` has no `lattice`");
+  wrong(MESH HELD "&notch mesh = 'plate' cut_bonds = .false. shape = 'disc' centre = 0.1, 0.05 "
+                  "radius = 0.01 /\n",
+        "exclude each other");
+  wrong(MESH HELD "&notch mesh = 'plate' shape = 'disc' centre = 0.1, 0.15 radius = 0.02 /\n",
+        "the hole lies outside the mesh");
+  wrong(MESH HELD "&notch mesh = 'plate' shape = 'rectangle' corner = 0, -0.1 size = 1, 1 /\n",
+        "the holes leave nothing of the mesh");
+  wrong(MESH HELD HOLE "&crack name = 'c' mesh = 'plate' points = 0.1, 0.05, 0.11, 0.06 /\n",
+        "the crack lies in a hole");
+  wrong(MESH HOLE
+        "&region name = 'wall' shape = 'disc' centre = '110 mm', '50 mm' radius = '30 mm' "
+        "/\n&support region = 'wall' fix = 'x' /\n",
+        "is element-free");
+  wrong(MESH HELD HOLE "&region name = 'in' shape = 'disc' centre = '110 mm', '50 mm' radius = "
+                       "'10 mm' /\n&support region = 'in' fix = 'x' /\n",
+        "no particle");
+  wrong(MESH HELD HOLE "&traction mesh = 'plate' from = 0.1, 0.05 to = 0.12, 0.05 component = 'x' "
+                       "stress = 1 /\n",
+        "lies outside the mesh");
+  /* four columns of nodes between two slots, then two */
+  wrong("&simulation end_time = 1 /\n&mesh name = 'plate' size = 1, 1 nodes = 11, 11 thickness = 1 "
+        "method = 'element_free' support = 1.5 /\n&material mesh = 'plate' model = 'hooke' /\n"
+        "&notch mesh = 'plate' shape = 'rectangle' corner = -1, -1 size = 1.61, 3 /\n"
+        "&notch mesh = 'plate' shape = 'rectangle' corner = 0.79, -1 size = 1, 3 /\n",
+        "holes leave too few nodes");
+}
+
+/* Nodes in a hole are no particles, those beside it weigh what is left; it swings as anything does. */
+static void a_plate_with_a_hole(void **state) {
+  (void)state;
+  small_run r;
+  small_open(&r, &hooke_law, MESH HELD HOLE PULL);
+  if (!r.simulation) small_print(&r);
+  assert_non_null(r.simulation);
+  const rows *w = simulation_rows(r.simulation, 0);
+  double at[3], mass = 0;
+  int holds = 0;
+  for (int n = 0; n < 231; n++)
+    holds += hypot(n % 21 - 10, n / 21 - 5) < 2.4;
+  assert_int_equal(w->particle_count, 231 - holds);
+  for (long p = 0; p < w->particle_count; p++) {
+    rows_place(w, w->particle_site[p], at);
+    assert_true(hypot(at[0] - 0.11, at[1] - 0.05) >= 0.024);
+    assert_int_equal(w->site_particle[w->particle_site[p]], p);
+    mass += w->site_mass[w->particle_site[p]];
+  }
+  const double expected = 2400 * 0.02 * (0.2 * 0.1 - 3.14159265358979 * 0.024 * 0.024);
+  assert_true(fabs(mass - expected) < 1e-6 * expected);
+  assert_int_equal(small_go(&r), STEP_END);
+  assert_true(small_last(&r, "energy/kinetic") > 0);
+  assert_true(fabs(small_last(&r, "energy/imbalance")) < 1e-9 * small_last(&r, "energy/external"));
+  const body *b = simulation_state(r.simulation, 0)->body;
+  for (long q = 0; q < w->size; q++)
+    assert_true(w->present[q] || (b->displacement[0][q] == 0 && b->displacement[1][q] == 0));
+  small_close(&r);
 }
 
 static void a_crack_along_nodes_is_warned_of(void **state) {
@@ -255,6 +322,8 @@ int main(void) {
                                      cmocka_unit_test(zones_flag_nodes),
                                      cmocka_unit_test(an_enriched_basis_reaches_as_far_as_asked),
                                      cmocka_unit_test(what_cannot_be_is_refused),
+                                     cmocka_unit_test(holes_that_cannot_be),
+                                     cmocka_unit_test(a_plate_with_a_hole),
                                      cmocka_unit_test(a_crack_along_nodes_is_warned_of),
                                      cmocka_unit_test(a_pulled_bar_swings),
                                      cmocka_unit_test(numerical_damping_is_counted),

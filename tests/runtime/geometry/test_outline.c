@@ -108,9 +108,27 @@ static void folded_polygons_are_flat(void **state) {
   assert_false(outline_is_flat(&(outline){thin, NULL, 4}, 5e-4));
 }
 
+static double way(const outline *o, double x, double y, double u, double v) {
+  return outline_way(o, (double[]){x, y}, (double[]){u, v});
+}
+
+/* The shorter way along the outline, around corners and along arcs. */
+static void ways_along_the_outline(void **state) {
+  (void)state;
+  assert_true(fabs(way(&square, -0.5, -1, 0.5, -1) - 1) < 1e-15);
+  assert_true(fabs(way(&square, 0.5, -1, 1, 0.25) - 1.75) < 1e-15);
+  assert_true(fabs(way(&square, -0.5, -1, -0.5, 1) - 3) < 1e-15);    /* not 5 */
+  assert_true(fabs(way(&square, -1, -0.75, -0.25, -1) - 1) < 1e-15); /* past the first corner */
+  assert_true(fabs(way(&capsule, 2, 0, 1, 1) - pi / 2) < 1e-14);
+  assert_true(fabs(way(&capsule, 0.5, -1, 2, 0) - (0.5 + pi / 2)) < 1e-14);
+  assert_true(fabs(way(&bitten, 0, 0, 1, -1) - pi / 2) < 1e-14);
+  assert_true(fabs(way(&bitten, 0, 0, 0.75, 1) - (0.25 + pi / 2)) < 1e-14);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(distances_of_a_square),
+      cmocka_unit_test(ways_along_the_outline),
       cmocka_unit_test(distances_of_arcs),
       cmocka_unit_test(boxes_hold_arcs),
       cmocka_unit_test(a_circle_of_two_arcs_is_round),

@@ -319,8 +319,20 @@ static void segments_are_slits(void **unused) {
   assert_false(crossed(&s, -1, -0.5, 4, 2)); /* along it */
 }
 
+static void ways_along_outlines_of_shapes(void **unused) {
+  (void)unused;
+  const deck_shape ring = {.kind = SHAPE_DISC, .centre = {1, 2}, .radius = 2, .inner_radius = 1};
+  const deck_shape box = {.kind = SHAPE_RECTANGLE, .corner = {0, 0}, .size = {3, 1}};
+  const double right[] = {3, 2}, top[] = {1, 4}, inner_right[] = {2, 2}, inner_top[] = {1, 3};
+  assert_true(fabs(shape_way(&ring, right, top) - M_PI) < 1e-14);
+  assert_true(fabs(shape_way(&ring, inner_right, inner_top) - M_PI / 2) < 1e-14);
+  assert_true(isinf(shape_way(&ring, right, inner_right)));
+  assert_true(fabs(shape_way(&box, (double[]){2.5, 0}, (double[]){2.5, 1}) - 2) < 1e-15);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(ways_along_outlines_of_shapes),
       cmocka_unit_test(rectangle_holds_its_outline),
       cmocka_unit_test(ring_has_a_hole),
       cmocka_unit_test(point_is_its_own_outline),
