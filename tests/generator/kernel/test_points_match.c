@@ -9,17 +9,31 @@
 
 #include "tests/generator/kernel/compiled_kernel.h"
 
-static int check_law_of_points(const char *path, const law_choice *choice) {
+static void check_setting(const char *path, const law_choice *choice, law_setting setting) {
   model m;
-  const bool is_one = model_open(&m, path, choice, choice ? 1 : 0) &&
-                      (m.law->tree->law == LAW_CONTINUUM || m.law->tree->law == LAW_CRACK);
-  model_close(&m);
-  if (!is_one) return 0;
-  const pl_law *kernel = open_kernel(&m, path, choice);
+  const pl_law *kernel = open_kernel_for(&m, path, choice, &setting, false, 0);
   free(compiler_says(&m, "gcc", "-Wall -Wextra -Werror"));
   assert_same_bits(&m, kernel, states_asked());
   model_close(&m);
-  return 1;
+}
+
+/* Of a continuum in every setting that the law names. */
+static int check_law_of_points(const char *path, const law_choice *choice) {
+  static const law_setting settings[] = {SETTING_PLANE_STRESS, SETTING_PLANE_STRAIN, SETTING_SPACE};
+  bool meant[3] = {false};
+  char words[96];
+  model m;
+  const bool opened = model_open(&m, path, choice, choice ? 1 : 0);
+  const bool continuum = opened && m.law->tree->law == LAW_CONTINUUM;
+  const bool crack = opened && m.law->tree->law == LAW_CRACK;
+  for (int k = 0; k < 3; k++)
+    meant[k] =
+        crack ? k == 0
+              : continuum && model_suits(&m, law_setting_name(settings[k]), words, sizeof words);
+  model_close(&m);
+  for (int k = 0; k < 3; k++)
+    if (meant[k]) check_setting(path, choice, settings[k]);
+  return continuum || crack;
 }
 
 static void kernels_of_the_models_match(void **state) {
