@@ -99,7 +99,8 @@ static int build_law(const char *path, const char *output, const char *uses, boo
 /* What the deck's lattices are made of, with their options decided, and the tables of the deck's
    loads. */
 typedef struct deck_law {
-  const deck_interaction *of;
+  const char *of; /* name of the interaction, or of the crack as BUILT_IN_CRACK */
+  const deck_material *material;
   model model;
   bool opened;
   c_text choices; /* ";option=choice;..." */
@@ -119,10 +120,11 @@ static void list_choices(const law *l, c_text *out) {
     c_text_add(out, "%s=%s;", l->options.items[k]->name, l->chosen[k]);
 }
 
-static bool open_deck_law(const deck_interaction *of, const deck_lattice *lattice,
+static bool open_deck_law(const char *of, const deck_material *m, const deck_lattice *lattice,
                           const char *deck_path, deck_law *l, diagnostics *said) {
   l->of = of;
-  const bool good = material_law_open(of->material, lattice, deck_path, &l->model, said);
+  l->material = m;
+  const bool good = material_law_open(m, lattice, deck_path, &l->model, said);
   l->opened = l->model.memory != NULL;
   if (good) list_choices(l->model.law, &l->choices);
   return good;
@@ -137,12 +139,21 @@ static bool open_deck_laws(const char *deck_path, const char *deck_text, deck_la
   const deck *k = deck_read(out->memory, &out->sources, file, NULL, 0, &said);
   bool good = k != NULL;
   out->deck = k;
-  out->count = k ? k->interaction_count : 0;
-  out->items = must_calloc((size_t)out->count + 1, sizeof *out->items);
-  for (int n = 0; n < out->count; n++)
-    good = open_deck_law(&k->interactions[n], &k->lattices[k->interactions[n].lattice], deck_path,
-                         &out->items[n], &said) &&
+  const int interactions = k ? k->interaction_count : 0, cracks = k ? k->crack_count : 0;
+  out->items = must_calloc((size_t)(interactions + cracks) + 1, sizeof *out->items);
+  for (int n = 0; n < interactions; n++) {
+    const deck_interaction *i = &k->interactions[n];
+    good = open_deck_law(i->name, i->material, &k->lattices[i->lattice], deck_path,
+                         &out->items[out->count++], &said) &&
            good;
+  }
+  for (int n = 0; n < cracks; n++) {
+    const deck_crack *c = &k->cracks[n];
+    if (!c->model) continue;
+    const char *name = arena_printf(out->memory, BUILT_IN_CRACK, c->name);
+    good = open_deck_law(name, &c->material, NULL, deck_path, &out->items[out->count++], &said) &&
+           good;
+  }
   if (!good) diag_print(&said, stderr);
   diag_clear(&said);
   return good;
@@ -213,8 +224,8 @@ static void put_files(c_text *out, const deck_laws *l) {
 
 static void put_law(c_text *out, int n, deck_law *l) {
   c_text_add(out, "const pl_law *perilat_kernel_%d(void);\n", n);
-  put_string_of(out, "solver_interaction", n, l->of->name);
-  put_string_of(out, "solver_model", n, l->of->material->model);
+  put_string_of(out, "solver_interaction", n, l->of);
+  put_string_of(out, "solver_model", n, l->material->model);
   put_string_of(out, "solver_law_text", n, l->model.sources.items[0].text);
   put_string_of(out, "solver_kernel_text", n, model_c_text(&l->model));
   put_string_of(out, "solver_choices", n, l->choices.text);

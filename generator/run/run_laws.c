@@ -100,11 +100,15 @@ bool obeys_mechanics(run *r, int interaction) {
 
 /* --- opening ---------------------------------------------------------------------------------- */
 
+static void say_not_built_in(run *r, const deck_item *item, const char *model_name) {
+  diag_report(&r->said, DIAG_FILE, deck_where(item, "model"),
+              "this solver was built without the model `%s`", model_name);
+}
+
 static bool take_built_in(run *r, const deck_material *m, int interaction, deck_material *values) {
   const built_in_law *b = find_built_in(r->options, m, r->deck->interactions[interaction].name);
   if (!b) {
-    diag_report(&r->said, DIAG_FILE, deck_where(&m->item, "model"),
-                "this solver was built without the model `%s`", m->model);
+    say_not_built_in(r, &m->item, m->model);
     return false;
   }
   if (!drop_built_in_choices(r, m, b, values)) return false;
@@ -203,18 +207,27 @@ static bool is_of_cracks(run *r, const deck_crack *c, const model *opened) {
   return false;
 }
 
+static bool take_built_in_crack(run *r, const deck_crack *c, simulation_law *out) {
+  deck_material values;
+  const char *name = arena_printf(r->memory, BUILT_IN_CRACK, c->name);
+  const built_in_law *b = find_built_in(r->options, &c->material, name);
+  if (!b) {
+    say_not_built_in(r, &c->item, c->model);
+    return false;
+  }
+  out->law = b->law;
+  if (!drop_built_in_choices(r, &c->material, b, &values)) return false;
+  out->parameters = parameters_of(r, &values, out->law);
+  return out->parameters != NULL;
+}
+
 int load_crack_law(run *r, int crack) {
   const deck_crack *c = &r->deck->cracks[crack];
   simulation_law *out = &r->laws[r->deck->interaction_count + crack];
   char error[4 * ERROR_LENGTH];
   const char *note;
   if (!c->model) return 0;
-  if (r->options->laws) {
-    diag_report(&r->said, DIAG_NOT_SUPPORTED, deck_where(&c->item, "model"),
-                "a stand-alone solver has no laws of cracks");
-    diag_hint(&r->said, "use `perilat run`");
-    return INPUT_WRONG;
-  }
+  if (r->options->laws) return take_built_in_crack(r, c, out) ? 0 : INPUT_WRONG;
   model *opened = &r->models[r->open_models];
   const bool good = material_law_open(&c->material, NULL, r->options->deck_path, opened, &r->said);
   r->open_models += opened->memory != NULL;
