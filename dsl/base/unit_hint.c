@@ -37,8 +37,23 @@ static size_t product_splits_at(const char *text, size_t length) {
   return 0;
 }
 
+/* sqrt(m), the root sign, or the end of m^1/2. */
+static bool is_root(const char *text, size_t length) {
+  static const char word[] = "sqrt", sign[] = "\xe2\x88\x9a";
+  bool digits = true;
+  for (size_t k = 0; k < length; k++) {
+    digits = digits && isdigit((unsigned char)text[k]);
+    if (length - k >= sizeof sign - 1 && memcmp(text + k, sign, sizeof sign - 1) == 0) return true;
+  }
+  return digits || (length >= sizeof word - 1 && memcmp(text, word, sizeof word - 1) == 0);
+}
+
 bool unit_hint(diagnostics *d, const char *text, size_t length) {
   if (length == 0 || length > LONGEST) return false;
+  if (is_root(text, length)) {
+    diag_hint(d, "a root of a unit is an exponent in parentheses: `m^(1/2)`");
+    return true;
+  }
   size_t power = power_begins_at(text, length), product = product_splits_at(text, length);
   size_t first = power ? power : product;
   if (first) {

@@ -260,7 +260,10 @@ static void put_quantities(const page *p) {
   for (int q = 0; q < QUANTITY_COUNT; q++)
     any |= read[q];
   if (!any) return;
-  put_heading(p, "Given by lattice and motion");
+  const law_kind kind = p->law->tree->law;
+  put_heading(p, kind == LAW_CONTINUUM ? "Given by the motion of the point"
+                 : kind == LAW_CRACK   ? "Given at the tip"
+                                       : "Given by lattice and motion");
   begin_table(p, titles, 4);
   for (int q = 0; q < QUANTITY_COUNT; q++) {
     if (!read[q]) continue;

@@ -37,14 +37,14 @@ typedef struct symbol {
   dimension dim;
   enum shape shape;
   placement place;
-  const char *doc;       /* description or NULL */
-  double initial;        /* PARAMETER: default, STATE: initial value; SI */
-  bool has_default;      /* PARAMETER */
-  struct symbol *option; /* CHOICE: its option (NULL for settings) */
+  const char *doc;                   /* description or NULL */
+  double initial;                    /* PARAMETER: default, STATE: initial value; SI */
+  bool has_default;                  /* PARAMETER */
+  struct symbol *option;             /* CHOICE: its option (NULL for settings) */
   const struct symbol *component_of; /* STATE: the tensor that it is a component of, or NULL */
   int component;
-  bool old_is_read;      /* STATE, DAMAGE: some rule reads the value of the last step */
-  bool used;             /* a force or an output depends on it */
+  bool old_is_read; /* STATE, DAMAGE: some rule reads the value of the last step */
+  bool used;        /* a force or an output depends on it */
 } symbol;
 
 typedef struct symbol_list {

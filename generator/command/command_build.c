@@ -99,7 +99,7 @@ static int build_law(const char *path, const char *output, const char *uses, boo
 /* What the deck's lattices are made of, with their options decided, and the tables of the deck's
    loads. */
 typedef struct deck_law {
-  const char *owner; /* name of the interaction or the crack */
+  const char *owner; /* name of the interaction, or of the crack as BUILT_IN_CRACK */
   const deck_material *material;
   model model;
   bool opened;

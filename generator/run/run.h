@@ -16,13 +16,16 @@ C_LINKAGE_BEGIN
 
 /* A law that is already compiled into the program (stand-alone solvers). */
 typedef struct built_in_law {
-  const char *interaction; /* of the deck, that it was built for */
+  const char *interaction; /* of the deck, or BUILT_IN_CRACK, that it was built for */
   const char *model;       /* as the deck names it */
   const pl_law *law;
   const char *law_text, *c_text;
   const char *choices; /* "onset=rankine;..." decided when it was built */
   const char *compiler, *flags;
 } built_in_law;
+
+/* In place of an interaction's name that of a crack: a format. */
+#define BUILT_IN_CRACK "&crack %s"
 
 /* A table that a load of the built-in deck names. */
 typedef struct built_in_file {

@@ -100,11 +100,15 @@ bool obeys_mechanics(run *r, int interaction) {
 
 /* --- opening ---------------------------------------------------------------------------------- */
 
+static void say_not_built_in(run *r, const deck_item *item, const char *model_name) {
+  diag_report(&r->said, DIAG_FILE, deck_where(item, "model"),
+              "this solver was built without the model `%s`", model_name);
+}
+
 static bool take_built_in(run *r, const deck_material *m, int interaction, deck_material *values) {
   const built_in_law *b = find_built_in(r->options, m, r->deck->interactions[interaction].name);
   if (!b) {
-    diag_report(&r->said, DIAG_FILE, deck_where(&m->item, "model"),
-                "this solver was built without the model `%s`", m->model);
+    say_not_built_in(r, &m->item, m->model);
     return false;
   }
   if (!drop_built_in_choices(r, m, b, values)) return false;
@@ -206,11 +210,11 @@ static bool is_of_cracks(run *r, const deck_crack *c, const model *opened) {
 /* Of a solver: with what it was built. */
 static int take_built_in_crack_law(run *r, const deck_crack *c, int number) {
   simulation_law *out = &r->laws[number];
-  const built_in_law *b = find_built_in(r->options, &c->material, c->name);
+  const built_in_law *b =
+      find_built_in(r->options, &c->material, arena_printf(r->memory, BUILT_IN_CRACK, c->name));
   deck_material values;
   if (!b) {
-    diag_report(&r->said, DIAG_FILE, deck_where(&c->item, "model"),
-                "this solver was built without the model `%s`", c->model);
+    say_not_built_in(r, &c->item, c->model);
     return INPUT_WRONG;
   }
   if (!drop_built_in_choices(r, &c->material, b, &values)) return INPUT_WRONG;

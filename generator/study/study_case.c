@@ -16,7 +16,7 @@
 #include "generator/study/study_cost.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/material.h"
-#include "runtime/continuum/tips.h"
+#include "runtime/crack/tip_values.h"
 #include "runtime/deck/deck_check.h"
 #include "runtime/deck/deck_read.h"
 #include "runtime/deck/lattice_kind.h"
@@ -212,6 +212,21 @@ static bool take_law(const deck *k, int interaction, study_case *c, uint64_t *ha
   return good;
 }
 
+/* Of a crack that has one; whether it is one of cracks, its run says. */
+static bool take_crack_law(const deck *k, int crack, const study_case *c, uint64_t *hash,
+                           diagnostics *said) {
+  const deck_crack *of = &k->cracks[crack];
+  model opened = {.memory = NULL};
+  if (!of->model) return true;
+  const bool good = material_law_open(&of->material, NULL, c->deck, &opened, said);
+  if (opened.memory) {
+    if (!good) diag_print(&opened.said, stderr);
+    *hash = hash_of_law(*hash, &opened);
+    model_close(&opened);
+  }
+  return good;
+}
+
 /* "notch/K_I", "notch/start/K_I" of a crack of the deck. */
 static bool is_of_tip(const deck *k, const char *name) {
   for (int c = 0; c < k->crack_count; c++) {
@@ -219,7 +234,7 @@ static bool is_of_tip(const deck *k, const char *name) {
     if (strncmp(name, k->cracks[c].name, length) != 0 || name[length] != '/') continue;
     const char *series = name + length + 1;
     if (strncmp(series, "start/", 6) == 0) series += 6;
-    if (deck_is_one_of(series, tip_series_names, TIP_SERIES_COUNT)) return true;
+    if (deck_is_one_of(series, tip_value_names, TIP_VALUE_COUNT)) return true;
   }
   return false;
 }
@@ -265,6 +280,8 @@ static bool identify(const study_request *r, arena *memory, study_case *c, sourc
   bool good = has_curves(r, c, k);
   for (int n = 0; n < k->interaction_count && good; n++)
     good = take_law(k, n, c, &hash, said);
+  for (int n = 0; good && n < k->crack_count; n++)
+    good = take_crack_law(k, n, c, &hash, said);
   c->identity = hash;
   c->cost = study_cost(k);
   return good;

@@ -15,8 +15,8 @@ cd "$work"
 ln -s "$source" FOLDER
 ln -s "$program" perilat
 export PATH=$work:$PATH
-# The page's parts: bonds, a family alone.
-awk '{ part = /^## A family alone/ ? "family" : part ? part : "host"; print > (part ".md") }' "$source/runtime/HOST.md"
+# The page's parts: bonds, a family alone, a point.
+awk '{ part = /^## A family alone/ ? "family" : /^## A point of a continuum/ ? "point" : part ? part : "host"; print > (part ".md") }' "$source/runtime/HOST.md"
 block() { awk -v from="\`\`\`$1" '$0 == from { on = 1; next } /^```/ { on = 0 } on' "$2.md"; }
 cpp=${CXX:-c++}
 command -v "$cpp" >/dev/null || echo "no C++ compiler: the programs were not tried in C++"
@@ -35,6 +35,7 @@ try() {
 }
 try host 5
 try family 1
+try point 4
 
 # The columns of the host's lines in the table of the drive: stretch, N, and the law's fields. A difference counts by the largest value.
 cat >same.awk <<'END'
@@ -140,6 +141,33 @@ for law in lps pmb; do
     same_stress "$law" "$strain"
   done
 done
+
+# A point that hardens, strained and unloaded, and the drive of the same.
+perilat build FOLDER/tests/generator/laws/hardening_point.plm --for plane_strain -o law.so >log 2>&1 || { cat log; fail "building the point"; }
+cat >drive.nml <<END
+&simulation  steps = 4  /
+&point       setting = 'plane_strain'  /
+&material    model = 'FOLDER/tests/generator/laws/hardening_point.plm'  /
+&path        quantity = 'strain_xx'  times = 0, '2 s', '4 s'  values = 0, 6e-3, 0  /
+&path        quantity = 'strain_yy'  times = 0, '2 s', '4 s'  values = 0, '-2e-3', 0  /
+&path        quantity = 'strain_xy'  times = 0, '2 s', '4 s'  values = 0, 1e-3, 0  /
+&output      csv = 'drive.csv'  /
+END
+perilat drive drive.nml >log 2>&1 || { cat log; fail "the drive of the point"; }
+for host in point_c point_cpp; do
+  [ -x "$host" ] || continue
+  "./$host" ./law.so 6e-3 -2e-3 1e-3 | sed 's/ Pa$//; s/, /,/g' >points.txt
+  awk -F, '
+    FNR == NR { for (k = 1; k <= 4; k++) { split($k, w, " "); host[FNR, w[1]] = w[2] } rows = FNR; next }
+    !header { header = 1; for (k = 1; k <= NF; k++) { sub(/ .*/, "", $k); place[$k] = k }; next }
+    line++ == 0 { next } # at rest
+    { for (c in place) if (((line - 1), c) in host) {
+        gap = host[line - 1, c] - $place[c]; if (gap < 0) gap = -gap; compared++
+        if (gap > (c ~ /stress/ ? 1 : 1e-9)) { print c ": " host[line - 1, c] ", not " $place[c]; bad = 1 } } }
+    END { if (rows != 4 || compared != 16) { print rows " lines, " compared " compared"; bad = 1 } exit bad }
+  ' points.txt drive.csv || fail "$host and the drive of the point"
+done
+refused ./point_c ./cohesive.so 0 0 0 && grep -q 'no law of a continuum' log || fail "$(cat log)"
 
 refused ./family_c ./cohesive.so 0 0 0 && grep -q 'no law of single families' log || fail "$(cat log)"
 refused ./family_c ./families.so 0 0 0 && grep -q 'no law of single families' log || fail "$(cat log)"

@@ -187,8 +187,8 @@ static void run_pdflatex(const char *latex) {
 
 static void documents_are_as_expected(void **state) {
   (void)state;
-  static const char *const names[] = {"mplm_bilinear", "splm_concrete"};
-  for (int i = 0; i < 2; i++) {
+  static const char *const names[] = {"mplm_bilinear", "splm_concrete", "hardening_point", "lefm"};
+  for (int i = 0; i < 4; i++) {
     char path[4096];
     snprintf(path, sizeof path, "%s/tests/dsl/golden/%s.plm", SOURCE_DIR, names[i]);
     size_t length;

@@ -132,6 +132,38 @@ static void rates_cost_work(void **state) {
         0, "2 of 2");
 }
 
+/* --- states ----------------------------------------------------------------------------------- */
+
+/* Kinematic hardening drawn and pressed free of stress across: beyond f_y the slope is
+   E_t = E H/(E + H), and the way back yields after 2 f_y. eps_p is without change of volume. Both
+   kernels say the same to the bit. */
+static void a_state_that_is_a_tensor(void **state) {
+  workplace *w = *state;
+  char text[2000];
+  for (int space = 0; space < 2; space++) {
+    snprintf(text, sizeof text,
+             "&material model = '%s/tests/generator/laws/hardening_point.plm' /\n"
+             "&point test = 'uniaxial stress' setting = '%s' /\n&simulation steps = 300 /\n"
+             "&path quantity = 'strain_xx' times = 0, 1, 3 values = 0, 4e-3, '-4e-3' /\n"
+             "&expect quantity = 'stress_xx' at_time = '1 s' formula = "
+             "'f_y + E*H/(E + H)*(4e-3 - f_y/E)' tolerance = 1e-9 /\n"
+             "&expect quantity = 'eps_p_xx' at_time = '1 s' formula = "
+             "'4e-3 - (f_y + E*H/(E + H)*(4e-3 - f_y/E))/E' tolerance = 1e-9 /\n"
+             "&expect quantity = 'eps_p_zz' at_time = '1 s' formula = "
+             "'-(4e-3 - (f_y + E*H/(E + H)*(4e-3 - f_y/E))/E)/2' tolerance = 1e-9 /\n"
+             "&expect quantity = 'stress_xx' formula = "
+             "'-f_y + E*H/(E + H)*(4e-3 - f_y/E) - E*H/(E + H)*(8e-3 - 2*f_y/E)' tolerance = 1e-9 "
+             "/\n"
+             "&expect quantity = 'across' value = 0 absolute = 1e-15 /\n"
+             "&expect quantity = 'imbalance' value = 0 absolute = '2 kJ/m^3' /\n",
+             SOURCE_DIR, space ? "space" : "plane_stress");
+    drive(w, text, 0, "6 of 6");
+    expect(w, "drive path.nml --csv interpreted.csv", 0, "6 of 6");
+    expect(w, "drive path.nml --compiled --csv compiled.csv", 0, "6 of 6");
+    assert_int_equal(shell(w, "cmp interpreted.csv compiled.csv"), 0);
+  }
+}
+
 /* --- ellipticity ------------------------------------------------------------------------------ */
 
 /* omega = 1 - exp(-|e|/0.01), nu = 0: drawn along x the tangent there is 2 mu (1 - e/0.01)
@@ -309,6 +341,7 @@ int main(void) {
       T(strains_and_stresses_mix),
       T(a_table_drives_a_stress),
       T(rates_cost_work),
+      T(a_state_that_is_a_tensor),
       T(softening_loses_ellipticity),
       cmocka_unit_test(a_band_of_shear),
       cmocka_unit_test(isotropic_solids),

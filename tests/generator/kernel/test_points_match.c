@@ -9,17 +9,31 @@
 
 #include "tests/generator/kernel/compiled_kernel.h"
 
-static int check_law_of_points(const char *path, const law_choice *choice) {
+static void check_setting(const char *path, const law_choice *choice, law_setting setting) {
   model m;
-  const bool is_one = model_open(&m, path, choice, choice ? 1 : 0) &&
-                      (m.law->tree->law == LAW_CONTINUUM || m.law->tree->law == LAW_CRACK);
-  model_close(&m);
-  if (!is_one) return 0;
-  const pl_law *kernel = open_kernel(&m, path, choice);
+  const pl_law *kernel = open_kernel_for(&m, path, choice, &setting, false, 0);
   free(compiler_says(&m, "gcc", "-Wall -Wextra -Werror"));
   assert_same_bits(&m, kernel, states_asked());
   model_close(&m);
-  return 1;
+}
+
+/* Of a continuum in every setting that the law names. */
+static int check_law_of_points(const char *path, const law_choice *choice) {
+  static const law_setting settings[] = {SETTING_PLANE_STRESS, SETTING_PLANE_STRAIN, SETTING_SPACE};
+  bool meant[3] = {false};
+  char words[96];
+  model m;
+  const bool opened = model_open(&m, path, choice, choice ? 1 : 0);
+  const bool continuum = opened && m.law->tree->law == LAW_CONTINUUM;
+  const bool crack = opened && m.law->tree->law == LAW_CRACK;
+  for (int k = 0; k < 3; k++)
+    meant[k] =
+        crack ? k == 0
+              : continuum && model_suits(&m, law_setting_name(settings[k]), words, sizeof words);
+  model_close(&m);
+  for (int k = 0; k < 3; k++)
+    if (meant[k]) check_setting(path, choice, settings[k]);
+  return continuum || crack;
 }
 
 static void kernels_of_the_models_match(void **state) {
@@ -165,10 +179,58 @@ static void a_law_that_is_not_linear(void **state) {
   is(p.stress[2], 2 * mu * plane[2] * (1 + c * sq), E_0 * 1e-3);
 }
 
+/* --- lefm --------------------------------------------------------------------------------------- */
+
+/* Angles of largest hoop stress and what it amounts to, which the driven speed tells:
+   v = (K_eq/K_Ic - 1) c_R. To the digits of the figures; with -K_II the same, mirrored. */
+static void cracks_turn_to_the_largest_hoop_stress(void **state) {
+  (void)state;
+  static const double figures[][4] = {{1, 0.3, -29.103, 1.11867},
+                                      {1, 1, -53.130, 1.78885},
+                                      {0, 1, -70.529, 1.15470},
+                                      {-0.5, 1, -80.266, 0.90686}};
+  const law_choice driven = {"growth", "driven"};
+  const pl_bond_class none = {.size = sizeof none};
+  model m;
+  const pl_law *kernel = open_kernel(&m, SOURCE_DIR "/models/lefm.plm", &driven);
+  double in[PL_TIP_INPUTS][PL_LANES] = {{0}}, out[PL_TIP_RESULTS][PL_LANES], uniforms[64];
+  const double v_max = 0.99999, c_R = 2000;
+  const double *from[PL_TIP_INPUTS];
+  double *to[PL_TIP_RESULTS];
+  assert_true(kernel->parameter_count == 3 && kernel->uniform_count <= 64);
+  assert_int_equal(kernel->field_count + kernel->output_count, 0);
+  for (int k = 0; k < PL_TIP_INPUTS; k++)
+    from[k] = in[k];
+  for (int k = 0; k < PL_TIP_RESULTS; k++)
+    to[k] = out[k];
+  const pl_tips tips = {.size = sizeof tips, .count = PL_LANES, .in = from, .out = to};
+  for (size_t k = 0; k < sizeof figures / sizeof *figures; k++)
+    for (int mirrored = 0; mirrored < 2; mirrored++) {
+      const double K_eq = figures[k][3],
+                   toughness[] = {0.6 * K_eq, 150, v_max} /* K_Ic, v_0, v_max */;
+      kernel->prepare(kernel, toughness, &none, uniforms);
+      in[PL_TIP_K_I][0] = figures[k][0];
+      in[PL_TIP_K_II][0] = (mirrored ? -1 : 1) * figures[k][1];
+      in[PL_TIP_RAYLEIGH_SPEED][0] = c_R;
+      kernel->tip_look(kernel, uniforms, &tips);
+      const double degrees = out[PL_TIP_TOWARD][0] * 180 / M_PI * (mirrored ? -1 : 1);
+      assert_true(out[PL_TIP_GROW][0] == 1);
+      assert_true(fabs(degrees - figures[k][2]) < 0.5e-3);
+      assert_true(fabs((out[PL_TIP_RUN][0] / c_R + 1) * 0.6 * K_eq - K_eq) < 0.6e-5);
+      const double tougher[] = {K_eq * 1.00001, 150, v_max};
+      kernel->prepare(kernel, tougher, &none, uniforms);
+      kernel->tip_look(kernel, uniforms, &tips);
+      assert_true(out[PL_TIP_GROW][0] == 0);
+    }
+  model_close(&m);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(kernels_of_the_models_match),
-      cmocka_unit_test(kernels_of_the_test_laws_match), cmocka_unit_test(hooke_in_the_plane),
-      cmocka_unit_test(hooke_in_space), cmocka_unit_test(a_law_that_is_not_linear)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(kernels_of_the_models_match),
+                                     cmocka_unit_test(kernels_of_the_test_laws_match),
+                                     cmocka_unit_test(hooke_in_the_plane),
+                                     cmocka_unit_test(hooke_in_space),
+                                     cmocka_unit_test(a_law_that_is_not_linear),
+                                     cmocka_unit_test(cracks_turn_to_the_largest_hoop_stress)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

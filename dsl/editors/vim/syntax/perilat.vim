@@ -13,8 +13,8 @@ syntax keyword perilatStatement contained model end law for parameter constant o
 " words that are never names
 syntax keyword perilatReserved when otherwise jump in and or not by along returned on
 syntax keyword perilatQuantity stretch stretch_rate theta_i theta_j twist length s spacing t V m m_i m_j area shell horizon weight n resolved direction slip gap slip_rate strain strain_rate h K_I K_II energy_release angle_now speed_now rayleigh_speed shear_speed dilatational_speed
-syntax keyword perilatFunction abs sqrt cbrt exp log sin cos tan tanh atan2 sign soft_sign positive_part min max norm previous diff sum mean deviator virtual_work fit uniform_force uniform_stretch hooke principal trace dev J2 von_mises
-syntax keyword perilatKind central micropolar bond particle neighbour reference plane_stress plane_strain space irregular
+syntax keyword perilatFunction abs sqrt cbrt exp log sin cos tan tanh atan2 sign soft_sign positive_part min max norm previous diff sum mean deviator virtual_work fit uniform_force uniform_stretch hooke principal trace dev J2 von_mises tensor
+syntax keyword perilatKind central micropolar bond particle neighbour reference plane_stress plane_strain space irregular anisotropic continuum point tip
 syntax keyword perilatConstant pi inf
 
 syntax match perilatNumber "\<\d\+\(\.\d*\)\=\([eEdD][+-]\=\d\+\)\=" nextgroup=perilatUnit skipwhite

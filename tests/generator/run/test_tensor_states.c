@@ -1,0 +1,110 @@
+/* States that are tensors, end to end: on lattices the same bits whatever
+   the threads and after a resume, their components in results; and solvers of meshes, whose law of
+   a continuum and law of cracks they hold. */
+#define _GNU_SOURCE /* nftw */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "tests/generator/command_tools.h"
+#include "tests/runtime/hand_over.h"
+#include "tests/runtime/same_runs.h"
+#include "tests/verification/case.h"
+
+#define REMEMBERING SOURCE_DIR "/tests/generator/families/remembering.plm"
+#define TURNED                                                                                     \
+  "&simulation end_time = '0.1 ms' threads = %d /\n"                                               \
+  "&lattice name = 'l' %s spacing = '5 mm' /\n"                                                    \
+  "&material lattice = 'l' model = '" REMEMBERING "' /\n"                                          \
+  "&body lattice = 'l' %s /\n"                                                                     \
+  "&region name = 'low' shape = 'rectangle' corner = -1, -1 size = 2, '1.006 m' /\n"               \
+  "&region name = 'top' shape = 'rectangle' corner = -1, '34 mm' size = 2, 1 /\n"                  \
+  "&support region = 'low' fix = 'xy' /\n"                                                         \
+  "&drive region = 'top' component = 'x' velocity = '2 m/s' rise = '0.02 ms' /\n"                  \
+  "&monitor name = 'load' kind = 'reaction' region = 'top' component = 'x' /\n"                    \
+  "&output frames = 2 fields = 'seen_xy', 'seen_yz', 'shear', 'strain' result = 'turned.h5' "      \
+  "sample = '0.02 ms' /\n"
+
+static const struct {
+  const char *lattice, *body;
+} runs[] = {{"kind = 'hexagonal' thickness = '10 mm'",
+             "shape = 'rectangle' corner = 0, 0 size = '60 mm', '40 mm'"},
+            {"kind = 'square' thickness = '10 mm' horizon = 3",
+             "shape = 'rectangle' corner = 0, 0 size = '60 mm', '40 mm'"}};
+enum { RUNS = sizeof runs / sizeof *runs };
+
+static void open_turned(deck_case *c, size_t k, int threads) {
+  char text[4096];
+  snprintf(text, sizeof text, TURNED, threads, runs[k].lattice, runs[k].body);
+  deck_case_open(c, text);
+}
+
+static void threads_and_a_resume_give_the_same_bits(void **state) {
+  (void)state;
+  for (size_t k = 0; k < RUNS; k++) {
+    deck_case one, more, first, second;
+    open_turned(&one, k, 1);
+    assert_int_equal(deck_case_go(&one), STEP_END);
+    open_turned(&more, k, 3);
+    assert_int_equal(deck_case_go(&more), STEP_END);
+    same_runs(one.simulation, more.simulation);
+    open_turned(&first, k, 1);
+    open_turned(&second, k, 2);
+    hand_over(first.simulation, simulation_step_count(one.simulation) / 2, second.simulation);
+    assert_int_equal(deck_case_go(&second), STEP_END);
+    same_runs(one.simulation, second.simulation);
+    deck_case_close(&one);
+    deck_case_close(&more);
+    deck_case_close(&first);
+    deck_case_close(&second);
+  }
+}
+
+/* An output that reads a component has that field's values; in the plane nothing leaves it. */
+static void components_stand_in_results(void **state) {
+  workplace *w = *state;
+  char text[4096];
+  snprintf(text, sizeof text, TURNED, 1, runs[0].lattice, runs[0].body);
+  write_text(w, "turned.nml", text);
+  expect(w, "run turned.nml", 0, "turned.h5 (3 frames)");
+  expect(w, "info turned.h5", 0, "seen_xy, seen_yz, shear");
+  expect(w,
+         "export turned.h5 --frame -1 -o frame.csv --field seen_xy --field shear --field seen_yz",
+         0, "");
+  assert_int_equal(shell(w, "awk -F, 'NR > 1 { n = NF; if ($(n-2) != 0) moved++; "
+                            "if ($(n-2) != $(n-1) || $n != 0) bad++ } "
+                            "END { exit !(moved > 50 && !bad) }' frame.csv || head -3 frame.csv"),
+                   0);
+  assert_string_equal(w->said, "");
+}
+
+/* --- solvers of meshes ------------------------------------------------------------------------ */
+
+static void solvers_hold_the_laws_of_a_mesh(void **state) {
+  workplace *w = *state;
+#if defined(__SANITIZE_ADDRESS__)
+  skip(); /* its libraries need the sanitizer's */
+#endif
+  expect(w, "new tears --kind crack", 0, "written tears.plm, tears.nml");
+  assert_int_equal(shell(w, "\"$P\" build tears.nml -o tears"), 0);
+  assert_int_equal(shell(w, "./tears && mv tears.h5 solver.h5"), 0);
+  expect(w, "run tears.nml", 0, "written");
+  expect(w, "compare tears.h5 solver.h5", 0, "none differs");
+  expect(w, "build tears.plm -o tip.so", 0, "written tip.so");
+  assert_int_equal(
+      shell(w, "\"$P\" build " SOURCE_DIR "/tests/generator/laws/hardening_point.plm -o point.so"),
+      0);
+}
+
+int main(void) {
+#define ONE(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(threads_and_a_resume_give_the_same_bits),
+      ONE(components_stand_in_results),
+      ONE(solvers_hold_the_laws_of_a_mesh),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
