@@ -11,6 +11,7 @@
 #include "generator/kernel/document.h"
 #include "generator/kernel/kernel_check.h"
 #include "generator/kernel/model.h"
+#include "generator/run/moment.h"
 #include "generator/run/progress.h"
 #include "generator/run/run_document.h"
 #include "generator/run/run_laws.h"

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "generator/run/run_report.h"
+#include "generator/run/moment.h"
 #include "runtime/continuum/tips.h"
 
 enum { NAME_TEXT = 256 };

@@ -9,6 +9,7 @@
 #include "generator/drive/explain_bad.h"
 #include "generator/kernel/document.h"
 #include "generator/run/bad_bond.h"
+#include "generator/run/moment.h"
 #include "generator/run/print_quantity.h"
 #include "generator/run/report_mesh.h"
 #include "generator/run/run_cracks.h"
@@ -446,16 +447,6 @@ void announce(const run *r) {
          simulation_memory(r->simulation) / 1048576.0);
   printf("  result     %s\n", r->result_path);
   fflush(stdout);
-}
-
-const char *moment(const run *r, double time, char text[MOMENT_TEXT]) {
-  const int increments = r->deck->relaxation.increments;
-  if (increments > 0)
-    snprintf(text, MOMENT_TEXT, "increment %ld of %d",
-             lround(time / r->deck->simulation.end_time * increments), increments);
-  else
-    snprintf(text, MOMENT_TEXT, "t = %.5g ms", 1e3 * time);
-  return text;
 }
 
 /* --- during the run, and when it goes wrong --------------------------------------------------- */

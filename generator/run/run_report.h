@@ -6,10 +6,6 @@
 
 /* What is about to be done. */
 void announce(const run *r);
-/* "t = 4.1 ms"; in quasi-static runs, whose time is only an order, "increment 170 of 480": the
-   run's state at a time of the deck, s. */
-enum { MOMENT_TEXT = 80 };
-const char *moment(const run *r, double time, char text[MOMENT_TEXT]);
 /* "t = 25 ms, load 3100 N (peak 11020), cmod 0.12 mm": the first monitors at the last sample. */
 void describe_monitors(const run *r, char *text, size_t size);
 /* Why and where a run went bad; leaves a path that drives the bond at fault. */

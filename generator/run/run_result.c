@@ -12,6 +12,7 @@
 #include "generator/kernel/model.h"
 #include "generator/kernel/toolchain_compiler.h"
 #include "generator/kernel/version.h"
+#include "generator/run/moment.h"
 #include "generator/run/run_report.h"
 #include "runtime/base/whole_file.h"
 #include "runtime/continuum/cells.h"

@@ -111,6 +111,7 @@ static void kalthoff_and_winkler(void **state) {
   print_message("Kalthoff M30: %.1f degrees, from %.1f us\n", mean_angle(&r), 1e6 * begins);
   assert_true(begins > 22e-6 && begins < 30e-6);
   assert_true(mean_angle(&r) > 65 && mean_angle(&r) < 82);
+  assert_true(fabs(run_said(&r, "mm long, its tip at (") - 100) < 1e-3); /* it has left there */
   assert_true(fabs(run_last(&r, "energy/imbalance")) < 1e-9 * run_last(&r, "energy/external"));
   run_end(&r);
 }

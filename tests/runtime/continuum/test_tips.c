@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -12,6 +13,7 @@
 #include "mesh_cases.h"
 #include "runtime/continuum/node_masses.h"
 #include "runtime/continuum/tips.h"
+#include "runtime/simulation/simulation_save.h"
 #include "tests/runtime/small_run.h"
 
 /* A run with the law of its mesh and one law for all of its cracks. */
@@ -132,6 +134,52 @@ static void growth_is_in_the_ledger(void **state) {
   small_close(&c.r);
 }
 
+static void same_end(const cracked_run *a, const cracked_run *b) {
+  static const char *const series[] = {"left/K_I",    "left/x",        "left/y",
+                                       "left/length", "energy/stored", "energy/dissipated_damage"};
+  for (size_t k = 0; k < sizeof series / sizeof *series; k++)
+    assert_true(small_last(&a->r, series[k]) == small_last(&b->r, series[k]));
+  assert_memory_equal(&tip_of(a, 0)->now, &tip_of(b, 0)->now, sizeof(tip_state));
+  assert_true(simulation_tips(a->r.simulation, 0)->rated ==
+              simulation_tips(b->r.simulation, 0)->rated);
+}
+
+/* Stopped while the crack grows, and with other threads: the same to the last bit. */
+static void a_crack_that_grows_is_resumed(void **state) {
+  (void)state;
+  char path[] = "/tmp/perilat_tips_XXXXXX", error[512];
+  const int file = mkstemp(path);
+  assert_true(file >= 0);
+  close(file);
+  static cracked_run whole, resumed, threads;
+  frame_mark frames = {0};
+  const char *text = RUN PULLED TIPS "/\n&newmark beta_1 = 0.8 /\n" LEFT;
+  open_cracked(&whole, text);
+  open_cracked(&resumed, text);
+  open_cracked(&threads,
+               "&simulation end_time = '0.4 ms' step_safety = 0.5 threads = 3 /\n" PULLED TIPS
+               "/\n&newmark beta_1 = 0.8 /\n" LEFT);
+  while (simulation_step_done(whole.r.simulation) < 223) /* frames stop it */
+    simulation_advance(whole.r.simulation, 223 - simulation_step_done(whole.r.simulation), NULL);
+  const double length = tip_of(&whole, 0)->now.length;
+
+  assert_true(length > 0.06 && tip_of(&whole, 0)->now.speed > 0);
+  assert_true(simulation_save(whole.r.simulation, path, "print", &frames, error, sizeof error));
+  assert_true(
+      simulation_restore(resumed.r.simulation, path, "print", &frames, error, sizeof error));
+  assert_true(tip_of(&resumed, 0)->now.length == length);
+  small_go(&whole.r);
+  small_go(&resumed.r);
+  small_go(&threads.r);
+  assert_true(small_last(&whole.r, "left/length") > length + 0.01);
+  same_end(&whole, &resumed);
+  same_end(&whole, &threads);
+  unlink(path);
+  small_close(&whole.r);
+  small_close(&resumed.r);
+  small_close(&threads.r);
+}
+
 static void faces_overlap_under_pressure(void **state) {
   (void)state;
   static cracked_run c;
@@ -161,7 +209,7 @@ static void faces_overlap_under_pressure(void **state) {
 
 /* Half of the plate of Kalthoff and Winkler, 31 x 31 nodes, in plane strain by its moduli. */
 #define PLATE                                                                                      \
-  "&simulation end_time = '130 us' step = 2.9476e-7 /\n"                                            \
+  "&simulation end_time = '130 us' step = 2.9476e-7 /\n"                                           \
   "&mesh name = 'plate' corner = 0, -0.05 size = 0.1, 0.1 nodes = 31, 31 thickness = 1 "           \
   "method = 'element_free' support = 3.5 /\n"                                                      \
   "&zone mesh = 'plate' method = 'finite_elements' shape = 'segment' from = 0, -0.05 to = 0, "     \
@@ -308,6 +356,7 @@ int main(void) {
                                      cmocka_unit_test(two_tips_meet),
                                      cmocka_unit_test(looks_begin_when_they_are_to),
                                      cmocka_unit_test(growth_is_in_the_ledger),
+                                     cmocka_unit_test(a_crack_that_grows_is_resumed),
                                      cmocka_unit_test(faces_overlap_under_pressure),
                                      cmocka_unit_test(stiffness_after_a_run_is_assembly_afresh),
                                      cmocka_unit_test(driven_nodes_give_way)};
