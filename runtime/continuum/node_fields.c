@@ -40,8 +40,8 @@ void node_field_values(const cells *c, const double *const planes[2], double *va
   }
 }
 
-/* An element with one point knows the strain there alone: what its corners do beside is no strain of
-   the law's. */
+/* An element with one point knows the strain there alone: what its corners do beside is no strain
+   of the law's. */
 static void place_in_cell(const mesh *m, int cell, const double node[2], double at[2]) {
   int corner[4];
   memcpy(at, node, 2 * sizeof *at);
