@@ -1,5 +1,5 @@
-/* Cracks of meshes as they are now: points from the first to the last, with what has grown at either
-   end. */
+/* Cracks of meshes as they are now: points from the first to the last, with what has grown at
+   either end. */
 #ifndef PERILAT_RUNTIME_CRACK_PATHS_H
 #define PERILAT_RUNTIME_CRACK_PATHS_H
 

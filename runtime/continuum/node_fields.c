@@ -40,8 +40,8 @@ void node_field_values(const cells *c, const double *const planes[2], double *va
   }
 }
 
-/* An element with one point knows the strain there alone: what its corners do beside is no strain of
-   the law's. */
+/* An element with one point knows the strain there alone: what its corners do beside is no strain
+   of the law's. */
 static void place_in_cell(const mesh *m, int cell, const double node[2], double at[2]) {
   int corner[4];
   memcpy(at, node, 2 * sizeof *at);
@@ -52,12 +52,21 @@ static void place_in_cell(const mesh *m, int cell, const double node[2], double 
     at[a] += 0.5 * m->spacing[a];
 }
 
+/* Functions of element-free cells are the same in all of them: one speaks for all. */
+static int cells_that_differ(const mesh *m, int node, int around[4]) {
+  const int count = cells_around(m, node, around);
+  bool alike = count > 0;
+  for (int n = 0; n < count; n++)
+    alike = alike && m->cell[around[n]] == CELL_ELEMENT_FREE;
+  return alike ? 1 : count;
+}
+
 /* The mean over the cells around the node; false: there are none. */
 static bool strain_at(const cells *c, const node_layout *l, const double *const displacement[2],
                       int node, double strain[3]) {
   int around[4];
   double there[2];
-  const int count = cells_around(&c->mesh, node, around);
+  const int count = cells_that_differ(&c->mesh, node, around);
   mesh_place(&c->mesh, node, there);
   for (int k = 0; k < 3; k++)
     strain[k] = 0;

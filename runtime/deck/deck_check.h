@@ -40,8 +40,8 @@ void deck_check_name(deck_reader *r, const char *kind, const char *name, const d
                      const deck_item *first);
 /* The same of a lattice, a bar or a link, which stand side by side in results. */
 void deck_check_lattice_name(deck_reader *r, const deck_lattice *item);
-/* Monitors and cracks, which stand side by side in results: the name of one of `kind` is not that of
-   `other`, of the kind `its_kind`; NULL: there is no such. */
+/* Monitors and cracks, which stand side by side in results: the name of one of `kind` is not that
+   of `other`, of the kind `its_kind`; NULL: there is no such. */
 void deck_check_not_both(deck_reader *r, const char *kind, const deck_item *item,
                          const char *its_kind, const char *name, const deck_item *other);
 /* Names of faulty items may be missing. */

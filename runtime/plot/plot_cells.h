@@ -6,7 +6,8 @@
 #include "runtime/plot/canvas.h"
 #include "runtime/plot/plot_mesh.h"
 
-/* A place (X, Y) in m stands at x = origin_x + (X - left)*scale, y = origin_y - (Y - bottom)*scale. */
+/* A place (X, Y) in m stands at x = origin_x + (X - left)*scale, y = origin_y - (Y - bottom)*scale.
+   */
 typedef struct map_place {
   double left, bottom, scale, origin_x, origin_y;
 } map_place;
@@ -23,7 +24,8 @@ void plot_cells_fill(canvas *c, const plot_meshes *m, const mesh_view *v, const 
 void plot_cells_contours(canvas *c, const plot_meshes *m, const mesh_view *v, const map_place *at,
                          const double *levels, int count);
 void plot_cells_outline(canvas *c, const plot_meshes *m, const mesh_view *v, const map_place *at);
-/* Both faces where they have moved to: thick what was there at the beginning, thin what has grown. */
+/* Both faces where they have moved to: thick what was there at the beginning, thin what has grown.
+   */
 void plot_cells_cracks(canvas *c, const plot_meshes *m, const mesh_view *v, const map_place *at);
 /* Samples of the lines, from x on; nothing without cracks. */
 void plot_cells_crack_legend(canvas *c, const plot_meshes *m, double x, double y);

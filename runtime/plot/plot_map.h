@@ -16,8 +16,8 @@ typedef struct plot_map_options {
      damages of bonds, "omega_t,omega_c": each bond in the colours of that which is larger */
   const char *field;
   int component; /* of a vector field; -1: magnitude */
-  /* of a tensor that is stored component by component, "stress": "xx", "yy", ..., or "principal", the
-     largest principal value; NULL: the field is none */
+  /* of a tensor that is stored component by component, "stress": "xx", "yy", ..., or "principal",
+     the largest principal value; NULL: the field is none */
   const char *part;
   const char *range; /* "LOW,HIGH": values that have colours of their own; NULL: all there are */
   int contours;      /* of a mesh: about so many lines of equal value; 0: filled cells */

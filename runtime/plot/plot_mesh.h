@@ -1,6 +1,6 @@
-/* Meshes of a result as pictures show them: cells, coloured by the values of their nodes, and cracks.
-   A cell that a crack crosses is cut into small parts, each of which takes the values of the nodes on
-   its own side. */
+/* Meshes of a result as pictures show them: cells, coloured by the values of their nodes, and
+   cracks. A cell that a crack crosses is cut into small parts, each of which takes the values of
+   the nodes on its own side. */
 #ifndef PERILAT_RUNTIME_PLOT_MESH_H
 #define PERILAT_RUNTIME_PLOT_MESH_H
 
@@ -36,8 +36,8 @@ typedef struct plot_meshes {
 bool plot_meshes_read(plot_meshes *m, result_file *f, long frame, char *error, size_t size);
 void plot_meshes_free(plot_meshes *m);
 
-/* What is drawn: nodes at the beginning and where they have moved to, [particles][2] m, and a value of
-   each (may be NULL). */
+/* What is drawn: nodes at the beginning and where they have moved to, [particles][2] m, and a value
+   of each (may be NULL). */
 typedef struct mesh_view {
   const double *reference, *moved, *values;
 } mesh_view;

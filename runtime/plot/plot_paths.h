@@ -1,5 +1,5 @@
-/* The paths of cracks in meshes, of several results in one picture: where cracks ran, in places at the
-   beginning, with the outline of the meshes. */
+/* The paths of cracks in meshes, of several results in one picture: where cracks ran, in places at
+   the beginning, with the outline of the meshes. */
 #ifndef PERILAT_RUNTIME_PLOT_PATHS_H
 #define PERILAT_RUNTIME_PLOT_PATHS_H
 

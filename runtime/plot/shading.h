@@ -1,6 +1,6 @@
-/* A picture of values: an image of pixels, filled with what quadrilaterals have at their corners and
-   between, that is painted in CELL_STEPS colours of the scale:
-   steps that can be told apart, and small files. */
+/* A picture of values: an image of pixels, filled with what quadrilaterals have at their corners
+   and between, that is painted in CELL_STEPS colours of the scale: steps that can be told apart,
+   and small files. */
 #ifndef PERILAT_RUNTIME_SHADING_H
 #define PERILAT_RUNTIME_SHADING_H
 

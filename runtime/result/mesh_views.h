@@ -1,5 +1,5 @@
-/* What a result says of meshes and their cracks: tables of nodes and cells, and what is seen of them
-   frame by frame: the cells that no crack crosses, and the cracks as lines.
+/* What a result says of meshes and their cracks: tables of nodes and cells, and what is seen of
+   them frame by frame: the cells that no crack crosses, and the cracks as lines.
 
      /meshes/<mesh>/{nodes,cells,method}   result.h
      /xdmf/cells/<k>                       [C, 4] particles: cells of all meshes that no crack

@@ -23,8 +23,8 @@ double *result_read_frame_times(result_file *f, long *frames);
    */
 double *result_read_cracks(result_file *f, const char *monitor, long *frames, long *most,
                            char *error, size_t size);
-/* Whether the result has a crack of a mesh of that name; and its points, from the first to the last:
-   [frames][most][2] m, NaN beyond the last. */
+/* Whether the result has a crack of a mesh of that name; and its points, from the first to the
+   last: [frames][most][2] m, NaN beyond the last. */
 bool result_has_path(result_file *f, const char *crack);
 double *result_read_path(result_file *f, const char *crack, long *frames, long *most, char *error,
                          size_t size);

@@ -1,7 +1,7 @@
-/* The XDMF sidecar of a result, for ParaView: a time series of one grid (views.h); of a run on meshes
-   one of the cells and one of each crack. It names whole data sets of at most two dimensions and
-   nothing else: of cut or combined ones, and of collections within collections, ParaView's first
-   reader (Xdmf3) shows nothing. */
+/* The XDMF sidecar of a result, for ParaView: a time series of one grid (views.h); of a run on
+   meshes one of the cells and one of each crack. It names whole data sets of at most two dimensions
+   and nothing else: of cut or combined ones, and of collections within collections, ParaView's
+   first reader (Xdmf3) shows nothing. */
 #ifndef PERILAT_RUNTIME_XDMF_H
 #define PERILAT_RUNTIME_XDMF_H
 

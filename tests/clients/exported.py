@@ -65,6 +65,8 @@ class MeshFrame:
         """Points close to each other along the crack: is one inside?"""
         low, high = self.places[cell[0]], self.places[cell[2]]
         for a, b in zip(self.crack, self.crack[1:]):
+            if any(max(a[c], b[c]) <= low[c] or min(a[c], b[c]) >= high[c] for c in (0, 1)):
+                continue
             for k in range(2001):
                 x, y = (p + k / 2000 * (q - p) for p, q in zip(a[:2], b[:2]))
                 if low[0] < x < high[0] and low[1] < y < high[1]:

@@ -1,5 +1,5 @@
-/* A plate with a crack that runs at both ends: what the run leaves of it, however it was run, and what is
-   drawn of it. */
+/* A plate with a crack that runs at both ends: what the run leaves of it, however it was run, and
+   what is drawn of it. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
-/* Fields at nodes of a mesh with both methods and a crack: linear ones are exact, each side of the crack
-   knows its own. */
+/* Fields at nodes of a mesh with both methods and a crack: linear ones are exact, each side of the
+   crack knows its own. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

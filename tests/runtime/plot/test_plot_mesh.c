@@ -1,5 +1,5 @@
-/* Parts of cells as pictures draw them: together they are the mesh, linear fields are exact, sides of a
-   crack keep apart; lines of equal value at round values; pixels between corners. */
+/* Parts of cells as pictures draw them: together they are the mesh, linear fields are exact, sides
+   of a crack keep apart; lines of equal value at round values; pixels between corners. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

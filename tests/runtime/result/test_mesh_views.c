@@ -1,5 +1,5 @@
-/* Meshes in a result: which cells cracks leave whole, frame by frame; the tables of nodes, cells and
-   points as they are read back; the sidecar that names them. */
+/* Meshes in a result: which cells cracks leave whole, frame by frame; the tables of nodes, cells
+   and points as they are read back; the sidecar that names them. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
