@@ -99,7 +99,8 @@ static int build_law(const char *path, const char *output, const char *uses, boo
 /* What the deck's lattices are made of, with their options decided, and the tables of the deck's
    loads. */
 typedef struct deck_law {
-  const deck_interaction *of;
+  const char *owner; /* name of the interaction or the crack */
+  const deck_material *material;
   model model;
   bool opened;
   c_text choices; /* ";option=choice;..." */
@@ -119,12 +120,33 @@ static void list_choices(const law *l, c_text *out) {
     c_text_add(out, "%s=%s;", l->options.items[k]->name, l->chosen[k]);
 }
 
-static bool open_deck_law(const deck_interaction *of, const deck_lattice *lattice,
-                          const char *deck_path, deck_law *l, diagnostics *said) {
-  l->of = of;
-  const bool good = material_law_open(of->material, lattice, deck_path, &l->model, said);
+/* Those of interactions have a lattice, those of cracks none. */
+static bool open_deck_law(const char *owner, const deck_material *material,
+                          const deck_lattice *lattice, const char *deck_path, deck_law *l,
+                          diagnostics *said) {
+  l->owner = owner;
+  l->material = material;
+  const bool good = material_law_open(material, lattice, deck_path, &l->model, said);
   l->opened = l->model.memory != NULL;
   if (good) list_choices(l->model.law, &l->choices);
+  return good;
+}
+
+static bool open_all(const deck *k, const char *deck_path, deck_laws *out, diagnostics *said) {
+  bool good = true;
+  for (int n = 0; n < k->interaction_count; n++) {
+    const deck_interaction *of = &k->interactions[n];
+    good = open_deck_law(of->name, of->material, &k->lattices[of->lattice], deck_path,
+                         &out->items[out->count++], said) &&
+           good;
+  }
+  for (int n = 0; n < k->crack_count; n++) {
+    const deck_crack *c = &k->cracks[n];
+    if (c->model)
+      good =
+          open_deck_law(c->name, &c->material, NULL, deck_path, &out->items[out->count++], said) &&
+          good;
+  }
   return good;
 }
 
@@ -135,14 +157,10 @@ static bool open_deck_laws(const char *deck_path, const char *deck_text, deck_la
   diag_begin(&said, &out->sources);
   int file = source_add(&out->sources, deck_path, deck_text, strlen(deck_text));
   const deck *k = deck_read(out->memory, &out->sources, file, NULL, 0, &said);
-  bool good = k != NULL;
+  const int most = k ? k->interaction_count + k->crack_count : 0;
   out->deck = k;
-  out->count = k ? k->interaction_count : 0;
-  out->items = must_calloc((size_t)out->count + 1, sizeof *out->items);
-  for (int n = 0; n < out->count; n++)
-    good = open_deck_law(&k->interactions[n], &k->lattices[k->interactions[n].lattice], deck_path,
-                         &out->items[n], &said) &&
-           good;
+  out->items = must_calloc((size_t)most + 1, sizeof *out->items);
+  const bool good = k && open_all(k, deck_path, out, &said);
   if (!good) diag_print(&said, stderr);
   diag_clear(&said);
   return good;
@@ -213,8 +231,8 @@ static void put_files(c_text *out, const deck_laws *l) {
 
 static void put_law(c_text *out, int n, deck_law *l) {
   c_text_add(out, "const pl_law *perilat_kernel_%d(void);\n", n);
-  put_string_of(out, "solver_interaction", n, l->of->name);
-  put_string_of(out, "solver_model", n, l->of->material->model);
+  put_string_of(out, "solver_interaction", n, l->owner);
+  put_string_of(out, "solver_model", n, l->material->model);
   put_string_of(out, "solver_law_text", n, l->model.sources.items[0].text);
   put_string_of(out, "solver_kernel_text", n, model_c_text(&l->model));
   put_string_of(out, "solver_choices", n, l->choices.text);

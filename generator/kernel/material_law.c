@@ -136,8 +136,7 @@ static int neighbours_of(const deck_lattice *l) {
 /* What a bond knows of the third direction its law must say; `for` is the word that it has. */
 static void warn_of_plane_strain(const deck_lattice *l, const model *m, diagnostics *said) {
   if (m->law->setting != SETTING_PLANE_STRAIN || m->law->tree->law == LAW_STATE ||
-      m->law->tree->law == LAW_CONTINUUM ||
-      m->tree->setting_count > 0)
+      m->law->tree->law == LAW_CONTINUUM || m->tree->setting_count > 0)
     return;
   diag_report(
       said, DIAG_DECK_WARNING, deck_where(&l->item, "setting"),
@@ -329,9 +328,25 @@ static bool needs_families(const deck_material *m, const deck_lattice *l, const 
   return m->beside || !bravais_is_hexagon(l) || (v->masses && reads_masses(of));
 }
 
+/* A law of cracks is that of tips, not of a body. */
+static bool is_of_bodies(const deck_material *m, const deck_lattice *l, const law *of,
+                         diagnostics *said) {
+  if (!l || of->tree->law != LAW_CRACK) return true;
+  const bool mesh = deck_lattice_is_mesh(l);
+  diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),
+              "`%s` is a law of cracks, not one of a %s", of->tree->name, mesh ? "mesh" : "body");
+  diag_hint(said,
+            mesh
+                ? "a `&crack` takes it; a mesh has a law that begins with `law continuum`, such as "
+                  "`elastic`"
+                : "a `&crack` of a mesh takes it");
+  return false;
+}
+
 bool material_law_plan(const deck_material *m, const deck_lattice *l, model *out,
                        diagnostics *said) {
   law_variation v;
+  if (!is_of_bodies(m, l, out->law, said)) return false;
   if (!take_setting(m, l, out, said) || !suits_section(m, l, out->law, said)) return false;
   if (!find_variation(m, out, &v, said)) return false;
   return l && needs_families(m, l, out->law, &v) ? model_plan_of_families(out, &v)

@@ -61,6 +61,10 @@ static void announce_crack(const tips *t, const deck_crack *k, double step, bool
     length +=
         hypot(k->points[2 * n] - k->points[2 * n - 2], k->points[2 * n + 1] - k->points[2 * n - 1]);
   printf("  crack      %s: %.6g mm, ", k->name, 1e3 * length);
+  if (count == 0) {
+    puts("from edge to edge: it has no tip");
+    return;
+  }
   if (k->grows)
     printf("grows by %s", k->model);
   else
@@ -69,10 +73,7 @@ static void announce_crack(const tips *t, const deck_crack *k, double step, bool
     putchar('\n');
     return;
   }
-  printf("; %s looked at every %.4g us\n",
-         count == 0   ? "it has no tip to be"
-         : count == 1 ? "its tip is"
-                      : "its tips are",
+  printf("; its tip%s looked at every %.4g us\n", count == 1 ? " is" : "s are",
          1e6 * step * (double)t->check_steps);
 }
 

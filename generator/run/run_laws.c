@@ -203,36 +203,56 @@ static bool is_of_cracks(run *r, const deck_crack *c, const model *opened) {
   return false;
 }
 
-int load_crack_law(run *r, int crack) {
-  const deck_crack *c = &r->deck->cracks[crack];
-  simulation_law *out = &r->laws[r->deck->interaction_count + crack];
-  char error[4 * ERROR_LENGTH];
-  const char *note;
-  if (!c->model) return 0;
-  if (r->options->laws) {
-    diag_report(&r->said, DIAG_NOT_SUPPORTED, deck_where(&c->item, "model"),
-                "a stand-alone solver has no laws of cracks");
-    diag_hint(&r->said, "use `perilat run`");
+/* Of a solver: with what it was built. */
+static int take_built_in_crack_law(run *r, const deck_crack *c, int number) {
+  simulation_law *out = &r->laws[number];
+  const built_in_law *b = find_built_in(r->options, &c->material, c->name);
+  deck_material values;
+  if (!b) {
+    diag_report(&r->said, DIAG_FILE, deck_where(&c->item, "model"),
+                "this solver was built without the model `%s`", c->model);
     return INPUT_WRONG;
   }
+  if (!drop_built_in_choices(r, &c->material, b, &values)) return INPUT_WRONG;
+  out->parameters = parameters_of(r, &values, b->law);
+  if (!out->parameters) return INPUT_WRONG;
+  r->built_in[number] = b;
+  out->law = b->law;
+  return 0;
+}
+
+/* Opened, with its parameters and its verdict; its kernel is that of a law that may run. */
+static int take_crack_law(run *r, const deck_crack *c, int number) {
+  simulation_law *out = &r->laws[number];
+  char error[4 * ERROR_LENGTH];
+  const char *note;
   model *opened = &r->models[r->open_models];
   const bool good = material_law_open(&c->material, NULL, r->options->deck_path, opened, &r->said);
+  const deck_lattice none = lattice_default("plane_stress", 1, 1);
   r->open_models += opened->memory != NULL;
   if (!good || !is_of_cracks(r, c, opened)) return INPUT_WRONG;
-  out->law = model_kernel(opened, r->options->interpret || r->options->check_only, &note, error,
-                          sizeof error);
-  if (!out->law) {
+  const pl_law *kernel = model_kernel(opened, r->options->interpret || r->options->check_only,
+                                      &note, error, sizeof error);
+  if (!kernel) {
     say_error("%s", error);
     return RUN_FAILED;
   }
-  out->parameters = parameters_of(r, &opened->values, out->law);
+  out->parameters = parameters_of(r, &opened->values, kernel);
   if (!out->parameters) return INPUT_WRONG;
-  const deck_lattice none = lattice_default("plane_stress", 1, 1);
-  if (r->options->no_physics ||
-      run_law_obeys(opened, &none, out->parameters, deck_where(&c->item, "model"), &opened->said,
-                    &r->said))
-    return 0;
-  return INPUT_WRONG;
+  if (!r->options->no_physics &&
+      !run_law_obeys(opened, &none, out->parameters, deck_where(&c->item, "model"), &opened->said,
+                     &r->said))
+    return INPUT_WRONG;
+  r->model_of[number] = opened;
+  out->law = kernel;
+  return 0;
+}
+
+int load_crack_law(run *r, int crack) {
+  const deck_crack *c = &r->deck->cracks[crack];
+  const int number = r->deck->interaction_count + crack;
+  if (!c->model) return 0;
+  return r->options->laws ? take_built_in_crack_law(r, c, number) : take_crack_law(r, c, number);
 }
 
 bool check_law_alone(run *r, const deck_material *m) {

@@ -153,9 +153,10 @@ static const char *all_kernel_keys(run *r) {
 
 void fingerprint(run *r) {
   char *text = arena_printf(r->memory, "perilat %s\n", perilat_version);
-  for (int k = 0; k < r->deck->interaction_count; k++)
-    text = arena_printf(r->memory, "%slaw %s, kernel %s\n", text, r->laws[k].law->name,
-                        kernel_key(r, k));
+  for (int k = 0; k < run_law_count(r); k++)
+    if (r->laws[k].law)
+      text = arena_printf(r->memory, "%slaw %s, kernel %s\n", text, r->laws[k].law->name,
+                          kernel_key(r, k));
   for (int k = 0; k < r->deck->file_count; k++) { /* a file may have changed */
     const source *s = &r->sources.items[r->deck->files[k].source];
     text = arena_printf(r->memory, "%sfile %s, contents %016" PRIx64 "\n", text,
@@ -175,27 +176,38 @@ void fingerprint(run *r) {
 
 /* --- result ----------------------------------------------------------------------------------- */
 
+/* What has the law of that number: an interaction or, behind these, a crack. */
+static const char *law_owner(const run *r, int number) {
+  const int interactions = r->deck->interaction_count;
+  return number < interactions ? r->deck->interactions[number].name
+                               : r->deck->cracks[number - interactions].name;
+}
+
 /* Two interactions may have one law: its text is kept once. Kernels of one law for other lattices
    differ. */
-static const char *text_name(run *r, const result_text *texts, int interaction) {
-  const char *name = r->laws[interaction].law->name;
-  for (int k = 0; k < interaction; k++)
-    if (strcmp(texts[k].name, name) == 0 && strcmp(texts[k].text, texts[interaction].text) != 0)
-      return arena_printf(r->memory, "%s.%s", name, r->deck->interactions[interaction].name);
+static const char *text_name(run *r, const result_text *texts, int before, const char *text,
+                             int number) {
+  const char *name = r->laws[number].law->name;
+  for (int k = 0; k < before; k++)
+    if (strcmp(texts[k].name, name) == 0 && strcmp(texts[k].text, text) != 0)
+      return arena_printf(r->memory, "%s.%s", name, law_owner(r, number));
   return name;
 }
 
 static result_text *collect_texts(run *r, bool c_text, int *count) {
-  *count = r->deck->interaction_count;
-  result_text *texts = arena_alloc(r->memory, (size_t)*count * sizeof *texts);
-  for (int k = 0; k < *count; k++) {
+  result_text *texts = arena_alloc(r->memory, (size_t)run_law_count(r) * sizeof *texts);
+  *count = 0;
+  for (int k = 0; k < run_law_count(r); k++) {
     const built_in_law *b = r->built_in[k];
     model *m = b ? NULL : r->model_of[k];
+    result_text *t = &texts[*count];
+    if (!r->laws[k].law) continue;
     if (b)
-      texts[k].text = c_text ? b->c_text : b->law_text;
+      t->text = c_text ? b->c_text : b->law_text;
     else
-      texts[k].text = c_text ? model_c_text(m) : m->sources.items[0].text;
-    texts[k].name = text_name(r, texts, k);
+      t->text = c_text ? model_c_text(m) : m->sources.items[0].text;
+    t->name = text_name(r, texts, *count, t->text, k);
+    ++*count;
   }
   return texts;
 }

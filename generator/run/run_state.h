@@ -18,11 +18,11 @@ typedef struct run {
   const deck *deck;
   model *models; /* [material_count] */
   int open_models;
-  model **model_of; /* [interaction_count] of these; NULL where it is built in or not known */
+  model **model_of; /* [run_law_count] of these; NULL where it is built in or not known */
   /* [lattice_count] the simulation's, when there is one; NULL where it is not known */
   rows **lattices;
-  simulation_law *laws;          /* [interaction_count] */
-  const built_in_law **built_in; /* [interaction_count], NULL entries otherwise */
+  simulation_law *laws;          /* [run_law_count] of a crack that does not grow without one */
+  const built_in_law **built_in; /* [run_law_count], NULL entries otherwise */
   simulation *simulation;
   result *result;
   char *result_path, *checkpoint_path;
@@ -38,6 +38,11 @@ typedef struct run {
   double wall;        /* s: of the march */
   bool is_written;    /* the result */
 } run;
+
+/* Laws stand one for each interaction, then one for each crack. */
+static inline int run_law_count(const run *r) {
+  return r->deck->interaction_count + r->deck->crack_count;
+}
 
 /* What the run has come to, and what it will exit with. */
 typedef struct run_end {

@@ -100,6 +100,34 @@ static void warn_of_nodes(const deck_crack *c, const mesh *m, diagnostics *d) {
     }
 }
 
+static tip_box box_of(const tips *t, const mesh_tip *p) {
+  const box_weight weight = t->options->integral == TIPS_PYRAMID ? WEIGHT_PYRAMID : WEIGHT_PLATEAU;
+  return tip_box_of(p->now.at, p->now.angle, t->half_size, p->now.last, !p->now.grown, weight);
+}
+
+/* Beyond the edge of the mesh there is nothing to integrate. */
+static void warn_of_box(const tips *t, const mesh_tip *p, const mesh *m, diagnostics *d) {
+  const tip_box b = box_of(t, p);
+  double lower[2], upper[2];
+  tip_box_extent(&b, lower, upper);
+  for (int a = 0; a < 2; a++) {
+    const double margin = ON_BORDER * m->spacing[a], first = m->corner[a],
+                 last = mesh_at(m, a, m->nodes[a] - 1), *at = p->now.at;
+    const bool half = p->of->symmetry; /* beyond the tip's own edge there is the mirror image */
+    if ((lower[a] >= first - margin || (half && at[a] <= first + margin)) &&
+        (upper[a] <= last + margin || (half && at[a] >= last - margin)))
+      continue;
+    diag_report(
+        d, DIAG_DECK_WARNING, deck_where(&p->of->item, "points"),
+        "the box around the tip at (%.6g, %.6g) mm reaches beyond the edge of the mesh: its "
+        "stress intensities will be wrong",
+        1e3 * p->now.at[0], 1e3 * p->now.at[1]);
+    diag_hint(d, "it reaches %.4g mm to each side; make `half_size` of &tips smaller",
+              1e3 * b.across);
+    return;
+  }
+}
+
 /* Along which axis the edge of the mesh runs that both places lie on; -1: none. */
 static int edge_with(const mesh *m, const double a[2], const double b[2]) {
   for (int across = 0; across < 2 && !m->mapped; across++)
@@ -125,8 +153,10 @@ static bool add_face(tips *t, const deck_crack *c, mesh *m, diagnostics *d) {
   for (int start = 1; start >= 0; start--) {
     const mesh_tip tip = tip_of(c, start);
     const double margin = ON_BORDER * m->spacing[axis], at = tip.now.at[axis];
-    if (at > m->corner[axis] + margin && at < mesh_at(m, axis, m->nodes[axis] - 1) - margin)
-      add_tip(t, m, tip);
+    if (at <= m->corner[axis] + margin || at >= mesh_at(m, axis, m->nodes[axis] - 1) - margin)
+      continue;
+    add_tip(t, m, tip);
+    warn_of_box(t, &t->items[t->count - 1], m, d);
   }
   if (t->count > before) return true;
   diag_report(d, DIAG_BAD_VALUE, deck_where(&c->item, "points"),
@@ -142,7 +172,9 @@ static bool add_crack(tips *t, const deck_crack *c, mesh *m, diagnostics *d) {
     crack_lines_add(&m->cracks, c->points + 2 * k - 2, c->points + 2 * k);
   for (int start = 1; start >= 0; start--) {
     const mesh_tip tip = tip_of(c, start);
-    if (is_inside(m, tip.now.at)) add_tip(t, m, tip);
+    if (!is_inside(m, tip.now.at)) continue;
+    add_tip(t, m, tip);
+    warn_of_box(t, &t->items[t->count - 1], m, d);
   }
   return true;
 }
@@ -346,9 +378,7 @@ static int points_of_box(tips *t, const body *w, const node_stencil *k, const ti
 }
 
 static void look_at(tips *t, mesh_tip *p, const body *w, const node_stencil *k) {
-  const box_weight weight = t->options->integral == TIPS_PYRAMID ? WEIGHT_PYRAMID : WEIGHT_PLATEAU;
-  const tip_box b =
-      tip_box_of(p->now.at, p->now.angle, t->half_size, p->now.last, !p->now.grown, weight);
+  const tip_box b = box_of(t, p);
   const int count =
       t->options->points > 0 ? points_of_box(t, w, k, &b) : points_of_mesh(t, w, k, &b);
   tip_intensity(&t->medium, &b, t->points, count, p->now.speed, p->now.K);

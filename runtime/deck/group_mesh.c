@@ -90,7 +90,7 @@ static const deck_key_info mesh_keys[] = {
      .doc = "how methods blend in the cells between zones: by R, or by 3R^2 - 2R^3"},
 };
 
-enum { LEAST_NODES = 2, MOST_NODES = 20000 };
+enum { LEAST_NODES = 2, MOST_NODES = 20000, MOST_IN_ALL = 4000000 };
 
 /* Whole numbers of nodes, as a pair. */
 static bool has_nodes(deck_reader *r, const deck_mesh *item) {
@@ -103,7 +103,11 @@ static bool has_nodes(deck_reader *r, const deck_mesh *item) {
     diag_hint(r->d, "such as nodes = 74, 25: 73 x 24 cells");
     return false;
   }
-  return true;
+  if (item->nodes[0] * item->nodes[1] <= MOST_IN_ALL) return true;
+  diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "nodes"),
+              "a mesh has at most %d nodes in all, these are %.3g", MOST_IN_ALL,
+              item->nodes[0] * item->nodes[1]);
+  return false;
 }
 
 /* At a point as many nodes act as the linear basis needs, and not more than there is room for. */

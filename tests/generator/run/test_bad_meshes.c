@@ -1,0 +1,101 @@
+/* A deck of a mesh with a crack, wrong in one place at a time, and the exact text that a user sees:
+   bad_meshes/plate.nml, and a text for each fault. */
+#define _GNU_SOURCE
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "tests/generator/command_tools.h"
+
+#define FOLDER SOURCE_DIR "/tests/generator/run/bad_meshes/"
+
+typedef struct fault {
+  const char *name, *right, *wrong;
+  bool warns; /* the deck runs all the same */
+} fault;
+
+static const fault faults[] = {
+    {"few_nodes", "support = 2.1", "support = 1.2", false},
+    {"node_row", "0, '31 mm', '30 mm', '31 mm'", "0, '30 mm', '30 mm', '30 mm'", true},
+    {"in_element", "0, '31 mm', '30 mm', '31 mm'", "0, '2 mm', '30 mm', '2 mm'", false},
+    {"outside", "0, '31 mm', '30 mm'", "'-5 mm', '31 mm', '30 mm'", false},
+    {"held_parameter", "'100 mm', '1 mm'", "'100 mm', '10 mm'", false},
+    {"step", "end_time = '50 us'", "end_time = '50 us'  step = '2 us'", false},
+    {"law_of_cracks", "'elastic'  E = '30 GPa'", "'lefm'", false},
+    {"law_of_bonds", "'elastic'  E = '30 GPa'", "'pmb'", false},
+    {"crack_of_a_body", "model = 'lefm'", "model = 'elastic'", false},
+    {"no_toughness", "model = 'lefm'", "model = 'lefm'  K_Ic = 0", false},
+    {"unit_of_toughness", "model = 'lefm'", "model = 'lefm'  K_Ic = '3 MPa'", false},
+    {"not_linear", "'elastic'  E = '30 GPa'", "'stiffening'", false},
+    {"traction_beside", "0, '60 mm'  to = '100 mm', '60 mm'", "0, '70 mm'  to = '1 m', '70 mm'",
+     false},
+    {"too_many_nodes", "nodes = 41, 25", "nodes = 20000, 20000", false},
+    {"half_a_node", "nodes = 41, 25", "nodes = 41.5, 25", false},
+    {"empty_zone", "corner = 0, 0  size = '100 mm', '3 mm'",
+     "corner = '1 m', 0  size = '100 mm', '3 mm'", false},
+    {"wide_box", "half_size = 3", "half_size = 30", true},
+    {"other_mesh", "'c'  mesh = 'plate'", "'c'  mesh = 'plat'", false},
+    {"damped_backward", "&tips ", "&newmark beta_1 = 0.4 /\n&tips ", false},
+};
+enum { FAULTS = sizeof faults / sizeof *faults };
+
+static char *file_text(const char *path) {
+  FILE *in = fopen(path, "rb");
+  if (!in) return NULL;
+  char *text = calloc(SAID_SIZE, 1);
+  assert_non_null(text);
+  assert_true(fread(text, 1, SAID_SIZE - 1, in) < SAID_SIZE - 1);
+  fclose(in);
+  return text;
+}
+
+/* The deck with one part of it replaced. */
+static void write_wrong(const workplace *w, const char *deck, const fault *f) {
+  const char *at = strstr(deck, f->right);
+  char text[SAID_SIZE];
+  assert_non_null(at);
+  snprintf(text, sizeof text, "%.*s%s%s", (int)(at - deck), deck, f->wrong, at + strlen(f->right));
+  write_text(w, "plate.nml", text);
+}
+
+static bool as_expected(const fault *f, const char *said) {
+  char path[400];
+  snprintf(path, sizeof path, FOLDER "%s.txt", f->name);
+  if (getenv("PERILAT_BLESS")) {
+    FILE *out = fopen(path, "wb");
+    assert_non_null(out);
+    fputs(said, out);
+    fclose(out);
+  }
+  char *expected = file_text(path);
+  const bool same = expected && strcmp(expected, said) == 0;
+  if (!same)
+    print_message("%s\n--- expected\n%s--- got\n%s", path, expected ? expected : "(no file)\n",
+                  said);
+  free(expected);
+  return same;
+}
+
+static void test_faults(void **state) {
+  workplace *w = *state;
+  char *deck = file_text(FOLDER "plate.nml");
+  int different = 0;
+  assert_non_null(deck);
+  for (int k = 0; k < FAULTS; k++) {
+    write_wrong(w, deck, &faults[k]);
+    assert_int_equal(shell(w, "$P check plate.nml 2>&1 >/dev/null"), faults[k].warns ? 0 : 1);
+    different += !as_expected(&faults[k], w->said);
+  }
+  free(deck);
+  assert_int_equal(different, 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test_setup_teardown(test_faults, set_up_workplace, tear_down_workplace)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

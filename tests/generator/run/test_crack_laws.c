@@ -1,0 +1,65 @@
+/* Laws of cracks in a run: as those of bodies they are in results, in solvers, in what a checkpoint
+   belongs to, and in the comparison of kernels with the interpreter. */
+#define _GNU_SOURCE
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "tests/generator/command_tools.h"
+
+static int set_up_plate(void **state) {
+  const int failed = set_up_workplace(state);
+  if (failed) return failed;
+  return shell(*state,
+               "cp " SOURCE_DIR "/tests/generator/run/bad_meshes/plate.nml . && cp " SOURCE_DIR
+               "/models/lefm.plm my_crack.plm && sed -i \"s/'lefm'/'.\\/my_crack.plm'  K_Ic = "
+               "'0.1 MPa*m^(1\\/2)'/\" plate.nml");
+}
+
+static void a_solver_has_them_built_in(void **state) {
+  workplace *w = *state;
+  expect(w, "run plate.nml --set output.result=run.h5", 0, "written");
+  expect(w, "build plate.nml -o plate", 0, "without a compiler");
+  assert_int_equal(shell(w, "mv my_crack.plm away.plm && ./plate"), 0);
+  expect(w, "compare run.h5 plate.h5", 0, "none differs by more than 0");
+  assert_int_equal(shell(w, "./plate --set crack.K_Ic=-1"), 1);
+  assert_non_null(strstr(w->said, "is not in (0, inf)"));
+}
+
+static void results_hold_their_text(void **state) {
+  workplace *w = *state;
+  expect(w, "run plate.nml", 0, "written");
+  assert_int_equal(shell(w, "grep -aq 'grow when K_eq' plate.h5"), 0);
+  assert_int_equal(shell(w, "grep -aq 'stress sigma = hooke' plate.h5"), 0);
+}
+
+/* A run goes on with the laws that it began with. */
+static void another_law_cannot_resume(void **state) {
+  workplace *w = *state;
+  assert_int_equal(shell(w, "sed -e 's/50 us/50 ms/' -e 's/frames = 4/frames = 1000/' plate.nml > "
+                            "long.nml"),
+                   0);
+  const pid_t run = start_long_run(w, "long.h5", NULL);
+  assert_int_equal(kill(run, SIGINT), 0);
+  assert_int_equal(end_of(run), 130);
+  assert_int_equal(shell(w, "sed -i 's/K_eq >= K_Ic/K_eq >= 2*K_Ic/' my_crack.plm"), 0);
+  expect(w, "run long.nml --set output.result=long.h5 --set 'simulation.title=a long run' --resume",
+         1, "belongs to another deck, law or kernel");
+}
+
+static void kernels_are_compared(void **state) {
+  workplace *w = *state;
+  expect(w, "run plate.nml --check-kernel", 0,
+         "kernel check: lefm and its interpreter give the same");
+}
+
+int main(void) {
+#define T(test) cmocka_unit_test_setup_teardown(test, set_up_plate, tear_down_workplace)
+  const struct CMUnitTest tests[] = {T(a_solver_has_them_built_in), T(results_hold_their_text),
+                                     T(another_law_cannot_resume), T(kernels_are_compared)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
