@@ -134,8 +134,11 @@ static void warn_of_box(const tips *t, const mesh_tip *p, const mesh *m, diagnos
   double lower[2], upper[2];
   tip_box_extent(&b, lower, upper);
   for (int a = 0; a < 2; a++) {
-    const double margin = ON_BORDER * m->spacing[a];
-    if (lower[a] >= m->corner[a] - margin && upper[a] <= mesh_at(m, a, m->nodes[a] - 1) + margin)
+    const double margin = ON_BORDER * m->spacing[a], first = m->corner[a],
+                 last = mesh_at(m, a, m->nodes[a] - 1), *at = p->now.at;
+    const bool half = p->of->symmetry; /* beyond the tip's own edge there is the mirror image */
+    if ((lower[a] >= first - margin || (half && at[a] <= first + margin)) &&
+        (upper[a] <= last + margin || (half && at[a] >= last - margin)))
       continue;
     diag_report(
         d, DIAG_DECK_WARNING, deck_where(&p->of->item, "points"),
@@ -180,8 +183,10 @@ static bool add_face(tips *t, const deck_crack *c, mesh *m, diagnostics *d) {
   for (int start = 1; start >= 0; start--) {
     const mesh_tip tip = tip_of(c, m, start);
     const double margin = ON_BORDER * m->spacing[axis], at = tip.now.at[axis];
-    if (at > m->corner[axis] + margin && at < mesh_at(m, axis, m->nodes[axis] - 1) - margin)
-      add_tip(t, m, tip);
+    if (at <= m->corner[axis] + margin || at >= mesh_at(m, axis, m->nodes[axis] - 1) - margin)
+      continue;
+    add_tip(t, m, tip);
+    warn_of_box(t, &t->items[t->count - 1], m, d);
   }
   if (t->count > before) return true;
   diag_report(d, DIAG_BAD_VALUE, deck_where(&c->item, "points"),

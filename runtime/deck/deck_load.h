@@ -52,7 +52,7 @@
     .name = "formula", .type = DECK_LATER, DECK_NOT_KEPT,                                          \
     .doc = "formula: an expression; a factor on the value, or with a unit and without the value "  \
            "the load itself. It reads `t`, the time after `start`, in `&drive` and `&force` also " \
-           "`x`, `y`, `z`, where a particle is at the beginning"                                   \
+           "`x`, `y`, `z`, where a particle is at the beginning, in `&traction` those of the line" \
   }
 
 struct formula_scope; /* dsl/semantics/formula.h */

@@ -327,7 +327,9 @@ static void check_end(deck_reader *r) {
   deck_simulation *s = &r->k->simulation;
   if (s->end_time > 0 || s->periods > 0 || s->item.where.end == 0 || s->item.faulty) return;
   diag_report(r->d, DIAG_MISSING_KEY, s->item.where, "`&simulation` has no `end_time`");
-  diag_hint(r->d, "end_time: the run begins at 0 and ends here (s)");
+  diag_hint(
+      r->d,
+      "end_time: the run begins at 0 and ends here; periods are those of the lowest mode (s)");
   lack(r->k, DECK_GROUP_simulation);
 }
 

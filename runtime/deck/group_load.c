@@ -136,7 +136,8 @@ static void complete_drive(deck_reader *r, const namelist_group *from, deck_driv
       {"velocity", rotates ? "1/s" : "m/s", false, &deck_formula_of_all},
       {"displacement", rotates ? "1" : "m", false, &deck_formula_of_all},
       {"acceleration", rotates ? "1/s^2" : "m/s^2", false, &deck_formula_of_all}};
-  const int kind = deck_load_kind_of(r->memory, from, kinds, 3, r->d);
+  const bool accelerated = namelist_find(from, "acceleration"); /* no file or formula is one */
+  const int kind = deck_load_kind_of(r->memory, from, kinds, 2 + accelerated, r->d);
   if (kind < 0) return;
   item->is_displacement = kind == 1;
   if (!deck_load_read(r->memory, from, &kinds[kind], &item->motion, r->d)) {
