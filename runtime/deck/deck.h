@@ -126,11 +126,11 @@ typedef struct deck_assignment { /* parameter = value in a &material */
 
 typedef struct deck_material {
   deck_item item;
-  const char *lattice;    /* name; of a bar's the bar, of a link's the link */
+  const char *lattice;           /* name; of a bar's the bar, of a link's the link */
   const char *bar, *link, *mesh; /* the same where the deck says that it is one; else NULL */
-  const char *region;     /* name; NULL: of the whole lattice, but for what others say */
-  const char *between[2]; /* names of regions; NULL: not of the bonds between two */
-  const char *model;      /* name in models/ or a path ending in .plm */
+  const char *region;            /* name; NULL: of the whole lattice, but for what others say */
+  const char *between[2];        /* names of regions; NULL: not of the bonds between two */
+  const char *model;             /* name in models/ or a path ending in .plm */
   deck_assignment *assignments;
   int assignment_count;
   /* [varying_count] parameters that a &field makes differ in space */
@@ -165,7 +165,7 @@ typedef struct deck_tips { /* how stress intensities are found, and how often */
   double from;        /* s: no look before */
   double check_every; /* s; 0: check_steps */
   int check_steps, updates;
-  double segment; /* least length of a leg before the crack may turn, spacings along x */
+  double segment;            /* least length of a leg before the crack may turn, spacings along x */
   double corner[3], size[3]; /* m: the rectangle in which cracks grow; size 0: the mesh */
 } deck_tips;
 
@@ -418,12 +418,12 @@ typedef struct deck_texts { /* of a key that takes several */
 /* Many runs of a deck, which `perilat study` does; a run of the deck itself takes no notice. */
 typedef struct deck_study {
   deck_item item;
-  deck_texts decks; /* files; none: the deck that it stands in */
-  deck_texts vary;  /* "group.key=v1, v2 with group.key=w1, w2" */
-  deck_texts set;   /* "group.key=value", in all runs */
-  const char *x, *y; /* monitors; NULL: time, and load or the first */
-  const char *result; /* what its files are called; NULL: after the file */
-  int jobs;           /* runs at the same time; 0: as many as there are processors */
+  deck_texts decks;     /* files; none: the deck that it stands in */
+  deck_texts vary;      /* "group.key=v1, v2 with group.key=w1, w2" */
+  deck_texts set;       /* "group.key=value", in all runs */
+  const char *x, *y;    /* monitors; NULL: time, and load or the first */
+  const char *result;   /* what its files are called; NULL: after the file */
+  int jobs;             /* runs at the same time; 0: as many as there are processors */
   const char *converge; /* key that goes to 0 */
   const char *of;       /* "peak", "last" */
   const char *strength; /* "group.key=from..to:step", or the key alone */

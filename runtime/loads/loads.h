@@ -51,7 +51,7 @@ typedef struct applied { /* part of a force that acts on one component of one pa
 typedef struct loads {
   const deck *deck;
   const rows *lattice;
-  bool gives_way; /* of a mesh: driven nodes do (newmark_motion) */
+  bool gives_way;        /* of a mesh: driven nodes do (newmark_motion) */
   region_sites *regions; /* [deck->region_count] */
   /* Both in the order of their sites, so that each thread puts its own right, and sums in one order
      whatever the threads. */
