@@ -142,10 +142,10 @@ static bool open_all(const deck *k, const char *deck_path, deck_laws *out, diagn
   }
   for (int n = 0; n < k->crack_count; n++) {
     const deck_crack *c = &k->cracks[n];
-    if (c->model)
-      good =
-          open_deck_law(c->name, &c->material, NULL, deck_path, &out->items[out->count++], said) &&
-          good;
+    if (!c->model) continue;
+    const char *name = arena_printf(out->memory, BUILT_IN_CRACK, c->name);
+    good =
+        open_deck_law(name, &c->material, NULL, deck_path, &out->items[out->count++], said) && good;
   }
   return good;
 }

@@ -3,18 +3,33 @@
 #include <math.h>
 
 #include "generator/run/moment.h"
-#include "runtime/continuum/tips.h"
+#include "runtime/continuum/cells.h"
 
 enum { NAME_TEXT = 256 };
+
+static const tips *tips_of(const run *r, int number) {
+  const cells *c = simulation_cells(r->simulation, number);
+  return c ? c->tips : NULL;
+}
+
+bool cracks_have_grown(const run *r) {
+  for (int b = 0; b < simulation_bodies(r->simulation); b++) {
+    const tips *t = tips_of(r, b);
+    if (t && t->pieces.count > 0) return true;
+  }
+  return false;
+}
 
 /* --- in words --------------------------------------------------------------------------------- */
 
 static void conclude_tip(const run *r, const tips *t, int tip) {
   const tip_state *p = &t->items[tip].now;
-  char name[NAME_TEXT], when[MOMENT_TEXT];
+  char name[NAME_TEXT], begun[MOMENT_TEXT], when[MOMENT_TEXT];
   if (!p->grown && !p->done) return;
-  printf("  crack      %s: %.6g mm long, its tip at (%.6g, %.6g) mm",
-         tip_folder(t, tip, name, sizeof name), 1e3 * p->length, 1e3 * p->at[0], 1e3 * p->at[1]);
+  printf("  crack      %s: ", tip_folder(t, tip, name, sizeof name));
+  if (p->grown) printf("grew from %s on; ", moment(r, p->begun_time, begun));
+  printf("%.6g mm long, its tip at (%.6g, %.6g) mm", 1e3 * p->length, 1e3 * p->at[0],
+         1e3 * p->at[1]);
   if (p->done) printf(" %s at %s", tip_end_words[p->done], moment(r, p->done_time, when));
   putchar('\n');
 }
@@ -33,7 +48,7 @@ static void conclude_overlap(const run *r, const tips *t, int tip) {
 void conclude_cracks(const run *r) {
   double released = 0, rated = 0;
   for (int b = 0; b < simulation_bodies(r->simulation); b++) {
-    const tips *t = simulation_tips(r->simulation, b);
+    const tips *t = tips_of(r, b);
     for (int n = 0; t && n < t->count; n++)
       conclude_tip(r, t, n);
     for (int n = 0; t && n < t->count; n++)
@@ -70,6 +85,7 @@ static void put_tip(json *w, const tips *t, int tip) {
   json_put_number(w, "y", p->now.at[1]);
   json_put_number(w, "length", p->now.length);
   json_put_number(w, "speed", p->now.speed);
+  json_put_number(w, "begun_time", p->now.grown ? p->now.begun_time : NAN);
   json_put_text(w, "finished", p->now.done ? tip_end_words[p->now.done] : NULL);
   json_put_number(w, "finished_time", p->now.done ? p->now.done_time : NAN);
   put_overlap(w, p);
@@ -80,7 +96,7 @@ void put_cracks(json *w, const run *r) {
   double released = 0, rated = 0;
   json_put_array(w, "cracks");
   for (int b = 0; b < simulation_bodies(r->simulation); b++) {
-    const tips *t = simulation_tips(r->simulation, b);
+    const tips *t = tips_of(r, b);
     for (int n = 0; t && n < t->count; n++)
       put_tip(w, t, n);
     released += t ? t->released : 0;

@@ -5,6 +5,8 @@
 #include "dsl/base/json.h"
 #include "generator/run/run_state.h"
 
+/* Some tip has: what its advances release may have either sign. */
+bool cracks_have_grown(const run *r);
 /* Of each tip that has grown where it is, of those that are finished why; what growth has released;
    whose faces overlap. Nothing without cracks. */
 void conclude_cracks(const run *r);

@@ -697,15 +697,6 @@ static void conclude_energy(const run *r) {
   putchar('\n');
 }
 
-/* Cracks that have grown: what each advance releases may have either sign (run_cracks.h). */
-static bool has_grown(const run *r) {
-  for (int b = 0; b < simulation_bodies(r->simulation); b++) {
-    const tips *t = simulation_tips(r->simulation, b);
-    if (t && t->pieces.count > 0) return true;
-  }
-  return false;
-}
-
 /* What states, damage and rate terms cannot do: give more than they have taken. */
 static void warn_of_gain(const run *r) {
   static const struct {
@@ -715,7 +706,7 @@ static void warn_of_gain(const run *r) {
   const double scale = simulation_largest_energy(r->simulation);
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
     const double lost = last_value(r, parts[k].series);
-    if (!(lost < -1e-3 * scale) || (k == 0 && has_grown(r))) continue;
+    if (!(lost < -1e-3 * scale) || (k == 0 && cracks_have_grown(r))) continue;
     fprintf(stderr,
             "perilat: warning: the law gives energy: %s dissipated %.5g J, less than nothing\n"
             "  `perilat drive` along a closed path shows where (`perilat help dissipation`)%s\n",

@@ -105,7 +105,8 @@ void node_field_stress(const cells *c, const double *parameters,
     const long site = node_layout_at(&l, n);
     double strain[3], here[4] = {NAN, NAN, NAN, NAN};
     if (c->nodes->site_particle[site] < 0) continue;
-    if (strain_at(c, &l, displacement, n, strain)) point_law_stress(law, strain, h, here);
+    if (!cells_mean_stress(c, n, here) && strain_at(c, &l, displacement, n, strain))
+      point_law_stress(law, strain, h, here);
     for (int k = 0; k < 3; k++)
       stress[k][site] = here[k];
   }

@@ -673,6 +673,8 @@ static void look(tips *t, const body *w, double *const last_resistance[2], const
     look_at(t, p, w, k);
     note_overlap(t, p, w);
     if (p->law) decide(t, p, m);
+    if (p->now.speed > 0 && p->now.begun_time == 0)
+      p->now.begun_time = (double)t->step * w->time_step;
   }
 }
 

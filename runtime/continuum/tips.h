@@ -27,8 +27,8 @@
 #include "runtime/body/body.h"
 #include "runtime/continuum/node_stencil.h"
 #include "runtime/crack/interaction_integral.h"
-#include "runtime/deck/deck.h"
 #include "runtime/crack/tip_values.h"
+#include "runtime/deck/deck.h"
 
 /* What ends a tip. */
 typedef enum tip_end {
@@ -45,15 +45,15 @@ extern const char *const tip_end_words[TIP_ENDS];
 
 /* What is known of a tip at the last look. */
 typedef struct tip_state {
-  double at[2];        /* m */
-  double angle;        /* rad, from x: of the last leg */
-  double last;         /* m: length of the last leg */
-  double length;       /* m: of the crack's line up to here, from its other end */
-  double K[2];         /* Pa m^(1/2) */
-  double speed;        /* m/s */
-  int64_t segments;    /* legs that have grown */
-  int64_t grown, done; /* it has grown; tip_end, when it grows no more */
-  double done_time;    /* s */
+  double at[2];                 /* m */
+  double angle;                 /* rad, from x: of the last leg */
+  double last;                  /* m: length of the last leg */
+  double length;                /* m: of the crack's line up to here, from its other end */
+  double K[2];                  /* Pa m^(1/2) */
+  double speed;                 /* m/s */
+  int64_t segments;             /* legs that have grown */
+  int64_t grown, done;          /* it has grown; tip_end, when it grows no more */
+  double begun_time, done_time; /* s: of the look at which it began to grow; 0 before */
   /* How its faces have overlapped: the least K_I of all looks, at most 0, and when that was; K_I
      and the time as it became negative, by more than a hundredth of that; the largest K_I in size.
      Pa m^(1/2), s */

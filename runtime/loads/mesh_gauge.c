@@ -18,6 +18,7 @@ struct mesh_gauge {
   const loads *loads;
   const body *w;
   point_law *law; /* of a stress; else NULL */
+  double *states; /* [law's fields] of the point of integration that is nearest */
   /* [place_count] m, and the node that stands there, or -1 */
   double (*places)[2];
   int *nodes;
@@ -41,19 +42,10 @@ static bool has_place(mesh_gauge *g, diagnostics *d) {
   return false;
 }
 
-/* A state belongs to a point of integration. */
-static bool has_stress(mesh_gauge *g, const double *parameters, diagnostics *d) {
-  if (g->deck->kind != MONITOR_STRESS) return true;
-  if (g->of->law->field_count > 0) {
-    diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&g->deck->item, "kind"),
-                "the law `%s` has states, which are not known at any place: there is no stress to "
-                "watch",
-                g->of->law->name);
-    diag_hint(d, "kind = 'strain' is known everywhere");
-    return false;
-  }
+static void take_law(mesh_gauge *g, const double *parameters) {
+  if (g->deck->kind != MONITOR_STRESS) return;
   g->law = point_law_new(g->of->law, parameters);
-  return true;
+  g->states = must_calloc((size_t)g->of->law->field_count + 1, sizeof *g->states);
 }
 
 static bool is_tensor(const deck_monitor *m) {
@@ -83,8 +75,8 @@ mesh_gauge *mesh_gauge_new(const deck_monitor *m, const int32_t *sites, long cou
     else
       mesh_place(&c->mesh, g->nodes[k], g->places[k]);
   }
-  if (names_a_place(g, d) && (!m->placed || has_place(g, d)) && has_stress(g, parameters, d))
-    return g;
+  take_law(g, parameters);
+  if (names_a_place(g, d) && (!m->placed || has_place(g, d))) return g;
   mesh_gauge_free(g);
   return NULL;
 }
@@ -92,6 +84,7 @@ mesh_gauge *mesh_gauge_new(const deck_monitor *m, const int32_t *sites, long cou
 void mesh_gauge_free(mesh_gauge *g) {
   if (!g) return;
   point_law_free(g->law);
+  free(g->states);
   free(g->places);
   free(g->nodes);
   free(g->weights);
@@ -172,6 +165,7 @@ static double tensor(const mesh_gauge *g) {
     }
   mesh_strain(gradient, strain);
   if (!g->law) return strain[g->deck->component];
+  if (cells_states_near(g->of, g->places[0], g->states)) point_law_states(g->law, g->states);
   point_law_stress(g->law, strain, g->w->lattice->spacing, stress);
   return stress[g->deck->component];
 }

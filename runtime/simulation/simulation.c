@@ -381,11 +381,6 @@ contact_said simulation_contact(const simulation *s, int number) {
   return (contact_said){(long)p->pairs, p->force, p->stored};
 }
 
-const tips *simulation_tips(const simulation *s, int number) {
-  const cells *c = s->bodies[number].cells;
-  return c ? c->tips : NULL;
-}
-
 long simulation_history(const simulation *s, const double **time) {
   if (time) *time = s->history.time;
   return (long)s->clock.at.samples;

@@ -121,9 +121,6 @@ typedef struct contact_said {
 } contact_said;
 contact_said simulation_contact(const simulation *s, int contact);
 
-/* The tips of the cracks of a body's mesh; NULL without. */
-const struct tips *simulation_tips(const simulation *s, int body);
-
 /* History so far. Series 0.. are the deck's monitors, then the energy terms, in sum and, of several
    bodies, of each; of quasi-static runs
    then the steps that the increment took and the unbalanced force at its end (relaxation.h). */

@@ -110,6 +110,46 @@ static void nodes_tell(void **state) {
   result_read_close(f);
 }
 
+/* A yielded bar at rest: what a gauge and nodes show is its force over its section. */
+static void stress_knows_states(void **state) {
+  static const char yielding[] =
+      "&simulation  end_time = '1 s'  step_safety = 0.5 /\n"
+      "&relaxation  increments = 10  tolerance = 1e-6 /\n"
+      "&mesh      name = 'bar'  size = '50 mm', '20 mm'  nodes = 11, 5  thickness = '10 mm'\n"
+      "           method = 'finite_elements' /\n"
+      "&material  mesh = 'bar'  model = './hardening_point.plm' /\n"
+      "&region    name = 'left'  shape = 'segment'  from = 0, 0  to = 0, '20 mm' /\n"
+      "&region    name = 'foot'  shape = 'point'  at = 0, 0 /\n"
+      "&region    name = 'right'  shape = 'segment'  from = '50 mm', 0  to = '50 mm', '20 mm' /\n"
+      "&support   region = 'left'  fix = 'x' /\n"
+      "&support   region = 'foot'  fix = 'y' /\n"
+      "&drive     region = 'right'  component = 'x'  displacement = '0.5 mm' /\n"
+      "&monitor   name = 'load'  kind = 'reaction'  region = 'right'  component = 'x' /\n"
+      "&monitor   name = 's'  kind = 'stress'  at = '21 mm', '11 mm'  component = 'xx' /\n"
+      "&output    result = 'bar.h5'  frames = 1  fields = 'stress' /\n";
+  workplace *w = *state;
+  char text[64], error[1000];
+  long samples, count;
+  int components;
+  assert_int_equal(shell(w, "cp " SOURCE_DIR "/tests/generator/laws/hardening_point.plm ."), 0);
+  write_text(w, "yielding.nml", yielding);
+  expect(w, "run yielding.nml", 0, "written");
+  result_file *f = open_result_of(w, "bar.h5");
+  double *load = result_read_series(f, "load", &samples, text, sizeof text, error, sizeof error),
+         *s = result_read_series(f, "s", &samples, text, sizeof text, error, sizeof error),
+         *at_nodes = result_read_frame(f, "stress_xx", 1, &count, &components, text, sizeof text,
+                                       error, sizeof error);
+  const double expected = load[samples - 1] / 200e-6; /* N over m^2 */
+  assert_true(expected > 350e6);                      /* the yield stress is 300 MPa */
+  assert_true(fabs(s[samples - 1] - expected) < 1e-2 * expected);
+  for (long n = 0; n < count; n++)
+    assert_true(fabs(at_nodes[n] - expected) < 1e-2 * expected);
+  free(load);
+  free(s);
+  free(at_nodes);
+  result_read_close(f);
+}
+
 /* By much too long it ends badly; by little only a warning says so. */
 static void a_step_that_is_too_long_is_told(void **state) {
   workplace *w = *state;
@@ -131,6 +171,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(same_bits, set_up_workplace, tear_down_workplace),
       cmocka_unit_test_setup_teardown(nodes_tell, set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(stress_knows_states, set_up_workplace, tear_down_workplace),
       cmocka_unit_test_setup_teardown(a_step_that_is_too_long_is_told, set_up_workplace,
                                       tear_down_workplace)};
   return cmocka_run_group_tests(tests, NULL, NULL);
