@@ -526,7 +526,9 @@ void cells_watch_stiffness(cells *c, double part, double time) {
   for (int row = 0; row < p->strips.rows; row++)
     c->stiffened.now = pl_max(c->stiffened.now, p->rows[row].stiffness);
   c->stiffened.most = pl_max(c->stiffened.most, c->stiffened.now);
-  if (c->stiffened.since < 0 && part * part * c->stiffened.now > 1) c->stiffened.since = time;
+  const double rounding = 1e-6;
+  if (c->stiffened.since < 0 && part * part * c->stiffened.now > 1 + rounding)
+    c->stiffened.since = time;
 }
 
 bool cells_worst_point(const sweep *w, long site, point_state *out) {

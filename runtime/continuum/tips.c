@@ -231,9 +231,11 @@ bool tips_new(const deck *k, const char *name, mesh *m, tips **out, diagnostics 
     t->loaded = must_calloc((size_t)mesh_node_count(m), 1);
     t->segment = k->tips.segment * m->spacing[0];
     for (int a = 0; a < 2; a++) {
-      const bool given = k->tips.size[a] > 0;
-      t->lower[a] = given ? k->tips.corner[a] : m->corner[a];
-      t->upper[a] = given ? t->lower[a] + k->tips.size[a] : mesh_at(m, a, m->nodes[a] - 1);
+      t->lower[a] = m->corner[a];
+      t->upper[a] = mesh_at(m, a, m->nodes[a] - 1);
+      if (!(k->tips.size[a] > 0)) continue;
+      t->lower[a] = pl_max(t->lower[a], k->tips.corner[a]);
+      t->upper[a] = pl_min(t->upper[a], k->tips.corner[a] + k->tips.size[a]);
     }
     t->pieces.items = must_calloc(TIPS_MOST_PIECES, sizeof *t->pieces.items);
     t->pieces.tip = must_calloc(TIPS_MOST_PIECES, sizeof *t->pieces.tip);

@@ -39,6 +39,8 @@ static const fault faults[] = {
      "corner = '1 m', 0  size = '100 mm', '3 mm'", false},
     {"wide_box", "half_size = 3", "half_size = 30", true},
     {"other_mesh", "'c'  mesh = 'plate'", "'c'  mesh = 'plat'", false},
+    {"growth_at_rest", "&tips ", "&static /\n&tips ", false},
+    {"growth_in_increments", "&tips ", "&relaxation increments = 3 /\n&tips ", false},
     {"damped_backward", "&tips ", "&newmark beta_1 = 0.4 /\n&tips ", false},
 };
 enum { FAULTS = sizeof faults / sizeof *faults };
