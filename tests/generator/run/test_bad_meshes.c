@@ -38,6 +38,9 @@ static const fault faults[] = {
     {"empty_zone", "corner = 0, 0  size = '100 mm', '3 mm'",
      "corner = '1 m', 0  size = '100 mm', '3 mm'", false},
     {"wide_box", "half_size = 3", "half_size = 30", true},
+    {"box_in_hole", "&tips ",
+     "&notch mesh = 'plate' shape = 'disc' centre = '34 mm', '35 mm' radius = '3 mm' /\n&tips ",
+     true},
     {"other_mesh", "'c'  mesh = 'plate'", "'c'  mesh = 'plat'", false},
     {"damped_backward", "&tips ", "&newmark beta_1 = 0.4 /\n&tips ", false},
 };
