@@ -36,12 +36,13 @@ int32_t cells_particle(const cells *c, int node) {
 }
 
 /* Where holes leave so few nodes that they bear no linear field. */
-static void report_too_few(const deck *k, const double at[2], diagnostics *d) {
+static void report_too_few(const deck *k, const char *name, const double at[2], diagnostics *d) {
   int n = 0;
-  while (!k->notchs[n].mesh)
+  while (!k->notchs[n].mesh || strcmp(k->notchs[n].mesh, name) != 0)
     n++;
   diag_report(d, DIAG_NOT_SUPPORTED, k->notchs[n].item.where,
-              "holes leave too few nodes around (%.6g, %.6g) mm", 1e3 * at[0], 1e3 * at[1]);
+              "holes leave too few nodes of `%s` around (%.6g, %.6g) mm", name, 1e3 * at[0],
+              1e3 * at[1]);
   diag_hint(d, "take more nodes, a wider `support`, or move the hole by a part of a spacing");
 }
 
@@ -57,31 +58,35 @@ static int lonely_point(const cells *c) {
   return n;
 }
 
-static bool nodes_bear(const deck *k, const cells *c, const double *volume, diagnostics *d) {
+/* Each node that is there has a volume, and together they have all of it. */
+static bool nodes_bear(const deck *k, const char *name, const cells *c, const double *volume,
+                       diagnostics *d) {
   const mesh *m = &c->mesh;
   double sum = 0, whole = 0, at[2];
   if (m->holes.count == 0) return true;
   for (int n = 0; n < mesh_node_count(m); n++) {
+    if (m->gone[n]) continue;
     sum += volume[n];
-    if (m->gone[n] || volume[n] > 0) continue;
+    if (volume[n] > 0) continue;
     mesh_place(m, n, at);
-    report_too_few(k, at, d);
+    report_too_few(k, name, at, d);
     return false;
   }
   for (int n = 0; n < c->points.count; n++)
     whole += m->thickness * c->points.area[n];
   if (fabs(sum - whole) <= 1e-9 * whole) return true;
   const int lonely = lonely_point(c);
-  report_too_few(k, c->points.at[lonely < c->points.count ? lonely : 0], d);
+  report_too_few(k, name, c->points.at[lonely < c->points.count ? lonely : 0], d);
   return false;
 }
 
 /* Volumes of the nodes by the row sums, M = rho V: they sum to the mesh's. */
-static bool find_volumes(const deck *k, const cells *c, rows *nodes, diagnostics *d) {
+static bool find_volumes(const deck *k, const char *name, const cells *c, rows *nodes,
+                         diagnostics *d) {
   const double density = 1;
   double *volume = must_calloc((size_t)mesh_node_count(&c->mesh), sizeof *volume);
   node_masses(&c->mesh, &c->points, &density, NULL, volume);
-  const bool good = nodes_bear(k, c, volume, d);
+  const bool good = nodes_bear(k, name, c, volume, d);
   nodes->site_volume = rows_array(nodes->size, sizeof(double));
   nodes->site_mass = rows_array(nodes->size, sizeof(double));
   for (long q = 0; q < nodes->size; q++)
@@ -109,7 +114,7 @@ cells *cells_new(const deck *k, int lattice, rows *nodes, diagnostics *d) {
     return NULL;
   }
   integration_points_open(&c->points, &c->mesh);
-  if (find_volumes(k, c, nodes, d)) return c;
+  if (find_volumes(k, k->lattices[lattice].name, c, nodes, d)) return c;
   cells_free(c);
   return NULL;
 }
@@ -327,6 +332,7 @@ static void show_states(sweep *w, int row) {
   const long all = p->strips.count;
   for (int i = 0; i < l->nodes[0]; i++) {
     const int node = row * l->nodes[0] + i;
+    if (p->of->gone[node]) continue;
     const long site = node_layout_at(l, node);
     for (int f = 0; f < w->law->field_count; f++)
       w->new_field[f][site] = point_forces_mean(p, p->new_field + f * all, node);
@@ -373,9 +379,11 @@ static void observe(sweep *w, int stage, int block) {
 static void show(const sweep *w, const double *plane, bool part, double *values) {
   const point_forces *p = own(w)->of->by_points;
   memset(values, 0, (size_t)w->lattice->size * sizeof *values);
-  for (long n = 0; n < w->lattice->particle_count; n++)
-    values[w->lattice->particle_site[n]] =
-        part ? point_forces_share(p, plane, (int)n) : point_forces_mean(p, plane, (int)n);
+  for (long n = 0; n < w->lattice->particle_count; n++) {
+    const long site = w->lattice->particle_site[n];
+    const int node = node_layout_node(&p->strips.layout, site);
+    values[site] = part ? point_forces_share(p, plane, node) : point_forces_mean(p, plane, node);
+  }
 }
 
 /* Of a linear law half of the work of each node's resistance: together all that is stored. */
@@ -547,7 +555,7 @@ bool cells_worst_point(const sweep *w, long site, point_state *out) {
   }
   point_motion motion = motion_of(w);
   motion.displacement = (const double *const *)before;
-  point_forces_worst(p, w->lattice->site_particle[site], &motion, out);
+  point_forces_worst(p, node_layout_node(&p->strips.layout, site), &motion, out);
   free(before[0]);
   free(before[1]);
   return true;

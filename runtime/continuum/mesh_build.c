@@ -52,14 +52,11 @@ bool mesh_build(const deck *k, int lattice, mesh *out, diagnostics *d) {
   if (l->method == MESH_FINITE_ELEMENTS) {
     memset(out->element_free, 0, (size_t)mesh_node_count(out));
     memset(out->element_gauss, l->gauss, (size_t)mesh_cell_count(out));
-  } else {
-    out->gauss = l->gauss;
-    out->gauss_parts = l->parts;
   }
   for (int n = 0; n < k->zone_count; n++)
     if (strcmp(k->zones[n].mesh, l->name) == 0)
       good = take_zone(&k->zones[n], l->spacing, out, d) && good;
-  mesh_rows_cut(k, l->name, out);
+  mesh_rows_cut(k, l, out);
   mesh_settle(out);
   return good;
 }

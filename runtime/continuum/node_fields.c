@@ -10,19 +10,6 @@ static node_layout layout_of(const cells *c) {
   return node_layout_of(c->mesh.nodes, c->mesh.support);
 }
 
-/* The cells around a node: their numbers, 4 at most. */
-static int cells_around(const mesh *m, int node, int around[4]) {
-  const int i = node % m->nodes[0], j = node / m->nodes[0];
-  int count = 0;
-  for (int b = j - 1; b <= j; b++)
-    for (int a = i - 1; a <= i; a++) {
-      if (a < 0 || b < 0 || a > m->nodes[0] - 2 || b > m->nodes[1] - 2) continue;
-      const int cell = mesh_cell_at(m, a, b);
-      if (m->cell[cell] != CELL_ABSENT) around[count++] = cell;
-    }
-  return count;
-}
-
 void node_field_values(const cells *c, const double *const planes[2], double *values) {
   const node_layout l = layout_of(c);
   for (int n = 0; n < mesh_node_count(&c->mesh); n++) {
@@ -34,7 +21,7 @@ void node_field_values(const cells *c, const double *const planes[2], double *va
     double *value = values + 2 * particle;
     value[0] = value[1] = NAN;
     mesh_place(&c->mesh, n, at);
-    if (cells_around(&c->mesh, n, around) == 0) continue;
+    if (mesh_cells_around(&c->mesh, n, around) == 0) continue;
     shape_functions(&c->mesh, around[0], at, &s);
     mesh_field(&s, &l, planes, value, NULL);
   }
@@ -54,7 +41,7 @@ static void place_in_cell(const mesh *m, int cell, const double node[2], double 
 
 /* Functions of element-free cells are the same in all of them: one speaks for all. */
 static int cells_that_differ(const mesh *m, int node, int around[4]) {
-  const int count = cells_around(m, node, around);
+  const int count = mesh_cells_around(m, node, around);
   bool alike = count > 0;
   for (int n = 0; n < count; n++)
     alike = alike && m->cell[around[n]] == CELL_ELEMENT_FREE;

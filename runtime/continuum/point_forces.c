@@ -391,44 +391,44 @@ void point_forces_turn(point_forces *p) {
 
 /* --- nodes ------------------------------------------------------------------------------------ */
 
-typedef struct cells_around {
-  int count, at[4], points[4]; /* place of the first point, and how many */
-} cells_around;
-
-static cells_around around(const point_forces *p, int node) {
-  const mesh *m = p->of;
-  const int i = node % m->nodes[0], j = node / m->nodes[0];
-  cells_around out = {.count = 0};
-  for (int k = 0; k < 4; k++) {
-    const int ci = i - 1 + k % 2, cj = j - 1 + k / 2;
-    if (ci < 0 || cj < 0 || ci >= m->nodes[0] - 1 || cj >= m->nodes[1] - 1) continue;
-    const int cell = mesh_cell_at(m, ci, cj);
-    if (p->strips.of_cell[cell] < 0) continue;
-    out.at[out.count] = p->strips.of_cell[cell];
-    out.points[out.count++] = p->points->first[cell + 1] - p->points->first[cell];
+/* Volume of a cell's points, and the integral of a plane over them. */
+static void add_cell(const point_forces *p, const double *plane, int cell, double *volume,
+                     double *sum) {
+  const int count = p->points->first[cell + 1] - p->points->first[cell];
+  for (int k = 0; k < count; k++) {
+    const int at = p->strips.of_cell[cell] + k * PL_LANES;
+    *volume += p->strips.volume[at];
+    *sum += p->strips.volume[at] * plane[at];
   }
-  return out;
 }
 
 double point_forces_mean(const point_forces *p, const double *plane, int node) {
-  const cells_around c = around(p, node);
+  int cell[4];
+  const int count = mesh_cells_around(p->of, node, cell);
   double sum = 0, volume = 0;
-  for (int n = 0; n < c.count; n++)
-    for (int k = 0; k < c.points[n]; k++) {
-      const int at = c.at[n] + k * PL_LANES;
-      sum += p->strips.volume[at] * plane[at];
-      volume += p->strips.volume[at];
-    }
+  for (int n = 0; n < count; n++)
+    add_cell(p, plane, cell[n], &volume, &sum);
   return sum / volume;
 }
 
+static int corners_there(const mesh *m, int cell) {
+  int corner[4], count = 0;
+  mesh_corners(m, cell, corner);
+  for (int k = 0; k < 4; k++)
+    count += !m->gone[corner[k]];
+  return count;
+}
+
 double point_forces_share(const point_forces *p, const double *plane, int node) {
-  const cells_around c = around(p, node);
-  double sum = 0;
-  for (int n = 0; n < c.count; n++)
-    for (int k = 0; k < c.points[n]; k++)
-      sum += p->strips.volume[c.at[n] + k * PL_LANES] * plane[c.at[n] + k * PL_LANES];
-  return 0.25 * sum;
+  int cell[4];
+  const int count = mesh_cells_around(p->of, node, cell);
+  double share = 0;
+  for (int n = 0; n < count; n++) {
+    double sum = 0, volume = 0;
+    add_cell(p, plane, cell[n], &volume, &sum);
+    share += sum / corners_there(p->of, cell[n]);
+  }
+  return share;
 }
 
 /* --- where it went wrong ---------------------------------------------------------------------- */

@@ -67,7 +67,8 @@ void point_forces_turn(point_forces *p);
 
 /* Mean of a plane [strips.count] over the points around a node, by their areas; NaN without. */
 double point_forces_mean(const point_forces *p, const double *plane, int node);
-/* The node's part, a quarter, of what the cells around it hold, a plane [strips.count] per m^3. */
+/* The node's part of what the cells around it hold, a plane [strips.count] per m^3: their corners that
+   are there have equal parts. What a cell without any holds is no node's. */
 double point_forces_share(const point_forces *p, const double *plane, int node);
 
 /* How a point is. */

@@ -128,27 +128,48 @@ static tip_box box_of(const tips *t, const mesh_tip *p) {
   return tip_box_of(p->now.at, p->now.angle, t->half_size, p->now.last, !p->now.grown, weight);
 }
 
-/* Beyond the edge of the mesh there is nothing to integrate. */
-static void warn_of_box(const tips *t, const mesh_tip *p, const mesh *m, diagnostics *d) {
-  const tip_box b = box_of(t, p);
+static bool meets_hole(const tip_box *b, const mesh *m) {
+  enum { LINES = 32 }; /* along the crack */
+  const double c = pl_cos(b->angle), s = pl_sin(b->angle);
   double lower[2], upper[2];
-  tip_box_extent(&b, lower, upper);
+  tip_box_extent(b, lower, upper);
+  if (!holes_meet_box(&m->holes, lower, upper)) return false;
+  for (int n = 0; n <= LINES; n++) {
+    const double up = b->across * (2.0 * n / LINES - 1),
+                 back[2] = {b->at[0] - c * b->behind - s * up, b->at[1] - s * b->behind + c * up},
+                 front[2] = {b->at[0] + c * b->ahead - s * up, b->at[1] + s * b->ahead + c * up};
+    if (holes_until(&m->holes, back, front) < 1) return true;
+  }
+  return false;
+}
+
+static bool leaves_mesh(const tip_box *b, const mesh_tip *p, const mesh *m) {
+  double lower[2], upper[2];
+  tip_box_extent(b, lower, upper);
   for (int a = 0; a < 2; a++) {
     const double margin = ON_BORDER * m->spacing[a], first = m->corner[a],
                  last = mesh_at(m, a, m->nodes[a] - 1), *at = p->now.at;
     const bool half = p->of->symmetry; /* beyond the tip's own edge there is the mirror image */
-    if ((lower[a] >= first - margin || (half && at[a] <= first + margin)) &&
-        (upper[a] <= last + margin || (half && at[a] >= last - margin)))
-      continue;
-    diag_report(
-        d, DIAG_DECK_WARNING, deck_where(&p->of->item, "points"),
-        "the box around the tip at (%.6g, %.6g) mm reaches beyond the edge of the mesh: its "
-        "stress intensities will be wrong",
-        1e3 * p->now.at[0], 1e3 * p->now.at[1]);
-    diag_hint(d, "it reaches %.4g mm to each side; make `half_size` of &tips smaller",
-              1e3 * b.across);
-    return;
+    if ((lower[a] < first - margin && !(half && at[a] <= first + margin)) ||
+        (upper[a] > last + margin && !(half && at[a] >= last - margin)))
+      return true;
   }
+  return false;
+}
+
+/* Beyond the edge of the mesh and in holes there is nothing to integrate. */
+static void warn_of_box(const tips *t, const mesh_tip *p, const mesh *m, diagnostics *d) {
+  const tip_box b = box_of(t, p);
+  const bool leaves = leaves_mesh(&b, p, m);
+  if (!leaves && !meets_hole(&b, m)) return;
+  diag_report(
+      d, DIAG_DECK_WARNING, deck_where(&p->of->item, "points"),
+      "the box around the tip at (%.6g, %.6g) mm reaches %s: its stress intensities will be "
+      "wrong",
+      1e3 * p->now.at[0], 1e3 * p->now.at[1],
+      leaves ? "beyond the edge of the mesh" : "into a hole");
+  diag_hint(d, "it reaches %.4g mm to each side; make `half_size` of &tips smaller",
+            1e3 * b.across);
 }
 
 /* A crack that ends at a hole parts its two sides up to the middle: lines that graze the hole pass. */

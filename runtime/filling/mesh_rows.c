@@ -15,9 +15,13 @@ static bool is_hole_of(const deck_notch *n, const char *of) {
   return n->mesh && strcmp(n->mesh, of) == 0;
 }
 
-int mesh_rows_cut(const deck *k, const char *name, mesh *m) {
+int mesh_rows_cut(const deck *k, const deck_mesh *l, mesh *m) {
+  if (l->method == MESH_ELEMENT_FREE) {
+    m->gauss = l->gauss;
+    m->gauss_parts = l->parts;
+  }
   for (int n = 0; n < k->notch_count; n++)
-    if (is_hole_of(&k->notchs[n], name)) holes_add(&m->holes, &k->notchs[n].shape);
+    if (is_hole_of(&k->notchs[n], l->name)) holes_add(&m->holes, &k->notchs[n].shape);
   return mesh_cut(m);
 }
 
@@ -70,7 +74,7 @@ static unsigned char *nodes_gone(const deck *k, const deck_mesh *l, const int no
   bool good = true;
   if (l->corners) return nodes_of_quadrilateral(k, l, nodes, d);
   mesh_open(&m, nodes, l->corner, l->size, l->thickness, l->support);
-  const int left = mesh_rows_cut(k, l->name, &m);
+  const int left = mesh_rows_cut(k, l, &m);
   const deck_notch *last = NULL;
   for (int n = 0; n < k->notch_count; n++) {
     if (!is_hole_of(&k->notchs[n], l->name)) continue;

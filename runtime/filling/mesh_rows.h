@@ -12,8 +12,8 @@
    yet. */
 rows *mesh_rows(const deck *k, int lattice, diagnostics *d);
 
-/* Cuts the deck's holes of the mesh called `name` into it, before it is settled. Returns how many
-   nodes are left. */
-int mesh_rows_cut(const deck *k, const char *name, mesh *m);
+/* Gives a mesh the deck's background rule and cuts its holes by it, before it is settled. Returns how
+   many nodes are left. */
+int mesh_rows_cut(const deck *k, const deck_mesh *l, mesh *m);
 
 #endif

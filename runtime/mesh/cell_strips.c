@@ -21,9 +21,15 @@ typedef struct draft { /* of a group: what acts at [point][slot] */
   double least;        /* 1/m: slopes that differ by less are the same */
 } draft;
 
-static draft draft_new(const mesh *m) {
-  const size_t most = (size_t)MESH_MOST_GAUSS * MESH_MOST_GAUSS *
-                      (size_t)(m->gauss_parts > 1 ? m->gauss_parts * m->gauss_parts : 1);
+static int points_of(const integration_points *p, int cell) {
+  return p->first[cell + 1] - p->first[cell];
+}
+
+/* With room for every cell: those that holes cut have many more points than others. */
+static draft draft_new(const mesh *m, const integration_points *p) {
+  size_t most = 1;
+  for (int c = 0; c < mesh_cell_count(m); c++)
+    if ((size_t)points_of(p, c) > most) most = (size_t)points_of(p, c);
   return (draft){.acts = must_calloc(most * SLOTS, 1),
                  .slope = must_calloc(most * SLOTS * 2 * PL_LANES, sizeof(double)),
                  .least = 1e-11 / pl_min(m->spacing[0], m->spacing[1])};
@@ -169,10 +175,6 @@ static const cell_table *keep(cell_strips *s, cell_table *t, double least) {
 
 /* --- groups ----------------------------------------------------------------------------------- */
 
-static int points_of(const integration_points *p, int cell) {
-  return p->first[cell + 1] - p->first[cell];
-}
-
 /* Where it stands among cells, and its volumes; memory has room for every cell. */
 static void place_group(cell_strips *s, const mesh *m, const integration_points *p, int row,
                         cell_group *g) {
@@ -218,7 +220,7 @@ static void find_reach(cell_strips *s) {
 void cell_strips_open(cell_strips *s, const mesh *m, const integration_points *p) {
   const int rows = m->nodes[1] - 1, wide = m->nodes[0] - 1;
   const size_t room = (size_t)(p->count + 1) * PL_LANES;
-  draft d = draft_new(m);
+  draft d = draft_new(m, p);
   *s = (cell_strips){.layout = node_layout_of(m->nodes, m->support), .rows = rows};
   s->first_group = must_calloc((size_t)rows + 1, sizeof(int));
   s->first_point = must_calloc((size_t)rows + 1, sizeof(int));

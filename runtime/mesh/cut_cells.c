@@ -169,10 +169,17 @@ void cut_points_free(cut_points *p) {
 
 /* --- nodes and cells -------------------------------------------------------------------------- */
 
+static void set_cut(mesh *m, int cell) {
+  int corner[4];
+  m->cut[cell] = 1;
+  mesh_corners(m, cell, corner);
+  for (int k = 0; k < 4; k++)
+    m->element_free[corner[k]] = 1;
+}
+
 static void cut_cell_of(mesh *m, int cell, cut_points *scratch) {
   const double whole = m->spacing[0] * m->spacing[1];
   double area = 0;
-  int corner[4];
   scratch->count = 0;
   cut_cell_points(m, cell, scratch);
   for (int n = 0; n < scratch->count; n++)
@@ -182,15 +189,11 @@ static void cut_cell_of(mesh *m, int cell, cut_points *scratch) {
     m->cell[cell] = CELL_ABSENT;
     return;
   }
-  m->cut[cell] = 1;
-  mesh_corners(m, cell, corner);
-  for (int k = 0; k < 4; k++)
-    m->element_free[corner[k]] = 1;
+  set_cut(m, cell);
 }
 
 /* Of a whole cell the points see all corners. */
 static bool is_seen_from(const mesh *m, int cell, const double node[2], cut_points *scratch) {
-  if (m->cell[cell] == CELL_ABSENT) return false;
   if (!m->cut[cell]) return true;
   scratch->count = 0;
   cut_cell_points(m, cell, scratch);
@@ -200,16 +203,12 @@ static bool is_seen_from(const mesh *m, int cell, const double node[2], cut_poin
 }
 
 static bool is_seen(const mesh *m, int node, cut_points *scratch) {
-  const int i = node % m->nodes[0], j = node / m->nodes[0];
+  int around[4];
   double at[2];
+  const int count = mesh_cells_around(m, node, around);
   mesh_place(m, node, at);
-  for (int dj = -1; dj <= 0; dj++)
-    for (int di = -1; di <= 0; di++) {
-      const int ci = i + di, cj = j + dj;
-      if (ci >= 0 && cj >= 0 && ci < m->nodes[0] - 1 && cj < m->nodes[1] - 1 &&
-          is_seen_from(m, mesh_cell_at(m, ci, cj), at, scratch))
-        return true;
-    }
+  for (int k = 0; k < count; k++)
+    if (is_seen_from(m, around[k], at, scratch)) return true;
   return false;
 }
 
@@ -219,6 +218,14 @@ static bool meets_holes(const mesh *m, int cell) {
   const double lower[2] = {mesh_at(m, 0, i), mesh_at(m, 1, j)},
                upper[2] = {mesh_at(m, 0, i + 1), mesh_at(m, 1, j + 1)};
   return holes_meet_box(&m->holes, lower, upper);
+}
+
+/* A hole may take a node and of a cell only a corner that is as good as nothing. */
+static void set_cut_around(mesh *m, int gone) {
+  int around[4];
+  const int count = mesh_cells_around(m, gone, around);
+  for (int k = 0; k < count; k++)
+    set_cut(m, around[k]);
 }
 
 int mesh_cut(mesh *m) {
@@ -234,6 +241,8 @@ int mesh_cut(mesh *m) {
                  (holes_hold(&m->holes, at) || !is_seen(m, n, &scratch));
     left += !m->gone[n];
   }
+  for (int n = 0; n < mesh_node_count(m); n++)
+    if (m->gone[n]) set_cut_around(m, n);
   cut_points_free(&scratch);
   return left;
 }

@@ -23,8 +23,8 @@ typedef struct cut_points {
 void cut_cell_points(const mesh *m, int cell, cut_points *to);
 void cut_points_free(cut_points *p);
 
-/* By the mesh's holes: which nodes and cells are gone, and which cells are cut. The nodes of a cut cell
-   are element-free, whatever they were. A node is gone in a hole, and where no cell or none of its
+/* By the mesh's holes: which nodes and cells are gone, and which cells are cut: one with a
+   corner that is gone is. The nodes of a cut cell are element-free, whatever they were. A node is gone in a hole, and where no cell or none of its
    cells' points sees it. Before mesh_settle. Returns how many nodes are left. */
 int mesh_cut(mesh *m);
 

@@ -69,6 +69,17 @@ void mesh_open_mapped(mesh *m, const int nodes[2], const double corners[4][2], d
   mesh_settle(m);
 }
 
+int mesh_cells_around(const mesh *m, int node, int around[4]) {
+  const int i = node % m->nodes[0], j = node / m->nodes[0];
+  int count = 0;
+  for (int k = 0; k < 4; k++) {
+    const int a = i - 1 + k % 2, b = j - 1 + k / 2;
+    if (a < 0 || b < 0 || a > m->nodes[0] - 2 || b > m->nodes[1] - 2) continue;
+    if (m->cell[mesh_cell_at(m, a, b)] != CELL_ABSENT) around[count++] = mesh_cell_at(m, a, b);
+  }
+  return count;
+}
+
 /* On a border of the absent cell at `place` another one may hold the point; u: in cells. */
 static int cell_across(const mesh *m, const int place[2], const double u[2]) {
   const double near = 1e-6;

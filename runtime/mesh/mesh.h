@@ -99,6 +99,8 @@ static inline void mesh_corners(const mesh *m, int cell, int corner[4]) {
   corner[2] = corner[0] + m->nodes[0];
   corner[3] = corner[2] + 1;
 }
+/* The cells around a node that are not absent, row by row: how many, 4 at most, and their numbers. */
+int mesh_cells_around(const mesh *m, int node, int around[4]);
 /* The cell that holds a point (on a border: the one to its upper right, at the mesh's edge the last,
    another one where that is absent); -1 outside the mesh. */
 int mesh_cell_of(const mesh *m, const double at[2]);

@@ -150,6 +150,50 @@ static void stress_knows_states(void **state) {
   result_read_close(f);
 }
 
+/* An output that is a state is that state at every node, beside a hole, too; nodes have lost what the
+   body has. */
+static void nodes_beside_a_hole_tell(void **state) {
+  static const char holed[] =
+      "&simulation  end_time = '40 us'  step_safety = 0.7 /\n"
+      "&mesh      name = 'p'  corner = 0, 0  size = 0.02, 0.02  nodes = 13, 13  thickness = 0.01\n"
+      "           method = 'element_free'  support = 2.1 /\n"
+      "&notch     mesh = 'p'  shape = 'disc'  centre = 0.0103, 0.0097  radius = 0.0041 /\n"
+      "&material  mesh = 'p'  model = './hardening_point.plm'  f_y = '100 MPa' /\n"
+      "&traction  mesh = 'p'  from = 0.02, 0  to = 0.02, 0.02  component = 'x'  stress = '80 MPa' "
+      "/\n"
+      "&traction  mesh = 'p'  from = 0, 0  to = 0, 0.02  component = 'x'  stress = '-80 MPa' /\n"
+      "&output    result = 'h.h5'  frames = 1  fields = 'across', 'eps_p_xy', 'dissipated' /\n";
+  static const char *const names[] = {"across", "eps_p_xy", "dissipated"};
+  workplace *w = *state;
+  char text[64], error[1000];
+  double *values[3], most = 0, sum = 0;
+  long count = 0, samples;
+  int components;
+  assert_int_equal(shell(w, "cp " SOURCE_DIR "/tests/generator/laws/hardening_point.plm ."), 0);
+  write_text(w, "holed.nml", holed);
+  expect(w, "run holed.nml", 0, "written");
+  result_file *f = open_result_of(w, "h.h5");
+  for (int k = 0; k < 3; k++) {
+    values[k] = result_read_frame(f, names[k], 1, &count, &components, text, sizeof text, error,
+                                  sizeof error);
+    assert_non_null(values[k]);
+    assert_int_equal(count, 13 * 13 - 19);
+  }
+  for (long p = 0; p < count; p++) {
+    most = fmax(most, fabs(values[1][p]));
+    sum += values[2][p];
+    assert_true(fabs(values[0][p] - values[1][p]) < 1e-12);
+  }
+  assert_true(most > 1e-4);
+  double *taken = result_read_series(f, "energy/dissipated_damage", &samples, text, sizeof text,
+                                     error, sizeof error);
+  assert_true(sum > 0 && fabs(sum - taken[samples - 1]) < 1e-9 * sum);
+  free(taken);
+  for (int k = 0; k < 3; k++)
+    free(values[k]);
+  result_read_close(f);
+}
+
 /* By much too long it ends badly; by little only a warning says so. */
 static void a_step_that_is_too_long_is_told(void **state) {
   workplace *w = *state;
@@ -172,6 +216,8 @@ int main(void) {
       cmocka_unit_test_setup_teardown(same_bits, set_up_workplace, tear_down_workplace),
       cmocka_unit_test_setup_teardown(nodes_tell, set_up_workplace, tear_down_workplace),
       cmocka_unit_test_setup_teardown(stress_knows_states, set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(nodes_beside_a_hole_tell, set_up_workplace,
+                                      tear_down_workplace),
       cmocka_unit_test_setup_teardown(a_step_that_is_too_long_is_told, set_up_workplace,
                                       tear_down_workplace)};
   return cmocka_run_group_tests(tests, NULL, NULL);

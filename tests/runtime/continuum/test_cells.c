@@ -212,6 +212,75 @@ static void a_plate_with_a_hole(void **state) {
   small_close(&r);
 }
 
+/* Corners of a hole hardly beyond nodes: the cells there lose the node and none of their area. */
+static void nothing_holds_a_body_that_moves(void **state) {
+  (void)state;
+  small_run r;
+  small_open(&r, &hooke_law,
+             "&simulation end_time = '0.1 ms' step_safety = 0.7 /\n"
+             "&mesh name = 'plate' corner = 0, 0 size = 0.12, 0.12 nodes = 41, 41 thickness = 0.01 "
+             "method = 'finite_elements' /\n&material mesh = 'plate' model = 'hooke' /\n"
+             "&notch mesh = 'plate' shape = 'rectangle' corner = 0.02999997, 0.02999997 "
+             "size = 0.03000006, 0.03000006 /\n"
+             "&region name = 'all' shape = 'rectangle' corner = -1, -1 size = 3, 3 /\n"
+             "&initial_velocity region = 'all' component = 'x' value = 1 /\n"
+             "&traction mesh = 'plate' from = 0.025, 0.0295 to = 0.035, 0.0295 component = 'y' "
+             "stress = '1 Pa' /\n"
+             "&monitor name = 'p' kind = 'momentum' component = 'x' /\n");
+  if (!r.simulation) small_print(&r);
+  assert_non_null(r.simulation);
+  assert_int_equal(simulation_rows(r.simulation, 0)->particle_count, 41 * 41 - 11 * 11);
+  assert_int_equal(small_go(&r), STEP_END);
+  const double mass = 2400 * 0.01 * (0.12 * 0.12 - 0.03000006 * 0.03000006);
+  const double *p = small_values(&r, "p");
+  for (long k = 0; k < simulation_history(r.simulation, NULL); k++)
+    assert_true(fabs(p[k] - mass) < 1e-9 * mass);
+  small_close(&r);
+}
+
+#define SLOTTED                                                                                    \
+  "size = 1, 1 nodes = 11, 11 thickness = 1 method = 'element_free' support = 1.5 gauss = 3 "      \
+  "parts = 2 /\n"
+
+/* The first mesh has a hole, too: the message is about the second. */
+static void the_hole_that_leaves_too_few_is_named(void **state) {
+  (void)state;
+  const char *text =
+      "&simulation end_time = 1 /\n&mesh name = 'good' " SLOTTED "&mesh name = 'bad' " SLOTTED
+      "&material mesh = 'good' model = 'hooke' /\n&material mesh = 'bad' model = 'hooke' /\n"
+      "&notch mesh = 'good' shape = 'disc' centre = 0.5, 0.5 radius = 0.2 /\n"
+      "&notch mesh = 'bad' shape = 'rectangle' corner = -1, -1 size = 1.61, 3 /\n"
+      "&notch mesh = 'bad' shape = 'rectangle' corner = 0.79, -1 size = 1, 3 /\n";
+  small_run r;
+  small_read(&r, text);
+  if (!r.deck) small_print(&r);
+  assert_non_null(r.deck);
+  assert_true(material_parameters(&r.deck->materials[0], &hooke_law, r.parameters, &r.said));
+  const simulation_law law = {.law = &hooke_law, .parameters = r.parameters};
+  r.simulation = simulation_new(r.deck, (simulation_law[]){law, law}, &r.said);
+  assert_null(r.simulation);
+  assert_true(says(&r, "holes leave too few nodes of `bad` around"));
+  const char *second = strstr(text, "&notch mesh = 'bad'");
+  assert_true(r.said.items[r.said.count - 1].where.begin >= (size_t)(second - text));
+  small_close(&r);
+}
+
+/* By one rule both for the nodes and for the cells. */
+static void holes_are_cut_by_the_decks_rule(void **state) {
+  (void)state;
+  small_run r;
+  mesh m;
+  small_read(&r, "&simulation end_time = 1 /\n&mesh name = 'plate' " SLOTTED
+                 "&material mesh = 'plate' model = 'hooke' /\n"
+                 "&notch mesh = 'plate' shape = 'disc' centre = 0.5, 0.5 radius = 0.2 /\n");
+  assert_non_null(r.deck);
+  mesh_open(&m, (int[2]){11, 11}, (double[2]){0, 0}, (double[2]){1, 1}, 1, 1.5);
+  assert_int_equal(mesh_rows_cut(r.deck, &r.deck->lattices[0], &m), 121 - 9);
+  assert_true(m.gauss == 3 && m.gauss_parts == 2);
+  mesh_close(&m);
+  small_close(&r);
+}
+
 static void a_crack_along_nodes_is_warned_of(void **state) {
   (void)state;
   small_run r;
@@ -324,6 +393,9 @@ int main(void) {
                                      cmocka_unit_test(what_cannot_be_is_refused),
                                      cmocka_unit_test(holes_that_cannot_be),
                                      cmocka_unit_test(a_plate_with_a_hole),
+                                     cmocka_unit_test(nothing_holds_a_body_that_moves),
+                                     cmocka_unit_test(the_hole_that_leaves_too_few_is_named),
+                                     cmocka_unit_test(holes_are_cut_by_the_decks_rule),
                                      cmocka_unit_test(a_crack_along_nodes_is_warned_of),
                                      cmocka_unit_test(a_pulled_bar_swings),
                                      cmocka_unit_test(numerical_damping_is_counted),

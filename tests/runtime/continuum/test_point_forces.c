@@ -14,6 +14,7 @@
 #include "runtime/continuum/cells.h"
 #include "runtime/continuum/point_forces.h"
 #include "runtime/mesh/cell_strips.h"
+#include "runtime/mesh/cut_cells.h"
 #include "runtime/simulation/simulation_save.h"
 #include "softening_law.h"
 #include "tests/runtime/small_run.h"
@@ -130,6 +131,47 @@ static void they_agree_about_cracks(void **state) {
   crack_lines_add(&b.m.cracks, (double[2]){0.4512, 0.02}, (double[2]){0.4512, -0.033});
   crack_lines_add(&b.m.cracks, (double[2]){0.4512, -0.033}, (double[2]){0.4704, -0.041});
   check_both(&b);
+}
+
+/* A plate with a disc and a slot, in and beside its zones. */
+static void open_holed(mesh *m, int gauss, int parts) {
+  const deck_shape disc = {.kind = SHAPE_DISC, .centre = {0.4531, -0.0412}, .radius = 0.0247},
+                   slot = {
+                       .kind = SHAPE_RECTANGLE, .corner = {0.3213, -0.02}, .size = {0.07, 0.011}};
+  open_plate(m, 31, 16, 2.6, gauss, parts);
+  holes_add(&m->holes, &disc);
+  holes_add(&m->holes, &slot);
+  assert_in_range(mesh_cut(m), 31 * 16 - 60, 31 * 16 - 20);
+  mesh_settle(m);
+}
+
+/* Cells that holes cut have points of their own number and places. */
+static void they_agree_about_holes(void **state) {
+  (void)state;
+  both b;
+  open_holed(&b.m, 4, 1);
+  check_both(&b);
+  open_holed(&b.m, 3, 2);
+  check_both(&b);
+}
+
+/* What cells hold is the nodes' that are there, whatever of their corners holes have taken. */
+static void nodes_share_all(void **state) {
+  (void)state;
+  both b;
+  double sum = 0, all = 0;
+  open_holed(&b.m, 4, 1);
+  open_both(&b);
+  double *plane = must_calloc((size_t)b.P->strips.count, sizeof *plane);
+  for (int k = 0; k < b.P->strips.count; k++) {
+    plane[k] = random_unit(random_mix((uint64_t)k));
+    all += b.P->strips.volume[k] * plane[k];
+  }
+  for (int n = 0; n < mesh_node_count(&b.m); n++)
+    if (!b.m.gone[n]) sum += point_forces_share(b.P, plane, n);
+  assert_true(all > 0 && fabs(sum - all) < 1e-12 * all);
+  free(plane);
+  close_both(&b);
 }
 
 /* Cells that are alike share what acts in them: a larger mesh has a few tables more or none. */
@@ -260,7 +302,7 @@ static void mirror_images_push_alike(void **state) {
 
 /* --- runs ------------------------------------------------------------------------------------- */
 
-#define PLATE                                                                                      \
+#define BARE                                                                                       \
   "&mesh name = 'plate' corner = '10 mm', 0 size = '200 mm', '100 mm' nodes = 21, 11 "             \
   "thickness = '20 mm' method = 'element_free' support = 2.6 /\n"                                  \
   "&zone mesh = 'plate' method = 'finite_elements' shape = 'rectangle' corner = '10 mm', 0 "       \
@@ -271,8 +313,8 @@ static void mirror_images_push_alike(void **state) {
   "&traction mesh = 'plate' from = '210 mm', 0 to = '210 mm', '100 mm' component = 'x' stress = "  \
   "'1 MPa' /\n"                                                                                    \
   "&monitor name = 'u' kind = 'displacement' region = 'right' component = 'x' /\n"                 \
-  "&monitor name = 'load' kind = 'reaction' region = 'left' component = 'x' /\n"                   \
-  "&output sample = '1 us' /\n"
+  "&monitor name = 'load' kind = 'reaction' region = 'left' component = 'x' /\n"
+#define PLATE BARE "&output sample = '1 us' /\n"
 #define HOOKE "&material mesh = 'plate' model = 'hooke' /\n"
 #define SOFT  "&material mesh = 'plate' model = 'softening' k = 3e-4 tau = '1 us' /\n"
 
@@ -476,6 +518,46 @@ static void nodes_show_states(void **state) {
   small_close(&r);
 }
 
+#define HOLE "&notch mesh = 'plate' shape = 'disc' centre = '76 mm', '34 mm' radius = '24 mm' /\n"
+
+/* Nodes in a hole are no particles, so that these have other numbers than nodes. */
+static void nodes_beside_a_hole_show_states(void **state) {
+  (void)state;
+  small_run r;
+  const frame_field *fields;
+  double values[231], stress[4], most = 0;
+  go(&r, &softening_law,
+     "&simulation end_time = '0.1 ms' /\n" BARE HOLE
+     "&material mesh = 'plate' model = 'softening' k = 3e-4 /\n"
+     "&output fields = 'press', 'dissipated' frames = 1 /\n");
+  const cells *c = simulation_cells(r.simulation, 0);
+  const rows *w = simulation_rows(r.simulation, 0);
+  assert_in_range(w->particle_count, 200, 220);
+  const double taken = small_last(&r, "energy/dissipated_damage");
+  int found = 0;
+  for (int f = 0; f < simulation_frame_fields(r.simulation, &fields); f++) {
+    const bool press = strcmp(fields[f].name, "press") == 0;
+    double sum = 0;
+    if (!press && strcmp(fields[f].name, "dissipated") != 0) continue;
+    found++;
+    simulation_frame_values(r.simulation, f, values);
+    for (long p = 0; p < w->particle_count; p++) {
+      sum += values[p];
+      if (!press) continue;
+      assert_true(cells_mean_stress(c, cells_node(c, w->particle_site[p]), stress));
+      most = fmax(most, fabs(values[p]));
+      assert_true(fabs(values[p] - (stress[0] + stress[1]) / 3) < 1);
+    }
+    if (!press) assert_true(taken > 0 && fabs(sum - taken) < 1e-9 * taken);
+  }
+  assert_true(found == 2 && most > 1e5);
+  const sweep *of = simulation_state(r.simulation, 0);
+  for (long q = 0; q < w->size; q++)
+    for (int f = 0; f < SOFT_FIELDS; f++)
+      assert_true(isfinite(of->new_field[f][q]) && isfinite(of->field[f][q]));
+  small_close(&r);
+}
+
 /* A damper shortens the step: with tau = 1/omega_max the limit is (sqrt(5) - 1)/2 of that without. */
 static void dampers_shorten_the_step(void **state) {
   (void)state;
@@ -498,13 +580,12 @@ static void dampers_shorten_the_step(void **state) {
 
 /* --- what goes wrong -------------------------------------------------------------------------- */
 
-static void a_bad_point_is_named(void **state) {
-  (void)state;
+static void names_bad_point(const char *text) {
   pl_law brittle = hooke_law;
   small_run r;
   brittle.linear = 0;
   brittle.point_step = brittle_step;
-  small_open(&r, &brittle, "&simulation end_time = '0.15 ms' /\n" PLATE HOOKE);
+  small_open(&r, &brittle, text);
   assert_non_null(r.simulation);
   assert_int_equal(small_go(&r), STEP_BAD);
   const bad_state bad = simulation_bad(r.simulation);
@@ -517,6 +598,13 @@ static void a_bad_point_is_named(void **state) {
   assert_true(fabs(bad.point->at[0] - bad.place[0]) <= 0.027 &&
               fabs(bad.point->at[1] - bad.place[1]) <= 0.027);
   small_close(&r);
+}
+
+static void a_bad_point_is_named(void **state) {
+  (void)state;
+  names_bad_point("&simulation end_time = '0.15 ms' /\n" PLATE HOOKE);
+  names_bad_point("&simulation end_time = '0.15 ms' /\n" PLATE HOOKE
+                  "&notch mesh = 'plate' shape = 'disc' centre = '76 mm', 0 radius = '24 mm' /\n");
 }
 
 static void cracks_are_refused(void **state) {
@@ -561,14 +649,24 @@ static void stiffening_is_seen(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(both_ways_agree),           cmocka_unit_test(they_agree_about_cracks),
-      cmocka_unit_test(tables_are_shared),         cmocka_unit_test(rigid_motions_push_nothing),
-      cmocka_unit_test(nothing_comes_from_beside), cmocka_unit_test(mirror_images_push_alike),
-      cmocka_unit_test(runs_by_both_ways_agree),   cmocka_unit_test(quasi_static_runs_agree),
-      cmocka_unit_test(threads_change_no_bit),     cmocka_unit_test(a_resumed_run_is_the_same),
-      cmocka_unit_test(losses_are_booked),         cmocka_unit_test(nodes_show_states),
-      cmocka_unit_test(dampers_shorten_the_step),  cmocka_unit_test(a_bad_point_is_named),
-      cmocka_unit_test(cracks_are_refused),        cmocka_unit_test(stiffening_is_seen)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(both_ways_agree),
+                                     cmocka_unit_test(they_agree_about_cracks),
+                                     cmocka_unit_test(they_agree_about_holes),
+                                     cmocka_unit_test(nodes_share_all),
+                                     cmocka_unit_test(nodes_beside_a_hole_show_states),
+                                     cmocka_unit_test(tables_are_shared),
+                                     cmocka_unit_test(rigid_motions_push_nothing),
+                                     cmocka_unit_test(nothing_comes_from_beside),
+                                     cmocka_unit_test(mirror_images_push_alike),
+                                     cmocka_unit_test(runs_by_both_ways_agree),
+                                     cmocka_unit_test(quasi_static_runs_agree),
+                                     cmocka_unit_test(threads_change_no_bit),
+                                     cmocka_unit_test(a_resumed_run_is_the_same),
+                                     cmocka_unit_test(losses_are_booked),
+                                     cmocka_unit_test(nodes_show_states),
+                                     cmocka_unit_test(dampers_shorten_the_step),
+                                     cmocka_unit_test(a_bad_point_is_named),
+                                     cmocka_unit_test(cracks_are_refused),
+                                     cmocka_unit_test(stiffening_is_seen)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,6 +11,7 @@
 #include "fracture_law.h"
 #include "hooke_law.h"
 #include "mesh_cases.h"
+#include "runtime/continuum/cells.h"
 #include "runtime/continuum/node_masses.h"
 #include "runtime/continuum/tips.h"
 #include "runtime/simulation/simulation_save.h"
@@ -43,7 +44,7 @@ static void open_cracked(cracked_run *c, const char *text) {
 }
 
 static const mesh_tip *tip_of(const cracked_run *c, int number) {
-  const tips *t = simulation_tips(c->r.simulation, 0);
+  const tips *t = simulation_cells(c->r.simulation, 0)->tips;
   assert_true(t && number < t->count);
   return &t->items[number];
 }
@@ -126,7 +127,7 @@ static void growth_is_in_the_ledger(void **state) {
   static cracked_run c;
   open_cracked(&c, RUN PULLED TIPS "/\n" LEFT);
   assert_int_equal(small_go(&c.r), STEP_END);
-  const tips *t = simulation_tips(c.r.simulation, 0);
+  const tips *t = simulation_cells(c.r.simulation, 0)->tips;
   assert_true(t->rated > 0 && t->released != 0);
   assert_true(t->released == small_last(&c.r, "energy/dissipated_damage"));
   assert_true(fabs(small_last(&c.r, "energy/imbalance")) <
@@ -140,33 +141,41 @@ static void same_end(const cracked_run *a, const cracked_run *b) {
   for (size_t k = 0; k < sizeof series / sizeof *series; k++)
     assert_true(small_last(&a->r, series[k]) == small_last(&b->r, series[k]));
   assert_memory_equal(&tip_of(a, 0)->now, &tip_of(b, 0)->now, sizeof(tip_state));
-  assert_true(simulation_tips(a->r.simulation, 0)->rated ==
-              simulation_tips(b->r.simulation, 0)->rated);
+  assert_true(simulation_cells(a->r.simulation, 0)->tips->rated ==
+              simulation_cells(b->r.simulation, 0)->tips->rated);
+}
+
+static void go_to(cracked_run *c, int64_t step) {
+  while (simulation_step_done(c->r.simulation) < step) /* frames stop it */
+    simulation_advance(c->r.simulation, step - simulation_step_done(c->r.simulation), NULL);
+}
+
+/* The second is what the first was. */
+static void hand_on(cracked_run *from, cracked_run *to) {
+  char path[] = "/tmp/perilat_tips_XXXXXX", error[512];
+  const int file = mkstemp(path);
+  frame_mark frames = {0};
+  assert_true(file >= 0);
+  close(file);
+  assert_true(simulation_save(from->r.simulation, path, "print", &frames, error, sizeof error));
+  assert_true(simulation_restore(to->r.simulation, path, "print", &frames, error, sizeof error));
+  unlink(path);
 }
 
 /* Stopped while the crack grows, and with other threads: the same to the last bit. */
 static void a_crack_that_grows_is_resumed(void **state) {
   (void)state;
-  char path[] = "/tmp/perilat_tips_XXXXXX", error[512];
-  const int file = mkstemp(path);
-  assert_true(file >= 0);
-  close(file);
   static cracked_run whole, resumed, threads;
-  frame_mark frames = {0};
   const char *text = RUN PULLED TIPS "/\n&newmark beta_1 = 0.8 /\n" LEFT;
   open_cracked(&whole, text);
   open_cracked(&resumed, text);
   open_cracked(&threads,
                "&simulation end_time = '0.4 ms' step_safety = 0.5 threads = 3 /\n" PULLED TIPS
                "/\n&newmark beta_1 = 0.8 /\n" LEFT);
-  while (simulation_step_done(whole.r.simulation) < 223) /* frames stop it */
-    simulation_advance(whole.r.simulation, 223 - simulation_step_done(whole.r.simulation), NULL);
+  go_to(&whole, 223);
   const double length = tip_of(&whole, 0)->now.length;
-
   assert_true(length > 0.06 && tip_of(&whole, 0)->now.speed > 0);
-  assert_true(simulation_save(whole.r.simulation, path, "print", &frames, error, sizeof error));
-  assert_true(
-      simulation_restore(resumed.r.simulation, path, "print", &frames, error, sizeof error));
+  hand_on(&whole, &resumed);
   assert_true(tip_of(&resumed, 0)->now.length == length);
   small_go(&whole.r);
   small_go(&resumed.r);
@@ -174,10 +183,32 @@ static void a_crack_that_grows_is_resumed(void **state) {
   assert_true(small_last(&whole.r, "left/length") > length + 0.01);
   same_end(&whole, &resumed);
   same_end(&whole, &threads);
-  unlink(path);
   small_close(&whole.r);
   small_close(&resumed.r);
   small_close(&threads.r);
+}
+
+/* A crack that has run into a hole parts what is on either side of it, also once it is resumed. */
+static void a_crack_that_is_in_a_hole_is_resumed(void **state) {
+  (void)state;
+  static cracked_run whole, resumed;
+  const char *text = RUN PULLED TIPS
+      "/\n" LEFT "&notch mesh = 'plate' shape = 'disc' centre = 0.1, 0.0512 radius = 0.0113 /\n";
+  open_cracked(&whole, text);
+  open_cracked(&resumed, text);
+  while (!tip_of(&whole, 0)->now.done)
+    go_to(&whole, simulation_step_done(whole.r.simulation) + 20);
+  assert_int_equal(tip_of(&whole, 0)->now.done, TIP_AT_HOLE);
+  assert_true(simulation_step_done(whole.r.simulation) < 700);
+  hand_on(&whole, &resumed);
+  assert_int_equal(tip_of(&resumed, 0)->now.done, TIP_AT_HOLE);
+  small_go(&whole.r);
+  small_go(&resumed.r);
+  const double *at = tip_of(&whole, 0)->now.at;
+  assert_true(fabs(hypot(at[0] - 0.1, at[1] - 0.0512) - 0.0113) < 1e-8);
+  same_end(&whole, &resumed);
+  small_close(&whole.r);
+  small_close(&resumed.r);
 }
 
 static void faces_overlap_under_pressure(void **state) {
@@ -251,7 +282,7 @@ static void stiffness_after_a_run_is_assembly_afresh(void **state) {
   node_stencil fresh;
   open_cracked(&c, PLATE "&newmark beta_1 = 0.99 /\n");
   assert_int_equal(small_go(&c.r), STEP_END);
-  const tips *t = simulation_tips(c.r.simulation, 0);
+  const tips *t = simulation_cells(c.r.simulation, 0)->tips;
   open_plate(&p);
   for (long k = 0; k < t->pieces.count; k++)
     node_stencil_grow(&p.K, &p.m, t->pieces.items[k].a, t->pieces.items[k].b, -1);
@@ -357,6 +388,7 @@ int main(void) {
                                      cmocka_unit_test(looks_begin_when_they_are_to),
                                      cmocka_unit_test(growth_is_in_the_ledger),
                                      cmocka_unit_test(a_crack_that_grows_is_resumed),
+                                     cmocka_unit_test(a_crack_that_is_in_a_hole_is_resumed),
                                      cmocka_unit_test(faces_overlap_under_pressure),
                                      cmocka_unit_test(stiffness_after_a_run_is_assembly_afresh),
                                      cmocka_unit_test(driven_nodes_give_way)};

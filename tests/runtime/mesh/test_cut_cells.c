@@ -13,6 +13,7 @@
 #include "runtime/mesh/gauss_rule.h"
 #include "runtime/mesh/holes.h"
 #include "runtime/mesh/mesh.h"
+#include "runtime/mesh/shape_functions.h"
 
 static deck_shape disc(double x, double y, double radius) {
   return (deck_shape){.kind = SHAPE_DISC, .centre = {x, y}, .radius = radius};
@@ -190,6 +191,28 @@ static void cells_and_nodes_are_flagged(void **state) {
   mesh_close(&m);
 }
 
+/* Of the cell beyond its corner a hole takes 1e-10 of the area, and the node that stands there. */
+static void a_corner_that_is_gone_cuts_its_cell(void **state) {
+  (void)state;
+  mesh m;
+  point_shape s;
+  const deck_shape hole = rectangle(3 - 1e-5, 3 - 1e-5, 3 + 2e-5, 4 + 2e-5);
+  const int corners[4][2] = {{2, 2}, {6, 2}, {2, 7}, {6, 7}};
+  mesh_open(&m, (int[2]){11, 11}, (double[2]){0, 0}, (double[2]){10, 10}, 1, 2.1);
+  memset(m.element_free, 0, 121);
+  holes_add(&m.holes, &hole);
+  assert_int_equal(mesh_cut(&m), 121 - 4 * 5);
+  mesh_settle(&m);
+  for (int k = 0; k < 4; k++) {
+    const int cell = mesh_cell_at(&m, corners[k][0], corners[k][1]);
+    assert_true(m.cut[cell] && m.cell[cell] == CELL_ELEMENT_FREE);
+    shape_functions(&m, cell, (double[]){corners[k][0] + 0.5, corners[k][1] + 0.5}, &s);
+    for (int n = 0; n < s.count; n++)
+      assert_false(m.gone[s.node[n]]);
+  }
+  mesh_close(&m);
+}
+
 static void rules_integrate_polynomials(void **state) {
   (void)state;
   double at[MESH_MOST_GAUSS], weight[MESH_MOST_GAUSS];
@@ -210,6 +233,7 @@ int main(void) {
       cmocka_unit_test(lines_end_at_holes),
       cmocka_unit_test(cut_cells_hold_what_is_left_of_them),
       cmocka_unit_test(cells_and_nodes_are_flagged),
+      cmocka_unit_test(a_corner_that_is_gone_cuts_its_cell),
       cmocka_unit_test(rules_integrate_polynomials),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
