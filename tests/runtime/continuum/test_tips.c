@@ -11,8 +11,8 @@
 #include "fracture_law.h"
 #include "hooke_law.h"
 #include "mesh_cases.h"
+#include "runtime/continuum/cells.h"
 #include "runtime/continuum/node_masses.h"
-#include "runtime/continuum/tips.h"
 #include "runtime/simulation/simulation_save.h"
 #include "tests/runtime/small_run.h"
 
@@ -43,7 +43,7 @@ static void open_cracked(cracked_run *c, const char *text) {
 }
 
 static const mesh_tip *tip_of(const cracked_run *c, int number) {
-  const tips *t = simulation_tips(c->r.simulation, 0);
+  const tips *t = simulation_cells(c->r.simulation, 0)->tips;
   assert_true(t && number < t->count);
   return &t->items[number];
 }
@@ -126,7 +126,7 @@ static void growth_is_in_the_ledger(void **state) {
   static cracked_run c;
   open_cracked(&c, RUN PULLED TIPS "/\n" LEFT);
   assert_int_equal(small_go(&c.r), STEP_END);
-  const tips *t = simulation_tips(c.r.simulation, 0);
+  const tips *t = simulation_cells(c.r.simulation, 0)->tips;
   assert_true(t->rated > 0 && t->released != 0);
   assert_true(t->released == small_last(&c.r, "energy/dissipated_damage"));
   assert_true(fabs(small_last(&c.r, "energy/imbalance")) <
@@ -140,8 +140,8 @@ static void same_end(const cracked_run *a, const cracked_run *b) {
   for (size_t k = 0; k < sizeof series / sizeof *series; k++)
     assert_true(small_last(&a->r, series[k]) == small_last(&b->r, series[k]));
   assert_memory_equal(&tip_of(a, 0)->now, &tip_of(b, 0)->now, sizeof(tip_state));
-  assert_true(simulation_tips(a->r.simulation, 0)->rated ==
-              simulation_tips(b->r.simulation, 0)->rated);
+  assert_true(simulation_cells(a->r.simulation, 0)->tips->rated ==
+              simulation_cells(b->r.simulation, 0)->tips->rated);
 }
 
 /* Stopped while the crack grows, and with other threads: the same to the last bit. */
@@ -251,7 +251,7 @@ static void stiffness_after_a_run_is_assembly_afresh(void **state) {
   node_stencil fresh;
   open_cracked(&c, PLATE "&newmark beta_1 = 0.99 /\n");
   assert_int_equal(small_go(&c.r), STEP_END);
-  const tips *t = simulation_tips(c.r.simulation, 0);
+  const tips *t = simulation_cells(c.r.simulation, 0)->tips;
   open_plate(&p);
   for (long k = 0; k < t->pieces.count; k++)
     node_stencil_grow(&p.K, &p.m, t->pieces.items[k].a, t->pieces.items[k].b, -1);
@@ -351,8 +351,68 @@ static void driven_nodes_give_way(void **state) {
   assert_true(fabs(giving - step_by_step(true, dt, watched)) < 1e-10 * fabs(whole));
 }
 
+/* A beam on two feet bends under its own weight, with a crack from below in its middle: what the box
+   holds makes no difference once the weight in it counts. */
+static double bent_K(int half_size) {
+  static const char beam[] =
+      "&simulation /\n&static /\n&tips half_size = %d /\n"
+      "&mesh name = 'plate' size = 2, 0.5 nodes = 162, 41 thickness = 0.1 "
+      "method = 'element_free' support = 2.1 /\n"
+      "&zone mesh = 'plate' method = 'finite_elements' shape = 'rectangle' corner = 0, 0 "
+      "size = 0.1, 0.1 /\n"
+      "&zone mesh = 'plate' method = 'finite_elements' shape = 'rectangle' corner = 1.9, 0 "
+      "size = 0.1, 0.1 /\n"
+      "&material mesh = 'plate' model = 'hooke' /\n"
+      "&crack name = 'c' mesh = 'plate' points = 1, 0, 1, 0.25 /\n"
+      "&region name = 'left' shape = 'point' at = 0, 0 /\n"
+      "&region name = 'right' shape = 'point' at = 2, 0 /\n"
+      "&support region = 'left' fix = 'x', 'y' /\n&support region = 'right' fix = 'y' /\n"
+      "&gravity acceleration = 0, -9.81 /\n";
+  static cracked_run c;
+  char text[2000];
+  snprintf(text, sizeof text, beam, half_size);
+  open_cracked(&c, text);
+  assert_int_equal(small_go(&c.r), STEP_END);
+  const double K = small_last(&c.r, "c/K_I");
+  small_close(&c.r);
+  return K;
+}
+
+static void weight_counts_in_the_box(void **state) {
+  (void)state;
+  const double K[3] = {bent_K(4), bent_K(8), bent_K(12)};
+  print_message("bent by its weight: %.6g, %.6g, %.6g\n", K[0], K[1], K[2]);
+  for (int k = 0; k < 3; k++)
+    assert_true(fabs(K[k] - K[1]) < 0.015 * K[1]);
+}
+
+/* In free fall v = g t, and nothing is left for the integral: of nodes that a force acts on, too. */
+static void looks_know_gravity(void **state) {
+  (void)state;
+  static cracked_run c;
+  open_cracked(&c, "&simulation end_time = '0.1 ms' step_safety = 0.5 /\n"
+                   "&mesh name = 'plate' size = 0.2, 0.1 nodes = 41, 21 thickness = 0.01 "
+                   "method = 'element_free' /\n&material mesh = 'plate' model = 'hooke' /\n"
+                   "&gravity acceleration = 3, -9.81 /\n&tips half_size = 2 check_steps = 10 /\n"
+                   "&region name = 'top' shape = 'rectangle' corner = 0, 0.09 size = 0.2, 0.01 /\n"
+                   "&force region = 'top' component = 'y' total = 1e-9 /\n"
+                   "&crack name = 'c' mesh = 'plate' points = 0, 0.0512, 0.05, 0.0512 /\n");
+  assert_int_equal(small_go(&c.r), STEP_END);
+  const tips *t = simulation_cells(c.r.simulation, 0)->tips;
+  const double step = simulation_step_limit(c.r.simulation)->step, g[2] = {3, -9.81};
+  const double time = (double)(t->step / 10 * 10) * step; /* of the last look */
+  for (int n = 0; n < 41 * 21; n++)
+    for (int d = 0; d < 2; d++) {
+      assert_true(fabs(t->acceleration[d][n]) < 1e-6 * 9.81);
+      assert_true(fabs(t->velocity[d][n] - g[d] * time) < 1e-6 * 9.81 * time);
+    }
+  small_close(&c.r);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(tips_end_where_they_cannot_go_on),
+                                     cmocka_unit_test(weight_counts_in_the_box),
+                                     cmocka_unit_test(looks_know_gravity),
                                      cmocka_unit_test(two_tips_meet),
                                      cmocka_unit_test(looks_begin_when_they_are_to),
                                      cmocka_unit_test(growth_is_in_the_ledger),
