@@ -129,20 +129,9 @@ void cells_free(cells *c) {
   free(c);
 }
 
-static double cell_size(const mesh *m) {
-  return sqrt(m->spacing[0] * m->spacing[1]);
-}
-
-/* The law's tangent at rest, or how its stress follows the strain rate. */
 static plane_stiffness tangent_at_rest(const cells *c, const double *parameters, bool viscous) {
-  const double rest[3] = {0};
   plane_stiffness k;
-  point_law *p = point_law_new(c->law, parameters);
-  if (viscous)
-    point_law_viscosity(p, cell_size(&c->mesh), k.D);
-  else
-    point_law_tangent(p, rest, cell_size(&c->mesh), k.D);
-  point_law_free(p);
+  point_forces_rest(&c->mesh, c->law, parameters, viscous, k.D);
   return k;
 }
 
@@ -409,7 +398,7 @@ static double output_at(const sweep *w, int number, int point) {
   shape_functions(&c->mesh, c->points.cell[point], at, &s);
   mesh_field(&s, &c->stencil.layout, motion_of(w).displacement, NULL, gradient);
   mesh_strain(gradient, strain);
-  point_law_observe(own(w)->one, strain, cell_size(&c->mesh), observed);
+  point_law_observe(own(w)->one, strain, mesh_cell_size(&c->mesh, c->points.cell[point]), observed);
   return observed[1 + number];
 }
 

@@ -354,7 +354,8 @@ void tips_before(tips *t, const body *w, const node_stencil *k) {
       t->kept[d][n] = w->velocity[d][node_layout_at(&k->layout, n)];
 }
 
-/* Velocities and accelerations of the nodes at the present instant; their places are there. */
+/* Velocities of the nodes at the present instant, and accelerations less gravity, which are what the
+   stresses give: div sigma = rho (u'' - g). Their places are there. */
 static void find_motion(tips *t, const body *w, double *const last_resistance[2],
                         const node_stencil *k) {
   pool *memory = pool_new();
@@ -365,12 +366,12 @@ static void find_motion(tips *t, const body *w, double *const last_resistance[2]
     for (int n = 0; n < mesh_node_count(k->of); n++) {
       const long site = node_layout_at(&k->layout, n);
       const double before = w->velocity[d][site];
-      const double mass = body_mass(w, d, site);
+      const double mass = body_mass(w, d, site), g = w->gravity[d];
       const double a =
-          t->loaded[n] ? (before - t->kept[d][n]) / w->time_step : -force[d][site] / mass;
+          t->loaded[n] ? (before - t->kept[d][n]) / w->time_step - g : -force[d][site] / mass;
       const double last = t->loaded[n] ? a : -last_resistance[d][site] / mass;
       t->acceleration[d][n] = a;
-      t->velocity[d][n] = before + w->time_step * (0.5 * a + (t->beta_1 - 0.5) * (a - last));
+      t->velocity[d][n] = before + w->time_step * (0.5 * (a + g) + (t->beta_1 - 0.5) * (a - last));
     }
   pool_free(memory);
 }
@@ -709,8 +710,11 @@ void tips_after(tips *t, const body *w, double *const last_resistance[2], mesh *
 }
 
 void tips_at_rest(tips *t, const body *w, const node_stencil *k) {
+  for (int d = 0; d < 2; d++)
+    for (int n = 0; n < mesh_node_count(k->of); n++)
+      t->acceleration[d][n] = -w->gravity[d]; /* velocities are 0, as they began */
   for (int n = 0; n < t->count; n++) {
-    look_at(t, &t->items[n], w, k); /* velocities and accelerations are 0, as they began */
+    look_at(t, &t->items[n], w, k);
     note_overlap(t, &t->items[n], w);
   }
 }
