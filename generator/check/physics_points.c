@@ -23,6 +23,10 @@ static const char MEND_ENERGY[] =
     "give an `energy W` instead, of which the stress is the derivative, or write "
     "`nonconservative \"why\"`";
 
+static const char MEND_KINK[] = "its slope jumps or is not that of the energy at some strain, as "
+                                "of a principal value where two "
+                                "are equal: take a function of all principal values alike";
+
 static const char MEND_ROOT[] =
     "a root of a strain that is 0 has no slope: write `strain : strain` for `norm(strain)**2`, or "
     "keep roots off 0";
@@ -332,7 +336,8 @@ static void check_paths(point_bench *b) {
   go_around(b, &t, STEPS);
   const bool conserves = b->law->fields.count == 0 && !b->kernel->reads_rates;
   if (!isfinite(t.total)) return; /* said elsewhere */
-  const char *mend = conserves ? MEND_ENERGY
+  const bool has_energy = !b->law->results[RESULT_SIGMA];
+  const char *mend = conserves ? has_energy ? MEND_KINK : MEND_ENERGY
                                : "let what a state or a rate adds to the stress take work, never "
                                  "give it: softer on the way back than on the way out";
   const bool may_gain = conserves && b->law->nonconservative; /* one way around, then */

@@ -328,10 +328,11 @@ static bool needs_families(const deck_material *m, const deck_lattice *l, const 
   return m->beside || !bravais_is_hexagon(l) || (v->masses && reads_masses(of));
 }
 
-/* A law of cracks is that of tips, not of a body. */
+/* A law of cracks is that of tips, not of a body. Without a deck, where a law is looked at alone, a
+   lattice has no keys and only stands for one. */
 static bool is_of_bodies(const deck_material *m, const deck_lattice *l, const law *of,
                          diagnostics *said) {
-  if (!l || of->tree->law != LAW_CRACK) return true;
+  if (!l || !l->item.keys || of->tree->law != LAW_CRACK) return true;
   const bool mesh = deck_lattice_is_mesh(l);
   diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),
               "`%s` is a law of cracks, not one of a %s", of->tree->name, mesh ? "mesh" : "body");

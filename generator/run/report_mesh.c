@@ -61,8 +61,8 @@ static void announce_law(const run *r, int interaction, const cells *c) {
          sqrt(D[0][0] / rho), sqrt(D[2][2] / rho), kernel->linear ? "" : " at rest");
 }
 
-/* "crack      notch: 19.05 mm, grows by lefm; its 1 tip is looked at every 42 us" */
-static void announce_crack(const tips *t, const deck_crack *k, double step, bool at_rest) {
+/* "crack      notch: 19.05 mm, grows by lefm; its tip is looked at every 42 us, a sample every 84" */
+static void announce_crack(const run *r, const tips *t, const deck_crack *k) {
   int count = 0;
   double length = 0;
   for (int n = 1; n < k->point_count; n++)
@@ -82,12 +82,14 @@ static void announce_crack(const tips *t, const deck_crack *k, double step, bool
     printf("grows by %s", k->model);
   else
     fputs("does not grow", stdout);
-  if (at_rest) {
+  if (r->deck->relaxation.increments > 0) {
     putchar('\n');
     return;
   }
-  printf("; its tip%s looked at every %.4g us\n", count == 1 ? " is" : "s are",
-         1e6 * step * (double)t->check_steps);
+  printf("; its tip%s looked at every %.4g us, a sample every %.4g us\n",
+         count == 1 ? " is" : "s are",
+         1e6 * simulation_step_limit(r->simulation)->step * (double)t->check_steps,
+         1e6 * simulation_sample_interval(r->simulation));
 }
 
 void announce_mesh(const run *r, int lattice) {
@@ -98,6 +100,5 @@ void announce_mesh(const run *r, int lattice) {
     if (k->interactions[n].lattice == lattice) announce_law(r, n, c);
   for (int n = 0; n < k->crack_count && c->tips; n++)
     if (strcmp(k->cracks[n].mesh, k->lattices[lattice].name) == 0)
-      announce_crack(c->tips, &k->cracks[n], simulation_step_limit(r->simulation)->step,
-                     k->relaxation.solved);
+      announce_crack(r, c->tips, &k->cracks[n]);
 }

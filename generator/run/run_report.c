@@ -548,6 +548,26 @@ static void tell_stiffness(const run *r, bool failed) {
   }
 }
 
+/* As a crack cuts nodes off, the rest of the body can become stiffer for its mass. */
+static void tell_growth(const run *r, bool failed) {
+  const double step = simulation_step_limit(r->simulation)->step;
+  for (int b = 0; b < simulation_bodies(r->simulation) && cracks_have_grown(r); b++) {
+    const double now = simulation_limit_now(r->simulation, b);
+    if (step <= now) continue;
+    if (failed)
+      fprintf(stderr,
+              "  since the cracks of `%s` have grown its longest stable step is %.4g us, and these "
+              "were %.4g us: take a\n  smaller `step_safety`\n",
+              r->deck->lattices[b].name, 1e6 * now, 1e6 * step);
+    else
+      fprintf(stderr,
+              "perilat: warning: since the cracks of `%s` have grown its longest stable step is "
+              "%.4g us, and these were %.4g us.\n  Run it with a smaller `step_safety` and "
+              "compare\n",
+              r->deck->lattices[b].name, 1e6 * now, 1e6 * step);
+  }
+}
+
 /* Samples of a series; NULL where there is none of that name. */
 static const double *series_of(const run *r, const char *name) {
   for (int k = 0; k < simulation_series_count(r->simulation); k++) {
@@ -579,6 +599,7 @@ static void report_bad_energy(const run *r, const bad_state *b) {
             b->what, b->step, moment(r, b->time, when), last_value(r, "energy/kinetic"),
             last_value(r, "energy/stored"));
   tell_stiffness(r, true);
+  tell_growth(r, true);
 }
 
 void report_bad(const run *r) {
@@ -605,6 +626,7 @@ void report_bad(const run *r) {
     write_bad_bond(r, &b);
   }
   tell_stiffness(r, true);
+  tell_growth(r, true);
   fprintf(stderr,
           "  what was computed until then is in the result; a smaller `step_safety` or a law that "
           "stays finite there mends it\n");
@@ -844,7 +866,10 @@ void conclude(const run *r, double seconds, long steps) {
   warn_of_gain(r);
   warn_of_damping(r);
   warn_of_overlap(r);
-  if (!simulation_bad(r->simulation).what[0]) tell_stiffness(r, false);
+  if (!simulation_bad(r->simulation).what[0]) {
+    tell_stiffness(r, false);
+    tell_growth(r, false);
+  }
   long frames = (long)result_mark(r->result).count;
   printf("  written    %s (%ld frame%s) and its .xdmf for ParaView\n", r->result_path, frames,
          frames == 1 ? "" : "s");

@@ -51,8 +51,19 @@ static double line_length(const deck_crack *c, const mesh *m) {
   return sum;
 }
 
+/* Two legs are one where the crack does not turn between them. */
+static bool goes_on(const double a[2], const double b[2], const double c[2]) {
+  const double u[2] = {b[0] - a[0], b[1] - a[1]}, v[2] = {c[0] - b[0], c[1] - b[1]};
+  const double along = u[0] * v[0] + u[1] * v[1], across = u[0] * v[1] - u[1] * v[0];
+  return along > 0 && fabs(across) < 1e-9 * along;
+}
+
 static mesh_tip tip_of(const deck_crack *c, const mesh *m, bool at_start) {
-  const int end = at_start ? 0 : c->point_count - 1, before = at_start ? 1 : end - 1;
+  const int end = at_start ? 0 : c->point_count - 1, step = at_start ? 1 : -1;
+  int before = end + step;
+  while (before + step >= 0 && before + step < c->point_count &&
+         goes_on(c->points + 2 * (before + step), c->points + 2 * before, c->points + 2 * end))
+    before += step;
   const double *at = c->points + 2 * end, *from = c->points + 2 * before;
   return (mesh_tip){.of = c,
                     .at_start = at_start,
@@ -87,8 +98,10 @@ static bool is_seen(const deck_crack *c, const mesh *m, diagnostics *d) {
                            : "at (%.6g, %.6g) mm the crack is in a finite element, which does not "
                              "see it",
                   1e3 * at[0], 1e3 * at[1]);
-      diag_hint(d, cell < 0 ? "a crack may end on the edge of the mesh, not beyond"
-                            : "make that part element-free: leave it out of the `&zone`");
+      diag_hint(d, cell < 0
+                       ? "a crack may end on the edge of the mesh, not beyond"
+                       : "make that part element-free: by the mesh's `method`, and no `&zone` of "
+                         "finite elements there");
       return false;
     }
   }
@@ -157,9 +170,22 @@ static bool leaves_mesh(const tip_box *b, const mesh_tip *p, const mesh *m) {
   return false;
 }
 
+/* A box as small as the last leg, between points of integration. */
+static void warn_of_short_leg(const mesh_tip *p, const tip_box *b, const mesh *m, diagnostics *d) {
+  const double least = 0.5 * pl_min(m->spacing[0], m->spacing[1]);
+  if (b->across >= least) return;
+  diag_report(d, DIAG_DECK_WARNING, deck_where(&p->of->item, "points"),
+              "the leg that ends at (%.6g, %.6g) mm is %.4g mm long, and the box around the tip "
+              "reaches no farther: it holds too few points for stress intensities",
+              1e3 * p->now.at[0], 1e3 * p->now.at[1], 1e3 * p->now.last);
+  diag_hint(d, "make it at least half a spacing long, %.4g mm, or give &tips `points` of its own",
+            1e3 * least);
+}
+
 /* Beyond the edge of the mesh and in holes there is nothing to integrate. */
 static void warn_of_box(const tips *t, const mesh_tip *p, const mesh *m, diagnostics *d) {
   const tip_box b = box_of(t, p);
+  if (t->options->points == 0) warn_of_short_leg(p, &b, m, d);
   const bool leaves = leaves_mesh(&b, p, m);
   if (!leaves && !meets_hole(&b, m)) return;
   diag_report(

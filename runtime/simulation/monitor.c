@@ -144,6 +144,13 @@ static bool check_damage(const deck_monitor *m, const run_body *bodies, int coun
     some = some || can_be_damaged(&bodies[b]);
   if (some) return true;
   const char *task = follows_cracks(m) ? "follow" : "count";
+  if (bodies[0].cells && follows_cracks(m)) {
+    diag_report(d, DIAG_BAD_VALUE, deck_where(&m->item, "kind"),
+                "this follows damage, and the law `%s` of the mesh `%s` has none",
+                bodies[0].law->name, bodies[0].name);
+    diag_hint(d, "a `&crack` is watched by kind = 'crack'");
+    return false;
+  }
   if (count > 1 || bodies[0].law_count > 1)
     diag_report(d, DIAG_BAD_VALUE, deck_where(&m->item, "kind"),
                 "none of the laws has damage to %s", task);

@@ -419,6 +419,15 @@ damage_law *run_body_damages(const run_body *b) {
   return laws;
 }
 
+double run_body_limit_now(const run_body *b) {
+  step_limit now = b->limit;
+  if (!b->cells) return now.limit;
+  unsigned char *held = held_freedoms(b);
+  cells_step_limit(b->cells, b->laws[0].parameters, held, &now);
+  free(held);
+  return now.limit;
+}
+
 void run_body_free(run_body *b) {
   mesh_rest_free(b->rest);
   loads_free(b->loads);

@@ -75,6 +75,8 @@ bool run_body_open(run_body *b, const deck *k, rows **built, diagnostics *d);
 bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d);
 /* [law_count] to be freed. */
 damage_law *run_body_damages(const run_body *b);
+/* s: the longest stable step as cracks are now; of other bodies that of the start. */
+double run_body_limit_now(const run_body *b);
 void run_body_free(run_body *b);
 double run_body_memory(const run_body *b); /* bytes */
 

@@ -274,6 +274,14 @@ const rows *simulation_rows(const simulation *s, int number) {
   return s->bodies[number].lattice_rows;
 }
 
+double simulation_sample_interval(const simulation *s) {
+  return s->plan.sample_interval;
+}
+
+double simulation_limit_now(const simulation *s, int number) {
+  return run_body_limit_now(&s->bodies[number]);
+}
+
 const cells *simulation_cells(const simulation *s, int number) {
   return s->bodies[number].cells;
 }

@@ -63,6 +63,10 @@ double simulation_omega(const simulation *s, int mode);
 const rows *simulation_rows(const simulation *s, int body);
 /* The cells of a mesh (runtime/continuum/cells.h); NULL of other bodies. */
 const struct cells *simulation_cells(const simulation *s, int body);
+/* s: between two samples of the history. */
+double simulation_sample_interval(const simulation *s);
+/* s: the longest stable step of a body as its cracks are now. */
+double simulation_limit_now(const simulation *s, int body);
 /* Of an interaction of the deck: the rows of its body with the bonds that the law has a part in,
    and the parameters that differ in space (NULL without). */
 const rows *simulation_law_rows(const simulation *s, int interaction);

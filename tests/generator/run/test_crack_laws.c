@@ -99,10 +99,26 @@ static void tips_end_with_the_mesh(void **state) {
       shell(w, "$P export plate.h5 --history c/x | awk -F, 'NR > 1 && $2 > 0.1 {exit 1}'"), 0);
 }
 
+/* A step that was stable before the crack had grown. */
+static void growth_may_ask_for_shorter_steps(void **state) {
+  workplace *w = *state;
+  assert_int_equal(shell(w, "sed -i -e \"s/50 us/120 us/\" -e \"s/K_Ic = '0.1/v_0 = '1000 m\\/s'  "
+                            "K_Ic = '0.1/\" plate.nml"),
+                   0);
+  expect(w, "run plate.nml --set simulation.step_safety=0.95", 2,
+         "since the cracks of `plate` have grown its longest stable step is");
+  expect(w, "run plate.nml --set simulation.step_safety=0.25", 0, "written");
+  assert_null(strstr(w->said, "longest stable step"));
+}
+
 int main(void) {
 #define T(test) cmocka_unit_test_setup_teardown(test, set_up_plate, tear_down_workplace)
-  const struct CMUnitTest tests[] = {T(a_solver_has_them_built_in), T(results_hold_their_text),
-                                     T(another_law_cannot_resume),  T(kernels_are_compared),
-                                     T(monitors_watch_tips),        T(tips_end_with_the_mesh)};
+  const struct CMUnitTest tests[] = {T(a_solver_has_them_built_in),
+                                     T(results_hold_their_text),
+                                     T(another_law_cannot_resume),
+                                     T(kernels_are_compared),
+                                     T(monitors_watch_tips),
+                                     T(tips_end_with_the_mesh),
+                                     T(growth_may_ask_for_shorter_steps)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
