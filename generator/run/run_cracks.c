@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "generator/run/moment.h"
+#include "generator/run/print_quantity.h"
 #include "runtime/continuum/cells.h"
 
 enum { NAME_TEXT = 256 };
@@ -25,8 +26,13 @@ bool cracks_have_grown(const run *r) {
 static void conclude_tip(const run *r, const tips *t, int tip) {
   const tip_state *p = &t->items[tip].now;
   char name[NAME_TEXT], begun[MOMENT_TEXT], when[MOMENT_TEXT];
-  if (!p->grown && !p->done) return;
   printf("  crack      %s: ", tip_folder(t, tip, name, sizeof name));
+  if (!p->grown && !p->done) {
+    print_quantity("at the last look K_I = ", p->K[0] + 0.0, "Pa*m^(1/2)");
+    const bool rounding = fabs(p->K[1]) < 1e-9 * fabs(p->K[0]);
+    print_quantity(", K_II = ", rounding ? 0 : p->K[1], "Pa*m^(1/2)\n");
+    return;
+  }
   if (p->grown) printf("grew from %s on; ", moment(r, p->begun_time, begun));
   printf("%.6g mm long, its tip at (%.6g, %.6g) mm", 1e3 * p->length, 1e3 * p->at[0],
          1e3 * p->at[1]);

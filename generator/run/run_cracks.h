@@ -7,8 +7,8 @@
 
 /* Some tip has: what its advances release may have either sign. */
 bool cracks_have_grown(const run *r);
-/* Of each tip that has grown where it is, of those that are finished why; what growth has released;
-   whose faces overlap. Nothing without cracks. */
+/* Of each tip its stress intensities, of one that has grown where it is, of those that are finished
+   why; what growth has released; whose faces overlap. Nothing without cracks. */
 void conclude_cracks(const run *r);
 /* "cracks": [...], "growth": {...} or null. */
 void put_cracks(json *w, const run *r);

@@ -541,8 +541,8 @@ static void tell_stiffness(const run *r, bool failed) {
       fprintf(
           stderr,
           "perilat: warning: from %s on steps of %.3g of the limit at rest were longer than is "
-          "safe: a point of `%s`\n  became %.3g times as stiff as at rest, and up to %.3g of it "
-          "are. `step_safety = %.2g` tells whether that matters\n",
+          "safe: a point of `%s`\n  became %.3g times as stiff as at rest, and steps up to %.3g of "
+          "that limit are safe. Run it with\n  `step_safety = %.2g` and compare\n",
           when, part, name, c->stiffened.most, 1 / sqrt(c->stiffened.most),
           0.9 / sqrt(c->stiffened.most));
   }

@@ -129,20 +129,9 @@ void cells_free(cells *c) {
   free(c);
 }
 
-static double cell_size(const mesh *m) {
-  return sqrt(m->spacing[0] * m->spacing[1]);
-}
-
-/* The law's tangent at rest, or how its stress follows the strain rate. */
 static plane_stiffness tangent_at_rest(const cells *c, const double *parameters, bool viscous) {
-  const double rest[3] = {0};
   plane_stiffness k;
-  point_law *p = point_law_new(c->law, parameters);
-  if (viscous)
-    point_law_viscosity(p, cell_size(&c->mesh), k.D);
-  else
-    point_law_tangent(p, rest, cell_size(&c->mesh), k.D);
-  point_law_free(p);
+  point_forces_rest(&c->mesh, c->law, parameters, viscous, k.D);
   return k;
 }
 
@@ -409,7 +398,7 @@ static double output_at(const sweep *w, int number, int point) {
   shape_functions(&c->mesh, c->points.cell[point], at, &s);
   mesh_field(&s, &c->stencil.layout, motion_of(w).displacement, NULL, gradient);
   mesh_strain(gradient, strain);
-  point_law_observe(own(w)->one, strain, cell_size(&c->mesh), observed);
+  point_law_observe(own(w)->one, strain, mesh_cell_size(&c->mesh, c->points.cell[point]), observed);
   return observed[1 + number];
 }
 
@@ -534,7 +523,9 @@ void cells_watch_stiffness(cells *c, double part, double time) {
   for (int row = 0; row < p->strips.rows; row++)
     c->stiffened.now = pl_max(c->stiffened.now, p->rows[row].stiffness);
   c->stiffened.most = pl_max(c->stiffened.most, c->stiffened.now);
-  if (c->stiffened.since < 0 && part * part * c->stiffened.now > 1) c->stiffened.since = time;
+  const double rounding = 1e-6;
+  if (c->stiffened.since < 0 && part * part * c->stiffened.now > 1 + rounding)
+    c->stiffened.since = time;
 }
 
 bool cells_worst_point(const sweep *w, long site, point_state *out) {

@@ -27,18 +27,6 @@ void node_field_values(const cells *c, const double *const planes[2], double *va
   }
 }
 
-/* An element with one point knows the strain there alone: what its corners do beside is no strain
-   of the law's. */
-static void place_in_cell(const mesh *m, int cell, const double node[2], double at[2]) {
-  int corner[4];
-  memcpy(at, node, 2 * sizeof *at);
-  if (m->cell[cell] != CELL_ELEMENT || m->element_gauss[cell] > 1) return;
-  mesh_corners(m, cell, corner);
-  mesh_place(m, corner[0], at);
-  for (int a = 0; a < 2; a++)
-    at[a] += 0.5 * m->spacing[a];
-}
-
 /* Functions of element-free cells are the same in all of them: one speaks for all. */
 static int cells_that_differ(const mesh *m, int node, int around[4]) {
   const int count = mesh_cells_around(m, node, around);
@@ -60,7 +48,7 @@ static bool strain_at(const cells *c, const node_layout *l, const double *const 
   for (int n = 0; n < count; n++) {
     point_shape s;
     double gradient[2][2], here[3], at[2];
-    place_in_cell(&c->mesh, around[n], there, at);
+    mesh_strain_place(&c->mesh, around[n], there, at);
     shape_functions(&c->mesh, around[n], at, &s);
     mesh_field(&s, l, displacement, NULL, gradient);
     mesh_strain(gradient, here);
@@ -86,14 +74,15 @@ void node_field_strain(const cells *c, const double *const displacement[2],
 void node_field_stress(const cells *c, const double *parameters,
                        const double *const displacement[2], double *const stress[3]) {
   const node_layout l = layout_of(c);
-  const double h = sqrt(c->mesh.spacing[0] * c->mesh.spacing[1]);
   point_law *law = point_law_new(c->law, parameters);
   for (int n = 0; n < mesh_node_count(&c->mesh); n++) {
     const long site = node_layout_at(&l, n);
     double strain[3], here[4] = {NAN, NAN, NAN, NAN};
+    int around[4];
     if (c->nodes->site_particle[site] < 0) continue;
-    if (!cells_mean_stress(c, n, here) && strain_at(c, &l, displacement, n, strain))
-      point_law_stress(law, strain, h, here);
+    if (!cells_mean_stress(c, n, here) && strain_at(c, &l, displacement, n, strain) &&
+        mesh_cells_around(&c->mesh, n, around) > 0)
+      point_law_stress(law, strain, mesh_cell_size(&c->mesh, around[0]), here);
     for (int k = 0; k < 3; k++)
       stress[k][site] = here[k];
   }

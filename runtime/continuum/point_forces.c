@@ -68,8 +68,18 @@ static void open_states(point_forces *p, bool ledger) {
   p->lost_now = doubles(p, PL_LOSSES * count);
 }
 
-static double cell_size(const mesh *m) {
-  return sqrt(m->spacing[0] * m->spacing[1]);
+static void find_sizes(point_forces *p, const mesh *m) {
+  p->size = doubles(p, p->strips.count);
+  for (int row = 0; row < p->strips.rows; row++)
+    for (int n = p->strips.first_group[row]; n < p->strips.first_group[row + 1]; n++) {
+      const cell_group *g = &p->strips.groups[n];
+      for (int lane = 0; lane < PL_LANES; lane++) {
+        const int i = g->first + (lane < g->count ? lane : 0); /* what fills up is of the first */
+        const double h = mesh_cell_size(m, mesh_cell_at(m, i, row));
+        for (int k = 0; k < g->table->points; k++)
+          p->size[g->at + k * PL_LANES + lane] = h;
+      }
+    }
 }
 
 /* L^-1 of Cholesky's factor of the tangent at rest; zeros where it has none. */
@@ -93,12 +103,28 @@ static void find_scale(const double rest[STRAINS][STRAINS], double scale[STRAINS
     }
 }
 
-static void find_rest(point_forces *p, const double *parameters) {
+void point_forces_rest(const mesh *m, const pl_law *law, const double *parameters, bool viscous,
+                       double tangent[3][3]) {
   const double rest[STRAINS] = {0};
-  double tangent[STRAINS][STRAINS];
-  point_law *one = point_law_new(p->law, parameters);
-  point_law_tangent(one, rest, cell_size(p->of), tangent);
+  point_law *one = point_law_new(law, parameters);
+  double most = -INFINITY;
+  for (int cell = 0; cell < mesh_cell_count(m) && (m->mapped || cell == 0); cell++) {
+    double here[STRAINS][STRAINS];
+    if (viscous)
+      point_law_viscosity(one, mesh_cell_size(m, cell), here);
+    else
+      point_law_tangent(one, rest, mesh_cell_size(m, cell), here);
+    const double trace = here[0][0] + here[1][1] + here[2][2];
+    if (cell > 0 && !(trace > most)) continue;
+    most = trace;
+    memcpy(tangent, here, sizeof here);
+  }
   point_law_free(one);
+}
+
+static void find_rest(point_forces *p, const double *parameters) {
+  double tangent[STRAINS][STRAINS];
+  point_forces_rest(p->of, p->law, parameters, false, tangent);
   find_scale(tangent, p->scale);
 }
 
@@ -115,9 +141,7 @@ point_forces *point_forces_new(const mesh *m, const integration_points *points, 
   p->plane = cell_strips_plane(&p->strips);
   for (int d = 0; d < 2; d++)
     p->pushed[d] = doubles(p, p->plane * p->strips.rows);
-  p->size = doubles(p, strip_room(p));
-  for (int k = 0; k < strip_room(p); k++)
-    p->size[k] = cell_size(m);
+  find_sizes(p, m);
   p->rows = must_calloc((size_t)p->strips.rows + 1, sizeof *p->rows);
   p->scratch = must_calloc((size_t)blocks + 1, sizeof *p->scratch);
   for (int b = 0; b < blocks; b++)
@@ -187,7 +211,7 @@ static pl_points view_of(const point_forces *p, const strip *s, point_scratch *o
                      .count = s->count,
                      .strain = (const double *const *)own->strain,
                      .strain_rate = (const double *const *)own->rate,
-                     .cell_size = p->size,
+                     .cell_size = p->size + s->at,
                      .old_field = (const double *const *)own->old_field,
                      .new_field = own->new_field,
                      .stress = own->stress,

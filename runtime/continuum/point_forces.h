@@ -35,13 +35,18 @@ typedef struct point_forces {
   double *stress;     /* [PL_STRESSES(2)][strips.count] Pa, in the state observed */
   double *pushed[2];  /* [rows][plane] N */
   long plane;         /* doubles */
-  double *size;       /* [points of a strip] m: of the cells */
+  double *size;       /* [strips.count] m: of the points' cells */
   double scale[3][3]; /* Pa^(-1/2): L^-1 of the tangent at rest, L L^T */
   point_row *rows;    /* [strips.rows] */
   struct point_scratch *scratch; /* [blocks] */
   int blocks;
   long doubles; /* of arrays */
 } point_forces;
+
+/* Tangent at rest (Pa), or how the stress there follows the strain rate (Pa s), xx, yy, xy by xx, yy,
+   xy; of a law that reads the size of a cell that of the cell where its trace is largest. */
+void point_forces_rest(const mesh *m, const pl_law *law, const double *parameters, bool viscous,
+                       double tangent[3][3]);
 
 /* `blocks` threads at most; `ledger`: energies are kept. What is pointed to must outlive it. */
 point_forces *point_forces_new(const mesh *m, const integration_points *p, const pl_law *law,

@@ -252,9 +252,11 @@ bool tips_new(const deck *k, const char *name, mesh *m, tips **out, diagnostics 
     t->loaded = must_calloc((size_t)mesh_node_count(m), 1);
     t->segment = k->tips.segment * m->spacing[0];
     for (int a = 0; a < 2; a++) {
-      const bool given = k->tips.size[a] > 0;
-      t->lower[a] = given ? k->tips.corner[a] : m->corner[a];
-      t->upper[a] = given ? t->lower[a] + k->tips.size[a] : mesh_at(m, a, m->nodes[a] - 1);
+      t->lower[a] = m->corner[a];
+      t->upper[a] = mesh_at(m, a, m->nodes[a] - 1);
+      if (!(k->tips.size[a] > 0)) continue;
+      t->lower[a] = pl_max(t->lower[a], k->tips.corner[a]);
+      t->upper[a] = pl_min(t->upper[a], k->tips.corner[a] + k->tips.size[a]);
     }
     t->pieces.items = must_calloc(TIPS_MOST_PIECES, sizeof *t->pieces.items);
     t->pieces.tip = must_calloc(TIPS_MOST_PIECES, sizeof *t->pieces.tip);
@@ -352,7 +354,8 @@ void tips_before(tips *t, const body *w, const node_stencil *k) {
       t->kept[d][n] = w->velocity[d][node_layout_at(&k->layout, n)];
 }
 
-/* Velocities and accelerations of the nodes at the present instant; their places are there. */
+/* Velocities of the nodes at the present instant, and accelerations less gravity, which are what the
+   stresses give: div sigma = rho (u'' - g). Their places are there. */
 static void find_motion(tips *t, const body *w, double *const last_resistance[2],
                         const node_stencil *k) {
   pool *memory = pool_new();
@@ -363,12 +366,12 @@ static void find_motion(tips *t, const body *w, double *const last_resistance[2]
     for (int n = 0; n < mesh_node_count(k->of); n++) {
       const long site = node_layout_at(&k->layout, n);
       const double before = w->velocity[d][site];
-      const double mass = body_mass(w, d, site);
+      const double mass = body_mass(w, d, site), g = w->gravity[d];
       const double a =
-          t->loaded[n] ? (before - t->kept[d][n]) / w->time_step : -force[d][site] / mass;
+          t->loaded[n] ? (before - t->kept[d][n]) / w->time_step - g : -force[d][site] / mass;
       const double last = t->loaded[n] ? a : -last_resistance[d][site] / mass;
       t->acceleration[d][n] = a;
-      t->velocity[d][n] = before + w->time_step * (0.5 * a + (t->beta_1 - 0.5) * (a - last));
+      t->velocity[d][n] = before + w->time_step * (0.5 * (a + g) + (t->beta_1 - 0.5) * (a - last));
     }
   pool_free(memory);
 }
@@ -707,8 +710,11 @@ void tips_after(tips *t, const body *w, double *const last_resistance[2], mesh *
 }
 
 void tips_at_rest(tips *t, const body *w, const node_stencil *k) {
+  for (int d = 0; d < 2; d++)
+    for (int n = 0; n < mesh_node_count(k->of); n++)
+      t->acceleration[d][n] = -w->gravity[d]; /* velocities are 0, as they began */
   for (int n = 0; n < t->count; n++) {
-    look_at(t, &t->items[n], w, k); /* velocities and accelerations are 0, as they began */
+    look_at(t, &t->items[n], w, k);
     note_overlap(t, &t->items[n], w);
   }
 }

@@ -6,7 +6,8 @@
 
      v_n = v_(n-1/2) + dt/2 a_n + dt (beta_1 - 1/2)(a_n - a_(n-1));
 
-   of nodes that loads or supports act on by the last two velocities. Looks are at steps n = L, 2L,
+   of nodes that loads or supports act on by the last two velocities. Gravity g is a force on every
+   point: the integral wants a_n - g. Looks are at steps n = L, 2L,
    ...; between two of them growing tips advance `updates` times. An advance at t_n comes after the
    forces there were found: those of t_(n+1) are the first to know of it.
 
@@ -99,7 +100,8 @@ typedef struct tips {
   double released;                         /* J: by growth, since the start */
   double rated;      /* J: the energy release rate over the ways of the tips */
   tip_pieces pieces; /* grown, in order */
-  /* [nodes] of the state that is looked at: m/s, m/s^2; velocities before the last step */
+  /* [nodes] of the state that is looked at: m/s; m/s^2, less gravity; velocities before the last
+     step */
   double *velocity[2], *acceleration[2], *kept[2];
   unsigned char *loaded; /* [nodes] loads or supports act on it */
   tip_point *points;     /* room for those of a box */

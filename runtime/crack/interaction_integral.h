@@ -6,7 +6,7 @@
                + rho q (a^m_i u_i,1 + a_i u^m_i,1 - v_i,1 v^m_i - v_i v^m_i,1) dA,
      K_m = mu c_s^2 D/(v^2 a) G_m,    a of the mode
 
-   with a weight q that is 1 at the tip and 0 on the box:
+   a_i being the acceleration less gravity, div s = rho a, with a weight q that is 1 at the tip and 0 on the box:
 
         2d                 pyramid   (1 - |x|/d)(1 - |y|/d)
      +--------+            plateau   f(|x|/d) f(|y|/d), f = 1 up to 1/2, then 2 - 2 r
@@ -48,7 +48,7 @@ typedef struct tip_point {
   double stress[3];               /* xx, yy, xy, Pa */
   double velocity[2];             /* m/s */
   double velocity_gradient[2][2]; /* 1/s */
-  double acceleration[2];         /* m/s^2 */
+  double acceleration[2];         /* m/s^2, less gravity */
 } tip_point;
 
 /* K[0] of mode I, K[1] of mode II, Pa m^(1/2). The auxiliary fields are those of a tip of `speed`, of

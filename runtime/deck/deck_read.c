@@ -304,11 +304,24 @@ static void check_static_run(deck_reader *r) {
                 "with `&static`");
 }
 
+/* The time of these runs is only an order: a tip has no speed in it. */
+static void check_no_growth(deck_reader *r, const char *group) {
+  for (int n = 0; n < r->k->crack_count; n++) {
+    const deck_crack *c = &r->k->cracks[n];
+    if (!c->grows) continue;
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&c->item, "grows"),
+                "a crack grows in time, which a run with `&%s` does not have", group);
+    diag_hint(r->d, "leave `grows` away: stress intensities are found all the same");
+    return;
+  }
+}
+
 /* Inertia and its damping are means of the relaxation. */
 static void check_quasi_static(deck_reader *r) {
   const deck *k = r->k;
   const char *group = k->relaxation.solved ? "static" : "relaxation";
   if (k->relaxation.increments < 1) return;
+  check_no_growth(r, group);
   if (k->relaxation.solved)
     check_static_run(r);
   else if (k->damping_count > 0)

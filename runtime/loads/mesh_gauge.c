@@ -106,7 +106,11 @@ static void add_place(const mesh_gauge *g, long k, node_weight *all) {
     all[g->nodes[k]].n += part;
     return;
   }
-  shape_functions(m, mesh_cell_of(m, g->places[k]), g->places[k], &s);
+  const int cell = mesh_cell_of(m, g->places[k]);
+  double at[2];
+  memcpy(at, g->places[k], sizeof at);
+  if (is_tensor(g->deck)) mesh_strain_place(m, cell, g->places[k], at);
+  shape_functions(m, cell, at, &s);
   for (int q = 0; q < s.count; q++) {
     node_weight *to = &all[s.node[q]];
     to->n += part * s.n[q];
@@ -156,6 +160,7 @@ static double motion(const mesh_gauge *g, long step) {
 }
 
 static double tensor(const mesh_gauge *g) {
+  const mesh *m = &g->of->mesh;
   double gradient[2][2] = {{0}}, strain[3], stress[4];
   for (int k = 0; k < g->count; k++)
     for (int i = 0; i < 2; i++) {
@@ -166,7 +171,7 @@ static double tensor(const mesh_gauge *g) {
   mesh_strain(gradient, strain);
   if (!g->law) return strain[g->deck->component];
   if (cells_states_near(g->of, g->places[0], g->states)) point_law_states(g->law, g->states);
-  point_law_stress(g->law, strain, g->w->lattice->spacing, stress);
+  point_law_stress(g->law, strain, mesh_cell_size(m, mesh_cell_of(m, g->places[0])), stress);
   return stress[g->deck->component];
 }
 

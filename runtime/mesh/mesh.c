@@ -80,6 +80,30 @@ int mesh_cells_around(const mesh *m, int node, int around[4]) {
   return count;
 }
 
+double mesh_cell_size(const mesh *m, int cell) {
+  int corner[4];
+  double at[4][2];
+  if (!m->mapped) return sqrt(m->spacing[0] * m->spacing[1]);
+  mesh_corners(m, cell, corner);
+  for (int k = 0; k < 4; k++) /* counter-clockwise */
+    mesh_place(m, corner[k < 2 ? k : 5 - k], at[k]);
+  return sqrt(quadrilateral_area(at));
+}
+
+void mesh_strain_place(const mesh *m, int cell, const double place[2], double at[2]) {
+  int corner[4];
+  double here[2];
+  memcpy(at, place, 2 * sizeof *at);
+  if (m->cell[cell] != CELL_ELEMENT || m->element_gauss[cell] > 1) return;
+  mesh_corners(m, cell, corner);
+  at[0] = at[1] = 0;
+  for (int k = 0; k < 4; k++) {
+    mesh_place(m, corner[k], here);
+    for (int a = 0; a < 2; a++)
+      at[a] += 0.25 * here[a];
+  }
+}
+
 /* On a border of the absent cell at `place` another one may hold the point; u: in cells. */
 static int cell_across(const mesh *m, const int place[2], const double u[2]) {
   const double near = 1e-6;

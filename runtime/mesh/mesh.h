@@ -101,6 +101,11 @@ static inline void mesh_corners(const mesh *m, int cell, int corner[4]) {
 }
 /* The cells around a node that are not absent, row by row: how many, 4 at most, and their numbers. */
 int mesh_cells_around(const mesh *m, int node, int around[4]);
+/* h, m: the root of the cell's area, holes included. */
+double mesh_cell_size(const mesh *m, int cell);
+/* Where an element with one point knows the strain: its middle, whatever the place in it; what its
+   corners do beside is no strain of the law's. Of other cells the place itself. */
+void mesh_strain_place(const mesh *m, int cell, const double place[2], double at[2]);
 /* The cell that holds a point (on a border: the one to its upper right, at the mesh's edge the last,
    another one where that is absent); -1 outside the mesh. */
 int mesh_cell_of(const mesh *m, const double at[2]);

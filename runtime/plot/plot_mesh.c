@@ -211,11 +211,19 @@ static double mixed(const cell_view *c, const double *table, int columns, int co
   return sum;
 }
 
+/* Where a point of the cell was at the beginning, m. */
+static void place_point(const cell_view *c, double x, double y, double at[2]) {
+  double share[CORNERS];
+  shares_at(15u, x, y, share);
+  for (int a = 0; a < 2; a++)
+    at[a] = mixed(c, c->of->reference, 2, a, share);
+}
+
 /* A point of the cell where it has moved to: it goes as what it sees does. */
 static void move_point(const cell_view *c, const double share[CORNERS], double x, double y,
                        double moved[2]) {
-  const double way[2] = {c->high[0] - c->low[0], c->high[1] - c->low[1]},
-               at[2] = {c->low[0] + x * way[0], c->low[1] + y * way[1]};
+  double at[2];
+  place_point(c, x, y, at);
   for (int a = 0; a < 2; a++)
     moved[a] =
         at[a] + mixed(c, c->of->moved, 2, a, share) - mixed(c, c->of->reference, 2, a, share);
@@ -224,10 +232,9 @@ static void move_point(const cell_view *c, const double share[CORNERS], double x
 static void take_part(const cell_view *c, double x, double y, double size, mesh_part *take,
                       void *context) {
   static const double around[CORNERS][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-  const double middle[2] = {c->low[0] + (x + 0.5 * size) * (c->high[0] - c->low[0]),
-                            c->low[1] + (y + 0.5 * size) * (c->high[1] - c->low[1])};
+  double middle[2], at[CORNERS][2], value[CORNERS] = {0};
+  place_point(c, x + 0.5 * size, y + 0.5 * size, middle);
   const unsigned seen = seen_from(c, middle);
-  double at[CORNERS][2], value[CORNERS] = {0};
   for (int k = 0; k < CORNERS; k++) {
     const double u = x + size * around[k][0], v = y + size * around[k][1];
     double share[CORNERS];

@@ -42,6 +42,8 @@ static const fault faults[] = {
      "&notch mesh = 'plate' shape = 'disc' centre = '34 mm', '35 mm' radius = '3 mm' /\n&tips ",
      true},
     {"other_mesh", "'c'  mesh = 'plate'", "'c'  mesh = 'plat'", false},
+    {"growth_at_rest", "&tips ", "&static /\n&tips ", false},
+    {"growth_in_increments", "&tips ", "&relaxation increments = 3 /\n&tips ", false},
     {"damped_backward", "&tips ", "&newmark beta_1 = 0.4 /\n&tips ", false},
 };
 enum { FAULTS = sizeof faults / sizeof *faults };

@@ -86,10 +86,23 @@ static void monitors_watch_tips(void **state) {
   assert_non_null(strstr(w->said, "there is no tip `d`"));
 }
 
+/* Wherever cracks may grow, beyond the mesh there is nothing. */
+static void tips_end_with_the_mesh(void **state) {
+  workplace *w = *state;
+  assert_int_equal(shell(w,
+                         "sed -i -e \"s/check_steps = 10/check_steps = 10  corner = -1, -1  size = "
+                         "2, 2/\" -e \"s/50 us/150 us/\" -e \"s/K_Ic = '0.1/v_0 = '1000 "
+                         "m\\/s'  K_Ic = '0.1/\" plate.nml"),
+                   0);
+  expect(w, "run plate.nml", 0, "mm has left where cracks grow at");
+  assert_int_equal(
+      shell(w, "$P export plate.h5 --history c/x | awk -F, 'NR > 1 && $2 > 0.1 {exit 1}'"), 0);
+}
+
 int main(void) {
 #define T(test) cmocka_unit_test_setup_teardown(test, set_up_plate, tear_down_workplace)
   const struct CMUnitTest tests[] = {T(a_solver_has_them_built_in), T(results_hold_their_text),
-                                     T(another_law_cannot_resume), T(kernels_are_compared),
-                                     T(monitors_watch_tips)};
+                                     T(another_law_cannot_resume),  T(kernels_are_compared),
+                                     T(monitors_watch_tips),        T(tips_end_with_the_mesh)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

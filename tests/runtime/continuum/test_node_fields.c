@@ -157,9 +157,26 @@ static void one_point_sees_no_hourglass(void **state) {
   }
 }
 
+/* The middle of an element of a quadrilateral is that of its corners. */
+static void one_point_stands_in_the_middle(void **state) {
+  (void)state;
+  static const double cook[4][2] = {{0, 0}, {48, 44}, {48, 60}, {0, 44}};
+  mesh m;
+  mesh_open_mapped(&m, (int[2]){2, 2}, cook, 1, 2);
+  m.element_gauss[0] = 1;
+  double at[2];
+  mesh_strain_place(&m, 0, cook[0], at);
+  assert_true(fabs(at[0] - 24) < 1e-13 && fabs(at[1] - 37) < 1e-13);
+  m.element_gauss[0] = 2;
+  mesh_strain_place(&m, 0, cook[2], at);
+  assert_true(at[0] == 48 && at[1] == 60);
+  mesh_close(&m);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(linear_fields_are_exact), cmocka_unit_test(values_are_displacements),
-      cmocka_unit_test(a_crack_parts_its_sides), cmocka_unit_test(one_point_sees_no_hourglass)};
+      cmocka_unit_test(a_crack_parts_its_sides), cmocka_unit_test(one_point_sees_no_hourglass),
+      cmocka_unit_test(one_point_stands_in_the_middle)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

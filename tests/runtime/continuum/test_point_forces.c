@@ -174,6 +174,58 @@ static void nodes_share_all(void **state) {
   close_both(&b);
 }
 
+/* Its stress and its output are the size of the cell. */
+static void sized_step(const pl_law *law, const double *uniforms, const pl_points *p) {
+  (void)law, (void)uniforms;
+  for (long q = 0; q < p->count; q++)
+    for (int c = 0; c < 4; c++)
+      p->stress[c][q] = p->cell_size[q];
+}
+
+static void sized_observe(const pl_law *law, const double *uniforms, const pl_points *p) {
+  hooke_law.point_observe(law, uniforms, p);
+  for (long q = 0; q < p->count; q++)
+    p->observed[0][q] = p->cell_size[q] * p->cell_size[q] / 1e3;
+}
+
+/* Cook's outline: cells are of many sizes. */
+static void laws_read_the_size_of_their_cell(void **state) {
+  (void)state;
+  static const double cook[4][2] = {{0, 0}, {48, 44}, {48, 60}, {0, 44}};
+  pl_law sized = hooke_law;
+  sized.point_step = sized_step;
+  sized.point_observe = sized_observe;
+  mesh m;
+  integration_points points;
+  mesh_open_mapped(&m, (int[2]){12, 6}, cook, 1, 2.1);
+  integration_points_open(&points, &m);
+  point_forces *p = point_forces_new(&m, &points, &sized, hooke_values, 1, true);
+  pool *memory = pool_new();
+  const double *u = pool_doubles(memory, p->strips.layout.size);
+  double sum = 0, stored = 0, expected = 0;
+  const double *const still[2] = {u, u};
+  const point_motion at = {still, still, 0, 1};
+  point_forces_find(p, 0, 0, m.nodes[1], &at, true);
+  for (int c = 0; c < mesh_cell_count(&m); c++) {
+    double area = 0;
+    for (int n = points.first[c]; n < points.first[c + 1]; n++)
+      area += points.area[n];
+    sum += area;
+    expected += area * area / 1e3;
+    assert_true(fabs(mesh_cell_size(&m, c) - sqrt(area)) < 1e-13);
+    for (int n = 0; n < points.first[c + 1] - points.first[c]; n++)
+      assert_true(fabs(p->stress[p->strips.of_cell[c] + n * PL_LANES] - sqrt(area)) < 1e-13);
+  }
+  for (int row = 0; row < p->strips.rows; row++)
+    stored += p->rows[row].stored;
+  assert_true(fabs(sum - quadrilateral_area(cook)) < 1e-10);
+  assert_true(fabs(stored - expected) < 1e-12 * expected);
+  pool_free(memory);
+  point_forces_free(p);
+  integration_points_close(&points);
+  mesh_close(&m);
+}
+
 /* Cells that are alike share what acts in them: a larger mesh has a few tables more or none. */
 static void tables_are_shared(void **state) {
   (void)state;
@@ -654,6 +706,7 @@ int main(void) {
                                      cmocka_unit_test(they_agree_about_holes),
                                      cmocka_unit_test(nodes_share_all),
                                      cmocka_unit_test(nodes_beside_a_hole_show_states),
+                                     cmocka_unit_test(laws_read_the_size_of_their_cell),
                                      cmocka_unit_test(tables_are_shared),
                                      cmocka_unit_test(rigid_motions_push_nothing),
                                      cmocka_unit_test(nothing_comes_from_beside),

@@ -13,7 +13,6 @@
 #include "mesh_cases.h"
 #include "runtime/continuum/cells.h"
 #include "runtime/continuum/node_masses.h"
-#include "runtime/continuum/tips.h"
 #include "runtime/simulation/simulation_save.h"
 #include "tests/runtime/small_run.h"
 
@@ -383,8 +382,65 @@ static void driven_nodes_give_way(void **state) {
   assert_true(fabs(giving - step_by_step(true, dt, watched)) < 1e-10 * fabs(whole));
 }
 
+/* What lies below a crack hangs on the other side by its own weight, along the crack, and opens it:
+   how large the box is makes no difference once the weight in it counts. */
+static double hanging_K(int half_size) {
+  static const char plate[] =
+      "&simulation /\n&static /\n&tips half_size = %d points = 16 /\n"
+      "&mesh name = 'plate' size = 1, 1 nodes = 61, 62 thickness = 0.1 "
+      "method = 'element_free' support = 2.1 /\n"
+      "&zone mesh = 'plate' method = 'finite_elements' shape = 'rectangle' corner = 0, 0.6 "
+      "size = 0.1, 0.4 /\n"
+      "&material mesh = 'plate' model = 'hooke' /\n"
+      "&crack name = 'c' mesh = 'plate' points = 0, 0.5, 0.5, 0.5 /\n"
+      "&region name = 'left' shape = 'segment' from = 0, 0.61 to = 0, 1 /\n"
+      "&support region = 'left' fix = 'x', 'y' /\n"
+      "&gravity acceleration = 9.81, 0 /\n";
+  static cracked_run c;
+  char text[2000];
+  snprintf(text, sizeof text, plate, half_size);
+  open_cracked(&c, text);
+  assert_int_equal(small_go(&c.r), STEP_END);
+  const double K = small_last(&c.r, "c/K_I");
+  small_close(&c.r);
+  return K;
+}
+
+static void weight_counts_in_the_box(void **state) {
+  (void)state;
+  const double K[3] = {hanging_K(4), hanging_K(8), hanging_K(12)};
+  print_message("hanging by its weight: %.6g, %.6g, %.6g\n", K[0], K[1], K[2]);
+  for (int k = 0; k < 3; k++)
+    assert_true(fabs(K[k] - K[1]) < 0.004 * K[1]);
+}
+
+/* In free fall v = g t, and nothing is left for the integral: of nodes that a force acts on, too. */
+static void looks_know_gravity(void **state) {
+  (void)state;
+  static cracked_run c;
+  open_cracked(&c, "&simulation end_time = '0.1 ms' step_safety = 0.5 /\n"
+                   "&mesh name = 'plate' size = 0.2, 0.1 nodes = 41, 21 thickness = 0.01 "
+                   "method = 'element_free' /\n&material mesh = 'plate' model = 'hooke' /\n"
+                   "&gravity acceleration = 3, -9.81 /\n&tips half_size = 2 check_steps = 10 /\n"
+                   "&region name = 'top' shape = 'rectangle' corner = 0, 0.09 size = 0.2, 0.01 /\n"
+                   "&force region = 'top' component = 'y' total = 1e-9 /\n"
+                   "&crack name = 'c' mesh = 'plate' points = 0, 0.0512, 0.05, 0.0512 /\n");
+  assert_int_equal(small_go(&c.r), STEP_END);
+  const tips *t = simulation_cells(c.r.simulation, 0)->tips;
+  const double step = simulation_step_limit(c.r.simulation)->step, g[2] = {3, -9.81};
+  const double time = (double)(t->step / 10 * 10) * step; /* of the last look */
+  for (int n = 0; n < 41 * 21; n++)
+    for (int d = 0; d < 2; d++) {
+      assert_true(fabs(t->acceleration[d][n]) < 1e-6 * 9.81);
+      assert_true(fabs(t->velocity[d][n] - g[d] * time) < 1e-6 * 9.81 * time);
+    }
+  small_close(&c.r);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(tips_end_where_they_cannot_go_on),
+                                     cmocka_unit_test(weight_counts_in_the_box),
+                                     cmocka_unit_test(looks_know_gravity),
                                      cmocka_unit_test(two_tips_meet),
                                      cmocka_unit_test(looks_begin_when_they_are_to),
                                      cmocka_unit_test(growth_is_in_the_ledger),

@@ -77,6 +77,37 @@ static void linear_fields_are_shown_anywhere(void **state) {
                    "thickness = 0.1 method = 'finite_elements' /\n"));
 }
 
+/* u = 1e-3 (1 + x + 2 y + 4 x y) of one element with one point: what it knows is the strain in the
+   middle, wherever the gauge is. */
+static void one_point_speaks_for_its_element(const char *group) {
+  static const char rest[] =
+      "&simulation end_time = '1 ms' step_safety = 0.5 /\n"
+      "&material mesh = 'plate' model = 'hooke' /\n"
+      "&region name = 'all' shape = 'rectangle' corner = -1, -1 size = 3, 3 /\n"
+      "&initial_displacement region = 'all' component = 'x' "
+      "value = '1e-3 [m] + 1e-3*x + 2e-3*y + 4e-3 [1/m]*x*y' /\n" GAUGE(
+          "low", "strain", "xx", "0.1, 0.1") GAUGE("high", "strain", "xx", "0.9, 0.9")
+          GAUGE("xy", "strain", "xy", "0.9, 0.1") GAUGE("stress", "stress", "xx", "0.1, 0.9");
+  char text[2000];
+  small_run r;
+  snprintf(text, sizeof text, "%s%s", group, rest);
+  run(&r, text);
+  assert_true(fabs(small_values(&r, "low")[0] - 3e-3) < 1e-15);
+  assert_true(fabs(small_values(&r, "high")[0] - 3e-3) < 1e-15);
+  assert_true(fabs(small_values(&r, "xy")[0] - 2e-3) < 1e-15);
+  assert_true(fabs(small_values(&r, "stress")[0] - 3e-3 * 30e9 / (1 - 0.04)) < 1e-3);
+  small_close(&r);
+}
+
+static void elements_with_one_point_have_one_strain(void **state) {
+  (void)state;
+  one_point_speaks_for_its_element("&mesh name = 'plate' size = 1, 1 nodes = 2, 2 thickness = 0.1 "
+                                   "method = 'finite_elements' gauss = 1 /\n");
+  one_point_speaks_for_its_element("&mesh name = 'plate' corners = 0, 0, 1, 0, 1, 1, 0, 1 "
+                                   "nodes = 2, 2 thickness = 0.1 method = 'finite_elements' "
+                                   "gauss = 1 /\n");
+}
+
 #define ZONED                                                                                      \
   "&simulation end_time = '2 ms' step_safety = 0.6 /\n&output sample = '50 us' /\n"                \
   "&mesh name = 'plate' size = 1, 0.5 nodes = 21, 11 thickness = 0.1 method = 'element_free' /\n"  \
@@ -159,8 +190,10 @@ static void what_is_not_shown_is_told(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(linear_fields_are_shown_anywhere), cmocka_unit_test(a_mesh_falls_freely),
-      cmocka_unit_test(an_edge_may_be_accelerated), cmocka_unit_test(what_is_not_shown_is_told)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(linear_fields_are_shown_anywhere),
+                                     cmocka_unit_test(a_mesh_falls_freely),
+                                     cmocka_unit_test(an_edge_may_be_accelerated),
+                                     cmocka_unit_test(elements_with_one_point_have_one_strain),
+                                     cmocka_unit_test(what_is_not_shown_is_told)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
