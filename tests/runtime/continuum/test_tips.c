@@ -187,7 +187,8 @@ static void a_crack_that_grows_is_resumed(void **state) {
   small_close(&threads.r);
 }
 
-/* A crack that has run into a hole parts what is on either side of it, also once it is resumed. */
+/* A crack that has run into a hole parts what is on either side of it, also once it is resumed: of nodes
+   just beyond the mouth, whose lines past the hole's outline are too short for it to hide them. */
 static void a_crack_that_is_in_a_hole_is_resumed(void **state) {
   (void)state;
   static cracked_run whole, resumed;
