@@ -54,11 +54,23 @@
 
 /* What a law loses: to states and damage; to rate terms. */
 enum pl_loss { PL_LOST_TO_STATES = 0, PL_LOST_TO_RATES = 1, PL_LOSSES = 2 };
-enum pl_law_kind { PL_CENTRAL = 0, PL_MICROPOLAR = 1, PL_STATE = 2, PL_CONTINUUM = 3, PL_CRACK = 4 };
+enum pl_law_kind {
+  PL_CENTRAL = 0,
+  PL_MICROPOLAR = 1,
+  PL_STATE = 2,
+  PL_CONTINUUM = 3,
+  PL_CRACK = 4
+};
 enum pl_field_kind { PL_FIELD_STATE = 0, PL_FIELD_DAMAGE = 1, PL_FIELD_OUTPUT = 2 };
 /* Where a field lives: one value a bond; one a particle; one for each neighbour of a particle; one a
    point of a continuum. */
-enum pl_place { PL_ON_BOND = 0, PL_ON_PARTICLE = 1, PL_ON_NEIGHBOUR = 2, PL_ON_POINT = 3, PL_ON_TIP = 4 };
+enum pl_place {
+  PL_ON_BOND = 0,
+  PL_ON_PARTICLE = 1,
+  PL_ON_NEIGHBOUR = 2,
+  PL_ON_POINT = 3,
+  PL_ON_TIP = 4
+};
 
 /* Where a particle's neighbours stand: on rows at offsets that are the same along a row; on lists
    each has its own. */
@@ -295,20 +307,22 @@ enum { PL_MAX_STRAINS = 6 };
 
 typedef struct pl_points {
   uint32_t size;
-  long count;                        /* a multiple of PL_LANES */
-  const double *const *strain;       /* [strains][count] */
-  const double *const *strain_rate;  /* [strains][count] 1/s */
-  const double *cell_size;           /* [count] m, of the cell that the point stands for */
-  const double *const *parameter;    /* [varying_count][count] SI: those that differ in space */
-  const double *const *old_field;    /* [field_count][count] SI, when the step begins */
-  double *const *new_field;          /* [field_count][count] written; other memory than old_field */
-  double *const *stress;             /* [stresses][count] Pa, written */
+  long count;                       /* a multiple of PL_LANES */
+  const double *const *strain;      /* [strains][count] */
+  const double *const *strain_rate; /* [strains][count] 1/s */
+  const double *cell_size;          /* [count] m, of the cell that the point stands for */
+  const double *const *parameter;   /* [varying_count][count] SI: those that differ in space */
+  const double *const *old_field;   /* [field_count][count] SI, when the step begins */
+  double *const *new_field;         /* [field_count][count] written; other memory than old_field */
+  double *const *stress;            /* [stresses][count] Pa, written */
   /* Of point_tangent: [strains][strains][count] Pa, written: the stress by the strain, where shears
      are those of engineers (twice the tensor's). In plane stress it is that of the plane alone. */
   double *const *tangent;
   /* Of point_observe: [1 + output_count][count], written: stored energy (J/m^3), then each output */
   double *const *observed;
-  double *const *lost; /* of point_ledger: [PL_LOSSES][count] J/m^3, added to */
+  /* Of point_ledger: [PL_LOSSES][count] J/m^3, added to. What states take is that halfway of the way
+     strain_rate time_step that led here (ledger.h): laws with fields read rates for it, too */
+  double *const *lost;
   double time, time_step; /* s */
 } pl_points;
 
@@ -319,17 +333,22 @@ typedef void (*pl_point_function)(const struct pl_law *law, const double *unifor
 /* Tips of cracks. */
 enum pl_tip_input {
   PL_TIP_K_I,
-  PL_TIP_K_II,               /* Pa m^(1/2) */
-  PL_TIP_ENERGY_RELEASE,     /* N/m */
-  PL_TIP_ANGLE,              /* rad, from x: of the last leg */
-  PL_TIP_SPEED,              /* m/s */
-  PL_TIP_LENGTH,             /* m */
-  PL_TIP_RAYLEIGH_SPEED,     /* m/s */
+  PL_TIP_K_II,           /* Pa m^(1/2) */
+  PL_TIP_ENERGY_RELEASE, /* N/m */
+  PL_TIP_ANGLE,          /* rad, from x: of the last leg */
+  PL_TIP_SPEED,          /* m/s */
+  PL_TIP_LENGTH,         /* m */
+  PL_TIP_RAYLEIGH_SPEED, /* m/s */
   PL_TIP_SHEAR_SPEED,
   PL_TIP_DILATATIONAL_SPEED,
   PL_TIP_INPUTS
 };
-enum pl_tip_result { PL_TIP_GROW /* 1, else 0 */, PL_TIP_TOWARD /* rad */, PL_TIP_RUN /* m/s */, PL_TIP_RESULTS };
+enum pl_tip_result {
+  PL_TIP_GROW /* 1, else 0 */,
+  PL_TIP_TOWARD /* rad */,
+  PL_TIP_RUN /* m/s */,
+  PL_TIP_RESULTS
+};
 typedef struct pl_tips {
   uint32_t size;
   long count;                     /* a multiple of PL_LANES */

@@ -156,8 +156,8 @@ static strained beginning(const marching *m, const strained *to, double inside) 
   return from;
 }
 
-/* Trapezoids, as of a bond: work and rate losses between the step's ends, and what states cost as
-   the mean of what they cost at the strain before and after. */
+/* Trapezoids, as of a bond: work and rate losses between the step's ends; what states cost is that
+   halfway, as the law books it. */
 static void next_row(marching *m, const strained *from, const strained *to, const stressed *after,
                      double time) {
   double *e = m->energy;
@@ -165,8 +165,7 @@ static void next_row(marching *m, const strained *from, const strained *to, cons
   (void)driven_point_step(&m->point, to);
   find_ellipticity(m, to);
   driven_point_accept(&m->point);
-  const double lost = e[DRIVE_ENERGY_STORED] - driven_point_observe(&m->point, from);
-  e[DRIVE_ENERGY_DISSIPATED_DAMAGE] += 0.5 * (lost + after->lost[PL_LOST_TO_STATES]);
+  e[DRIVE_ENERGY_DISSIPATED_DAMAGE] += after->lost[PL_LOST_TO_STATES];
   e[DRIVE_ENERGY_DISSIPATED_DAMPING] +=
       0.5 * (before.lost[PL_LOST_TO_RATES] + after->lost[PL_LOST_TO_RATES]);
   e[DRIVE_ENERGY_EXTERNAL] += work_between(&m->point, &before, after, from, to);

@@ -9,6 +9,7 @@
 #include "generator/lower/lower_inputs.h"
 #include "generator/lower/lowering.h"
 #include "generator/lower/point_inputs.h"
+#include "generator/plan/plan_losses.h"
 #include "generator/plan/plan_roots.h"
 
 enum { MOST_STRAINS = PL_MAX_STRAINS, MOST_TANGENTS = MOST_STRAINS * MOST_STRAINS };
@@ -142,6 +143,28 @@ static bool settle_plane(planner *p, diagnostics *d) {
   return true;
 }
 
+static ir_node with_new_fields(planner *p, ir_node n) {
+  const int fields = p->plan->law->fields.count;
+  ir_node *at_hand = must_alloc(((size_t)fields + 1) * sizeof *at_hand), result;
+  for (int k = 0; k < fields; k++)
+    at_hand[k] = lower_field(p->graph, p->plan->law, k);
+  ir_substitute(p->graph, &n, 1, at_hand, p->step.fields, fields, &result);
+  free(at_hand);
+  return result;
+}
+
+/* Which fields the stress of a step is that of; before the third direction is settled, as what z is
+   depends on them. */
+static force_fields stress_fields(planner *p) {
+  bool is_old = true, is_new = true;
+  for (int k = 0; k < TENSOR_COUNT; k++) {
+    const ir_node used = p->step.sigma[k], old = p->frozen.sigma[k];
+    is_old = is_old && used == old;
+    is_new = is_new && (old == IR_NONE || used == with_new_fields(p, old));
+  }
+  return is_new ? FORCES_OF_NEW : is_old ? FORCES_OF_OLD : FORCES_OF_BOTH;
+}
+
 /* --- energies --------------------------------------------------------------------------------- */
 
 /* stress : strain, of what a kernel reads; shears count twice. */
@@ -199,6 +222,13 @@ static ir_node stored_energy(planner *p) {
   return half(g, contract(p, stress, p->strain));
 }
 
+/* What the stress does at rest as the strain changes: W/m^3. */
+static ir_node still_power(planner *p) {
+  ir_node still[MOST_STRAINS];
+  frozen_stress(p, true, still);
+  return contract(p, still, p->rate);
+}
+
 /* What the stress does that vanishes at zero rate: W/m^3. */
 static ir_node rate_power(planner *p) {
   ir *g = p->graph;
@@ -219,7 +249,8 @@ static void want(planner *p, segment *a, ir_node node, segment_target target, in
 }
 
 typedef struct seen_points {
-  ir_node stored, rate_power;
+  ir_node stored, rate_power, still_power;
+  force_fields stress; /* that of a step */
 } seen_points;
 
 static void plan_step(planner *p, const seen_points *t, segment *a) {
@@ -230,24 +261,23 @@ static void plan_step(planner *p, const seen_points *t, segment *a) {
     want(p, a, p->step.fields[k], TO_FIELD, k);
 }
 
-static ir_node with_new_fields(planner *p, ir_node n) {
-  const int fields = p->plan->law->fields.count;
-  ir_node *at_hand = must_alloc(((size_t)fields + 1) * sizeof *at_hand), result;
-  for (int k = 0; k < fields; k++)
-    at_hand[k] = lower_field(p->graph, p->plan->law, k);
-  ir_substitute(p->graph, &n, 1, at_hand, p->step.fields, fields, &result);
-  free(at_hand);
-  return result;
+/* What is stored with the old fields less what is with the new ones, both at the present strain; and
+   what that difference is halfway instead, where the step's stress works (plan_losses.h). */
+static ir_node lost_to_states(planner *p, const seen_points *t) {
+  ir *g = p->graph;
+  const ir_node kept = with_new_fields(p, t->stored), after = with_new_fields(p, t->still_power);
+  const ir_node lost = kept == t->stored ? ir_constant(g, 0) : ir_sub(g, t->stored, kept);
+  if (t->stress == FORCES_OF_BOTH || after == t->still_power) return lost;
+  const ir_node half_step = ir_mul(g, ir_constant(g, t->stress == FORCES_OF_NEW ? -0.5 : 0.5),
+                                   kinematics_input(g, ENDS_TIME_STEP));
+  return ir_add(g, lost, ir_mul(g, half_step, ir_sub(g, t->still_power, after)));
 }
 
-/* Lost to states: what is stored with the old fields less what is with the new ones, both at the
-   present strain. Lost to rates: their power over the step. */
+/* Lost to rates: their power over the step. */
 static void plan_ledger(planner *p, const seen_points *t, segment *a) {
   ir *g = p->graph;
   plan_step(p, t, a);
-  const ir_node kept = with_new_fields(p, t->stored), zero = ir_constant(g, 0);
-  want(p, a, kept == t->stored ? zero : ir_sub(g, t->stored, kept), TO_DISSIPATED_STATE,
-       PL_LOST_TO_STATES);
+  want(p, a, lost_to_states(p, t), TO_DISSIPATED_STATE, PL_LOST_TO_STATES);
   want(p, a, ir_mul(g, with_new_fields(p, t->rate_power), kinematics_input(g, ENDS_TIME_STEP)),
        TO_DISSIPATED_RATE, PL_LOST_TO_RATES);
 }
@@ -271,7 +301,7 @@ static void improve(planner *p, seen_points *t) {
   ir *g = p->graph;
   const law *l = p->plan->law;
   const size_t most =
-      (size_t)(2 * (LOWERED_FORCES + 1 + l->fields.count + l->outputs.count) + MOST_TANGENTS + 2);
+      (size_t)(2 * (LOWERED_FORCES + 1 + l->fields.count + l->outputs.count) + MOST_TANGENTS + 3);
   ir_node **all = must_alloc(most * sizeof *all), *nodes = must_alloc(most * sizeof *nodes);
   int count = all_of(p, &p->step, all);
   count += all_of(p, &p->frozen, all + count);
@@ -279,6 +309,7 @@ static void improve(planner *p, seen_points *t) {
     all[count++] = &p->tangent[k];
   all[count++] = &t->stored;
   all[count++] = &t->rate_power;
+  all[count++] = &t->still_power;
   for (int k = 0; k < count; k++)
     nodes[k] = *all[k];
   rewrite_reciprocals(g, nodes, count, nodes);
@@ -347,6 +378,7 @@ bool plan_points(kernel_plan *plan, diagnostics *d) {
       !lower_law_varying(plan->law, plan->graph, LOWER_FROZEN, v, plan->memory, &p.frozen, d))
     return false;
   point_at_inputs(&p);
+  const force_fields stress = stress_fields(&p);
   if (plan->dimensions == 3)
     find_tangent(&p, false);
   else if (!settle_plane(&p, d))
@@ -354,7 +386,7 @@ bool plan_points(kernel_plan *plan, diagnostics *d) {
   plan->linear = is_linear(&p);
   plan->stores = plan->law->nonconservative == NULL;
   plan->reads_rates = reads_rates(&p);
-  seen_points seen = {stored_energy(&p), rate_power(&p)};
+  seen_points seen = {stored_energy(&p), rate_power(&p), still_power(&p), stress};
   improve(&p, &seen);
   static void (*const program[])(planner *, const seen_points *,
                                  segment *) = {[PROGRAM_STEP] = plan_step,

@@ -223,7 +223,7 @@ static pl_points view_of(const point_forces *p, const strip *s, point_scratch *o
 static pl_points motion_of(const point_forces *p, const strip *s, point_scratch *own,
                            const point_motion *at) {
   find_strains(p, s, at->displacement, own->strain);
-  if (p->law->reads_rates) find_strains(p, s, at->velocity, own->rate);
+  if (p->law->reads_rates || p->loses) find_strains(p, s, at->velocity, own->rate);
   return view_of(p, s, own, at);
 }
 

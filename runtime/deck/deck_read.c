@@ -523,6 +523,22 @@ static void hint_law(deck_reader *r, const deck_lattice *l, const char *name) {
   diag_hint(r->d, "such as: &material %s = '%s' model = '%s' /", deck_lattice_word(l), name, law);
 }
 
+/* What speaks of meshes and their cracks alone. */
+static void check_meshless(deck_reader *r) {
+  const deck *k = r->k;
+  bool mesh = deck_lacks(k, "mesh");
+  for (int n = 0; n < k->lattice_count; n++)
+    mesh = mesh || deck_lattice_is_mesh(&k->lattices[n]);
+  const deck_item *items[] = {&k->tips.item, &k->newmark.item};
+  for (int n = 0; n < 2 && !mesh; n++)
+    if (items[n]->where.end > 0)
+      diag_report(r->d, DIAG_MISSING_KEY, items[n]->where, "`&%s` is for meshes, and there is none",
+                  n ? "newmark" : "tips");
+  if (!mesh || k->tips.item.where.end == 0 || k->crack_count > 0 || deck_lacks(k, "crack")) return;
+  diag_report(r->d, DIAG_DECK_WARNING, k->tips.item.where,
+              "`&tips` does nothing: the deck has no `&crack`");
+}
+
 static void check_whole(deck_reader *r) {
   const deck *k = r->k;
   const deck_item *simulation = &k->simulation.item;
@@ -532,6 +548,7 @@ static void check_whole(deck_reader *r) {
     diag_report(r->d, DIAG_MISSING_KEY, simulation->where, "the deck has no `&lattice`");
   check_end(r);
   check_quasi_static(r);
+  check_meshless(r);
   check_regional_materials(r);
   take_middles(r);
   for (int i = 0; i < k->lattice_count; i++) {

@@ -404,7 +404,7 @@ static const deck_key_info tips_keys[] = {
      .unit = "m",
      DECK_AT(tips, corner),
      .fallback = "= the mesh's",
-     .doc = "of the rectangle in which cracks grow, the corner of least coordinates"},
+     .doc = "of the rectangle in which cracks grow, the corner of least coordinates; with `size`"},
     {.name = "size",
      .type = DECK_PLACE,
      .unit = "m",
@@ -414,10 +414,20 @@ static const deck_key_info tips_keys[] = {
      .doc = "its extent; tips that leave it are finished"},
 };
 
+static void check_rectangle(deck_reader *r, const namelist_group *from) {
+  const namelist_key *corner = namelist_find(from, "corner"), *size = namelist_find(from, "size");
+  if (!corner == !size) return;
+  diag_report(
+      r->d, DIAG_MISSING_KEY, (corner ? corner : size)->name_where,
+      "the rectangle in which cracks grow has a `corner` and a `size`, but no `%s` is given",
+      corner ? "size" : "corner");
+}
+
 static void check_tips(deck_reader *r, const namelist_group *from, void *into) {
   deck_tips *item = into;
   deck_refuse_both(r, from, "check_every", "check_steps");
   deck_check_places(r, from, &deck_group_tips, 2);
+  check_rectangle(r, from);
   if (!namelist_find(from, "segment")) item->segment = 0.5 * item->half_size;
   const char *const counts[] = {"check_steps", "updates"};
   const int values[] = {item->check_steps, item->updates};

@@ -152,13 +152,27 @@ static void add_force(loads *l, int32_t particle, int component, int cause, doub
                                           .share = share};
 }
 
+/* Nodes have no parts of a row: what one at its end has would be too much. */
+static bool may_be_per_length(const loads *l, int lattice, const deck_force *f, diagnostics *d) {
+  const deck_lattice *of = &l->deck->lattices[lattice];
+  if (!deck_lattice_is_mesh(of)) return true;
+  diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&f->item, "per_length"),
+              "on nodes of the mesh `%s` a force per length would be wrong at the ends of its row",
+              of->name);
+  diag_hint(d,
+            "load a line of the mesh by a `&traction`: its `stress` is the force per length over "
+            "the thickness");
+  return false;
+}
+
 /* [at->count] what each particle has of the force: of a total an equal part, of one per length its
    own length, m. False after a message. */
 static bool find_shares(const loads *l, int lattice, const deck_force *f, const region_sites *at,
                         double *share, diagnostics *d) {
   if (f->per_length)
-    return at->count == 0 || tributary_lengths(l->deck, lattice, l->lattice, at, f->region,
-                                               deck_where(&f->item, "region"), share, d);
+    return at->count == 0 || (may_be_per_length(l, lattice, f, d) &&
+                              tributary_lengths(l->deck, lattice, l->lattice, at, f->region,
+                                                deck_where(&f->item, "region"), share, d));
   for (long p = 0; p < at->count; p++)
     share[p] = 1.0 / (double)at->count;
   return true;

@@ -19,10 +19,11 @@
 
    which is the difference of the two energies at places halfway, up to du^2. With it the imbalance
    falls with the square of the step, also where damage jumps. Laws of families book so
-   (pl_law.ledger; those whose forces are of the old fields with the other sign), laws of bonds on
-   strips and of points of continua without the last term: there the imbalance falls with the step. So it does where rate
-   terms take energy: they know the velocity v- and are booked with it, while they work over the
-   mean of v- and v+; what is missed is about c v^2 dt/4, v being how fast a damper c now moves.
+   (pl_law.ledger; those whose forces are of the old fields with the other sign), and those of
+   continua; laws of bonds on strips without the last term: there the imbalance falls with the step.
+   So it does where rate terms take energy: they know the velocity v- and are booked with it, while
+   they work over the mean of v- and v+; what is missed is about c v^2 dt/4, v being how fast a
+   damper c now moves.
 
    Of a law that does not say what it stores, or of families what it takes, nothing can be balanced:
    dissipated_damage is then the work done against the forces of the bonds, -f (v- + v+)/2 dt for

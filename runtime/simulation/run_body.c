@@ -7,6 +7,7 @@
 #include <strings.h>
 
 #include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
 #include "runtime/analysis/material.h"
 #include "runtime/analysis/stability.h"
 #include "runtime/continuum/line_load.h"
@@ -278,6 +279,40 @@ static bool holds_elements_alone(const run_body *b, const deck *k, diagnostics *
   return good;
 }
 
+/* Nor is what a file has at such a node what it begins with. */
+static bool begins_with_parameters(const run_body *b, const deck_initial *v, int region,
+                                   diagnostics *d) {
+  const region_sites *at = v->value.path && region >= 0 ? &b->loads->regions[region] : NULL;
+  for (long p = 0; at && p < at->count; p++) {
+    const int node = cells_node(b->cells, b->lattice_rows->particle_site[at->particles[p]]);
+    double at_node[2];
+    if (!b->cells->mesh.element_free[node]) continue;
+    mesh_place(&b->cells->mesh, node, at_node);
+    diag_report(
+        d, DIAG_NOT_SUPPORTED, deck_where(&v->item, "file"),
+        "the node at (%.6g, %.6g) mm is element-free: what the file has there is no value of the "
+        "node's",
+        1e3 * at_node[0], 1e3 * at_node[1]);
+    diag_hint(d, "give a formula as `value`, or take finite elements; a run goes on from its "
+                 "checkpoint");
+    return false;
+  }
+  return true;
+}
+
+static bool begins_well(const run_body *b, const deck *k, diagnostics *d) {
+  bool good = true;
+  for (int n = 0; n < k->initial_velocity_count && b->loads; n++) {
+    const deck_initial *v = &k->initial_velocitys[n];
+    good = begins_with_parameters(b, v, deck_find_region(k, v->region), d) && good;
+  }
+  for (int n = 0; n < k->initial_displacement_count && b->loads; n++) {
+    const deck_initial *v = &k->initial_displacements[n];
+    good = begins_with_parameters(b, v, deck_find_region(k, v->region), d) && good;
+  }
+  return good;
+}
+
 /* A traction as it is taken over: what each node bears of a unit stress on the line, m^2. */
 typedef struct taken_traction {
   run_body *b;
@@ -300,6 +335,15 @@ static void take_point(void *context, const double at[2], double area, const poi
                           t->number, area * s->n[n]);
 }
 
+static void warn_of_part(const deck_traction *f, double loaded, const char *name, diagnostics *d) {
+  const double length = pl_hypot(f->to[0] - f->from[0], f->to[1] - f->from[1]);
+  if (!(loaded > 0) || loaded > (1 - 1e-6) * length) return;
+  diag_report(d, DIAG_DECK_WARNING, deck_where(&f->item, "from"),
+              "of this line of %.6g mm only %.6g mm lie in the mesh `%s` and are loaded",
+              1e3 * length, 1e3 * loaded, name);
+  diag_hint(d, "what lies outside of it, or in a hole, bears nothing");
+}
+
 /* False where the line misses the mesh. */
 static bool add_traction(run_body *b, const deck *k, int number, diagnostics *d) {
   const deck_traction *f = &k->forces[number];
@@ -311,6 +355,7 @@ static bool add_traction(run_body *b, const deck *k, int number, diagnostics *d)
     if (t.share[n] != 0)
       loads_add_share(b->loads, cells_particle(b->cells, n), f->component, number, t.share[n]);
   free(t.share);
+  warn_of_part(f, loaded, b->name, d);
   if (loaded > 0) return t.good;
   diag_report(d, DIAG_EMPTY_REGION, deck_where(&f->item, "from"),
               "the line that is loaded lies outside the mesh `%s`", b->name);
@@ -339,7 +384,9 @@ bool run_body_open(run_body *b, const deck *k, rows **built, diagnostics *d) {
   if (!b->fits) return false;
   if (deck_lattice_is_mesh(&k->lattices[b->lattice])) {
     b->cells = cells_new(k, b->lattice, b->lattice_rows, d);
-    if (!b->cells || !holds_elements_alone(b, k, d) || !add_tractions(b, k, d)) return false;
+    if (!b->cells || !holds_elements_alone(b, k, d) || !begins_well(b, k, d) ||
+        !add_tractions(b, k, d))
+      return false;
   }
   for (int n = 0; n < b->law_count; n++)
     law_fits_protection(b->laws[n].law, k, b->lattice, d);

@@ -42,8 +42,27 @@ static const fault faults[] = {
      "&notch mesh = 'plate' shape = 'disc' centre = '34 mm', '35 mm' radius = '3 mm' /\n&tips ",
      true},
     {"other_mesh", "'c'  mesh = 'plate'", "'c'  mesh = 'plat'", false},
+<<<<<<< HEAD
     {"growth_at_rest", "&tips ", "&static /\n&tips ", false},
     {"growth_in_increments", "&tips ", "&relaxation increments = 3 /\n&tips ", false},
+=======
+    {"traction_in_part", "0, '60 mm'  to = '100 mm', '60 mm'", "0, '60 mm'  to = '150 mm', '60 mm'",
+     true},
+    {"force_per_length", "&output ",
+     "&region name = 'top' shape = 'segment' from = 0, '60 mm' to = '100 mm', '60 mm' /\n"
+     "&force region = 'top' component = 'y' per_length = '1 kN/m' /\n&output ",
+     false},
+    {"begun_from_file", "&output ",
+     "&region name = 'tip' shape = 'point' at = 0, '60 mm' /\n"
+     "&initial_velocity region = 'tip' component = 'y' file = 'before.csv:v' /\n&output ",
+     false},
+    {"corner_alone", "check_steps = 10", "check_steps = 10  corner = 0, 0", false},
+    {"size_alone", "check_steps = 10", "check_steps = 10  size = '90 mm', '60 mm'", false},
+    {"tips_without_crack",
+     "&crack     name = 'c'  mesh = 'plate'  points = 0, '31 mm', '30 mm', '31 mm'\n"
+     "           grows = .true.  model = 'lefm' /\n",
+     "", true},
+>>>>>>> statics
     {"damped_backward", "&tips ", "&newmark beta_1 = 0.4 /\n&tips ", false},
 };
 enum { FAULTS = sizeof faults / sizeof *faults };
@@ -90,6 +109,7 @@ static void test_faults(void **state) {
   char *deck = file_text(FOLDER "plate.nml");
   int different = 0;
   assert_non_null(deck);
+  write_text(w, "before.csv", "x [m],y [m],v [m/s]\n0,0.06,1\n0.1,0.06,1\n");
   for (int k = 0; k < FAULTS; k++) {
     write_wrong(w, deck, &faults[k]);
     assert_int_equal(shell(w, "$P check plate.nml 2>&1 >/dev/null"), faults[k].warns ? 0 : 1);

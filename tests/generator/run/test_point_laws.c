@@ -110,6 +110,70 @@ static void nodes_tell(void **state) {
   result_read_close(f);
 }
 
+/* The largest imbalance of a bar that is struck, by the external work. */
+static double imbalance_of(workplace *w, const char *law, const char *safety) {
+  char text[3000], error[1000], unit[64];
+  long samples;
+  double most = 0, work = 0;
+  snprintf(text, sizeof text,
+           "&simulation  end_time = '60 us'  step_safety = %s /\n"
+           "&mesh      name = 'bar'  size = '100 mm', '20 mm'  nodes = 21, 5  thickness = '20 mm'\n"
+           "           method = 'finite_elements' /\n"
+           "&material  mesh = 'bar'  model = './%s' /\n"
+           "&region    name = 'left'  shape = 'segment'  from = 0, 0  to = 0, '20 mm' /\n"
+           "&region    name = 'right'  shape = 'segment'  from = '100 mm', 0  to = '100 mm', "
+           "'20 mm' /\n"
+           "&support   region = 'left'  fix = 'x' /\n"
+           "&drive     region = 'right'  component = 'x'  velocity = '30 m/s'  rise = '10 us' /\n"
+           "&output    result = 'struck.h5'  frames = 1  sample = '3 us' /\n",
+           safety, law);
+  write_text(w, "struck.nml", text);
+  expect(w, "run struck.nml", 0, "written");
+  result_file *f = open_result_of(w, "struck.h5");
+  double *left = result_read_series(f, "energy/imbalance", &samples, unit, sizeof unit, error,
+                                    sizeof error),
+         *done = result_read_series(f, "energy/external", &samples, unit, sizeof unit, error,
+                                    sizeof error),
+         *lost = result_read_series(f, "energy/dissipated_damage", &samples, unit, sizeof unit,
+                                    error, sizeof error);
+  for (long k = 0; k < samples; k++) {
+    most = fmax(most, fabs(left[k]));
+    work = fmax(work, fabs(done[k]));
+  }
+  assert_true(lost[samples - 1] > 0.1 * work);
+  free(left);
+  free(done);
+  free(lost);
+  result_read_close(f);
+  return most / work;
+}
+
+/* Energies of struck bars: to rounding where the stress is that of the new states and the energy
+   quadratic, else the imbalance falls with the square of the step. */
+static void losses_are_of_second_order(void **state) {
+  static const char late[] = "model late\n"
+                             "  law continuum\n"
+                             "  for plane_stress\n"
+                             "  parameter E = 20 [GPa]  in (0, inf)\n"
+                             "  parameter nu = 0.2  in [0, 0.5)\n"
+                             "  parameter rho = 2000 [kg/m^3]  in (0, inf)\n"
+                             "  state peak on point = 0\n"
+                             "  damage omega on point\n"
+                             "  peak = max(previous(peak), norm(strain))\n"
+                             "  omega = 1 - exp(-peak/0.01)\n"
+                             "  stress sigma = (1 - previous(omega))*hooke(strain, E, nu)\n"
+                             "end model\n";
+  workplace *w = *state;
+  write_text(w, "late.plm", late);
+  assert_int_equal(shell(w, "cp " SOURCE_DIR "/tests/generator/laws/hardening_point.plm ."), 0);
+  const double yielding = imbalance_of(w, "hardening_point.plm", "0.8"),
+               coarse = imbalance_of(w, "late.plm", "0.2"),
+               fine = imbalance_of(w, "late.plm", "0.1");
+  print_message("imbalance %.3g; %.3g, %.3g\n", yielding, coarse, fine);
+  assert_true(yielding < 1e-10);
+  assert_true(coarse < 1e-3 && fine < 0.3 * coarse);
+}
+
 /* A yielded bar at rest: what a gauge and nodes show is its force over its section. */
 static void stress_knows_states(void **state) {
   static const char yielding[] =
@@ -215,6 +279,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(same_bits, set_up_workplace, tear_down_workplace),
       cmocka_unit_test_setup_teardown(nodes_tell, set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(losses_are_of_second_order, set_up_workplace,
+                                      tear_down_workplace),
       cmocka_unit_test_setup_teardown(stress_knows_states, set_up_workplace, tear_down_workplace),
       cmocka_unit_test_setup_teardown(nodes_beside_a_hole_tell, set_up_workplace,
                                       tear_down_workplace),

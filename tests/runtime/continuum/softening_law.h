@@ -62,6 +62,7 @@ static void softening_step(const pl_law *law, const double *uniforms, const pl_p
   }
 }
 
+/* With the term that is due to forces halfway (ledger.h). */
 static void softening_ledger(const pl_law *law, const double *uniforms, const pl_points *p) {
   softening_step(law, uniforms, p);
   for (long q = 0; q < p->count; q++) {
@@ -69,7 +70,9 @@ static void softening_ledger(const pl_law *law, const double *uniforms, const pl
     softening_stress(uniforms, p->strain, q, s);
     softening_stress(uniforms, p->strain_rate, q, viscous);
     p->lost[PL_LOST_TO_STATES][q] += (p->new_field[SOFT_OMEGA][q] - p->old_field[SOFT_OMEGA][q]) *
-                                     0.5 * softening_product(s, p->strain, q);
+                                     0.5 *
+                                     (softening_product(s, p->strain, q) -
+                                      p->time_step * softening_product(s, p->strain_rate, q));
     p->lost[PL_LOST_TO_RATES][q] +=
         p->time_step * uniforms[4] * softening_product(viscous, p->strain_rate, q);
   }

@@ -508,6 +508,20 @@ static double imbalance_of(const char *safety) {
   return part;
 }
 
+/* Where rates take nothing a quadratic energy is balanced to rounding, whatever the step: the work of
+   the mean of two stresses is that of the way between. */
+static void states_are_balanced(void **state) {
+  (void)state;
+  small_run r;
+  go(&r, &softening_law,
+     "&simulation end_time = '0.15 ms' step_safety = 0.8 /\n" PLATE
+     "&material mesh = 'plate' model = 'softening' k = 3e-4 /\n");
+  const double external = small_largest(&r, "energy/external");
+  assert_true(small_last(&r, "energy/dissipated_damage") > 0.02 * external);
+  assert_true(small_largest(&r, "energy/imbalance") < 1e-11 * external);
+  small_close(&r);
+}
+
 static void losses_are_booked(void **state) {
   (void)state;
   const double coarse = imbalance_of("0.4"), middle = imbalance_of("0.2"),
@@ -715,6 +729,7 @@ int main(void) {
                                      cmocka_unit_test(quasi_static_runs_agree),
                                      cmocka_unit_test(threads_change_no_bit),
                                      cmocka_unit_test(a_resumed_run_is_the_same),
+                                     cmocka_unit_test(states_are_balanced),
                                      cmocka_unit_test(losses_are_booked),
                                      cmocka_unit_test(nodes_show_states),
                                      cmocka_unit_test(dampers_shorten_the_step),
