@@ -15,6 +15,7 @@
 #include "generator/run/run_cracks.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/uniform_strain.h"
+#include "runtime/continuum/point_forces.h"
 #include "runtime/continuum/tips.h"
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/filling/bar_placing.h"

@@ -3,11 +3,11 @@
 #define PERILAT_RUNTIME_BAD_STATE_H
 
 #include "dsl/base/c_linkage.h"
-#include "runtime/continuum/point_forces.h"
 #include "runtime/lattice/rows.h"
 
 C_LINKAGE_BEGIN
 
+struct point_state; /* runtime/continuum/point_forces.h */
 struct run_body;
 struct run_clock;
 
@@ -37,9 +37,9 @@ typedef struct bad_state {
   const double *parameters;    /* of the law in that bond; NULL without a bond */
   const bad_neighbour *family; /* of the particle; the values are the simulation's */
   int family_count;
-  const double *own_fields; /* [law's fields] those on particles: of the particle */
-  const point_state *point; /* of a mesh; else NULL; the values are the simulation's */
-  const char *what;         /* "not a number", "runaway velocity", "energy from nothing" */
+  const double *own_fields;        /* [law's fields] those on particles: of the particle */
+  const struct point_state *point; /* of a mesh; else NULL; the values are the simulation's */
+  const char *what;                /* "not a number", "runaway velocity", "energy from nothing" */
 } bad_state;
 
 typedef struct bad_search bad_search;

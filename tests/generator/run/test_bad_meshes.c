@@ -42,10 +42,8 @@ static const fault faults[] = {
      "&notch mesh = 'plate' shape = 'disc' centre = '34 mm', '35 mm' radius = '3 mm' /\n&tips ",
      true},
     {"other_mesh", "'c'  mesh = 'plate'", "'c'  mesh = 'plat'", false},
-<<<<<<< HEAD
     {"growth_at_rest", "&tips ", "&static /\n&tips ", false},
     {"growth_in_increments", "&tips ", "&relaxation increments = 3 /\n&tips ", false},
-=======
     {"traction_in_part", "0, '60 mm'  to = '100 mm', '60 mm'", "0, '60 mm'  to = '150 mm', '60 mm'",
      true},
     {"force_per_length", "&output ",
@@ -62,7 +60,6 @@ static const fault faults[] = {
      "&crack     name = 'c'  mesh = 'plate'  points = 0, '31 mm', '30 mm', '31 mm'\n"
      "           grows = .true.  model = 'lefm' /\n",
      "", true},
->>>>>>> statics
     {"damped_backward", "&tips ", "&newmark beta_1 = 0.4 /\n&tips ", false},
 };
 enum { FAULTS = sizeof faults / sizeof *faults };
