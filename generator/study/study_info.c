@@ -12,6 +12,7 @@
 #include "generator/study/study_table.h"
 #include "runtime/base/ordinary_file.h"
 #include "runtime/result/hdf5_tools.h"
+#include "runtime/result/sealed_file.h"
 
 enum { MOST_ROWS = 100000, MOST_COLUMNS = 10000 };
 
@@ -21,18 +22,20 @@ typedef struct table_file {
   bool good;
 } table_file;
 
-/* A pipe would keep HDF5 waiting. */
-static bool is_ordinary(const char *path) {
+/* A pipe would keep HDF5 waiting. What is sealed is a result: whether it is whole its own reader asks,
+   before the library reads anything. */
+static bool may_be_table(const char *path) {
   const char *why;
   const int handle = ordinary_file_open(path, O_RDONLY, &why);
+  const bool good = handle >= 0 && sealed_file_state(handle) == SEAL_NONE;
   if (handle >= 0) close(handle);
-  return handle >= 0;
+  return good;
 }
 
 /* Closed by H5Fclose; negative: it is none. */
 static hid_t open_table(const char *path) {
   h5_quiet();
-  if (!is_ordinary(path)) return -1;
+  if (!may_be_table(path)) return -1;
   const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file < 0) return file;
   if (h5_stays_inside(file) && h5_is_study_table(file)) return file;
