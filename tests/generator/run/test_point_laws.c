@@ -64,9 +64,11 @@ static void same_bits(void **state) {
   expect(w, "run bar.nml --interpret --set output.result=other.h5", 0, "other.h5");
   expect_same_results(w, "one.h5", "other.h5");
   expect(w, "run bar.nml --check-kernel --set output.result=other.h5", 0, "the same bits");
+#if !defined(__SANITIZE_ADDRESS__) /* a solver's libraries need the sanitizer's */
   expect(w, "build bar.nml -o bar", 0, "written");
   assert_int_equal(shell(w, "./bar --set output.result=other.h5"), 0);
   expect_same_results(w, "one.h5", "other.h5");
+#endif
 }
 
 /* Nodes between broken points are broken; what all have lost is the ledger's. */
