@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "dsl/base/elementary.h"
 #include "generator/run/print_quantity.h"
 #include "runtime/continuum/cells.h"
 
@@ -66,8 +67,8 @@ static void announce_crack(const run *r, const tips *t, const deck_crack *k) {
   int count = 0;
   double length = 0;
   for (int n = 1; n < k->point_count; n++)
-    length +=
-        hypot(k->points[2 * n] - k->points[2 * n - 2], k->points[2 * n + 1] - k->points[2 * n - 1]);
+    length += pl_hypot(k->points[2 * n] - k->points[2 * n - 2],
+                       k->points[2 * n + 1] - k->points[2 * n - 1]);
   for (int n = 0; n < t->count; n++) {
     if (t->items[n].of != k) continue;
     length = t->items[n].now.length; /* outside of holes */

@@ -44,6 +44,7 @@ typedef struct simulation_law {
 
 /* NULL with all diagnostics when the deck does not fit its lattices or the given step is unstable,
    and where `d` has errors already; what items that a deck lacks would have to do with is not said.
+   laws: of each interaction of the deck, then of each crack (`law` NULL where it does not grow).
    Deck, laws and parameters must stay until the simulation is freed. With an automatic step the run
    ends with the first step at or past end_time. */
 simulation *simulation_new(const deck *k, const simulation_law *laws, diagnostics *d);

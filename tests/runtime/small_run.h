@@ -11,13 +11,14 @@
 #include "runtime/simulation/simulation.h"
 #include "tests/runtime/elastic_law.h"
 
+enum { SMALL_CRACKS = 4 };
 typedef struct small_run {
   arena *memory;
   source_set sources;
   diagnostics said;
   const deck *deck;
-  double parameters[16]; /* of any law by hand */
-  simulation_law law;
+  double parameters[16];                 /* of any law by hand */
+  simulation_law laws[1 + SMALL_CRACKS]; /* cracks have none */
   simulation *simulation;
 } small_run;
 
@@ -35,8 +36,8 @@ static inline void small_open(small_run *r, const pl_law *law, const char *text)
   small_read(r, text);
   if (!r->deck || !material_parameters(&r->deck->materials[0], law, r->parameters, &r->said))
     return;
-  r->law = (simulation_law){.law = law, .parameters = r->parameters};
-  r->simulation = simulation_new(r->deck, &r->law, &r->said);
+  r->laws[0] = (simulation_law){.law = law, .parameters = r->parameters};
+  r->simulation = simulation_new(r->deck, r->laws, &r->said);
 }
 
 static inline void small_close(small_run *r) {

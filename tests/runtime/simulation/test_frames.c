@@ -164,7 +164,7 @@ static void every_field_of_the_table_can_be_stored(void **state) {
   assert_true(frames_check(&without.output, &beam, 1, &said));
   assert_int_equal(said.errors, 1);
   r.said.errors = 0;
-  r.simulation = simulation_new(&without, &r.law, &r.said);
+  r.simulation = simulation_new(&without, r.laws, &r.said);
   assert_non_null(r.simulation);
   const frame_field *stored;
   assert_int_equal(simulation_frame_fields(r.simulation, &stored), COUNT + 1); /* and omega */
