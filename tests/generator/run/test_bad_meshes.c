@@ -37,6 +37,7 @@ static const fault faults[] = {
     {"half_a_node", "nodes = 41, 25", "nodes = 41.5, 25", false},
     {"empty_zone", "corner = 0, 0  size = '100 mm', '3 mm'",
      "corner = '1 m', 0  size = '100 mm', '3 mm'", false},
+    {"short_leg", "'30 mm', '31 mm'", "'30 mm', '31 mm', '30.5 mm', '31.5 mm'", true},
     {"wide_box", "half_size = 3", "half_size = 30", true},
     {"box_in_hole", "&tips ",
      "&notch mesh = 'plate' shape = 'disc' centre = '34 mm', '35 mm' radius = '3 mm' /\n&tips ",

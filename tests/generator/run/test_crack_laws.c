@@ -102,6 +102,18 @@ static void tips_end_with_the_mesh(void **state) {
       shell(w, "$P export plate.h5 --history c/x | awk -F, 'NR > 1 && $2 > 0.1 {exit 1}'"), 0);
 }
 
+/* A crack drawn in two legs on one line is the same crack. */
+static void legs_in_line_are_one(void **state) {
+  workplace *w = *state;
+  assert_int_equal(
+      shell(w, "sed -i \"s/K_Ic = '0.1/K_Ic = '100/\" plate.nml && sed \"s/points = 0, '31 mm', "
+               "/&'29.7 mm', '31 mm', /\" plate.nml > legs.nml"),
+      0);
+  expect(w, "run plate.nml --set output.result=one.h5", 0, "at the last look K_I = ");
+  expect(w, "run legs.nml --set output.result=two.h5", 0, "at the last look K_I = ");
+  expect(w, "compare one.h5 two.h5 --history c/K_I --tolerance 1e-6", 0, "same");
+}
+
 /* A step that was stable before the crack had grown. */
 static void growth_may_ask_for_shorter_steps(void **state) {
   workplace *w = *state;
@@ -122,6 +134,7 @@ int main(void) {
                                      T(kernels_are_compared),
                                      T(monitors_watch_tips),
                                      T(tips_end_with_the_mesh),
-                                     T(growth_may_ask_for_shorter_steps)};
+                                     T(growth_may_ask_for_shorter_steps),
+                                     T(legs_in_line_are_one)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
