@@ -67,26 +67,34 @@ static along_z along_z_of(planner *p, ir_node sigma_zz) {
   return a;
 }
 
-/* A slope to divide by: where it is not positive (a point that has broken, the apex of a cone), that
-   of the states at hand, and without that one either 1 Pa. What is the same everywhere stays. */
-static ir_node safe_slope(planner *p, const along_z *a, const along_z *at_hand) {
+/* That of the states at hand, where it is known; else 1 Pa. */
+static ir_node slope_at_hand(planner *p, const along_z *at_hand) {
   ir *g = p->graph;
-  const ir_node zero = ir_constant(g, 0), one = ir_constant(g, 1);
+  const ir_node one = ir_constant(g, 1), slope = at_hand->slope;
+  if (!at_hand->affine) return one;
+  if (ir_is_uniform(g, slope)) return slope;
+  return ir_select(g, ir_binary(g, IR_LT, ir_constant(g, 0), slope), slope, one);
+}
+
+/* A slope to divide by in Newton's step k. Where its own is next to nothing or negative (a point that
+   has broken, the apex of a cone) it goes on by that of the states at hand, each time twice as far.
+   What is the same everywhere stays. */
+static ir_node safe_slope(planner *p, const along_z *a, const along_z *at_hand, int k) {
+  static const double NOTHING = 1e-3; /* of the slope of the states at hand */
+  ir *g = p->graph;
   if (ir_is_uniform(g, a->slope)) return a->slope;
-  const ir_node other = at_hand == a || !at_hand->affine ? one
-                        : ir_is_uniform(g, at_hand->slope)
-                            ? at_hand->slope
-                            : ir_select(g, ir_binary(g, IR_LT, zero, at_hand->slope),
-                                        at_hand->slope, one);
-  return ir_select(g, ir_binary(g, IR_LT, zero, a->slope), a->slope, other);
+  const ir_node other = slope_at_hand(p, at_hand),
+                least = ir_mul(g, ir_constant(g, at_hand->affine ? NOTHING : 0), other);
+  return ir_select(g, ir_binary(g, IR_LT, least, a->slope), a->slope,
+                   ir_mul(g, ir_constant(g, 1.0 / (double)(1 << k)), other));
 }
 
 /* z of Newton's method after so many steps from z = `from`; IR_NONE: too large to compile. */
 static ir_node newton(planner *p, const along_z *a, const along_z *at_hand, ir_node from, int steps,
                       diagnostics *d) {
   ir *g = p->graph;
-  const ir_node next = ir_sub(g, p->z, ir_div(g, a->stress, safe_slope(p, a, at_hand)));
   for (int k = 0; k < steps; k++) {
+    const ir_node next = ir_sub(g, p->z, ir_div(g, a->stress, safe_slope(p, a, at_hand, k)));
     ir_substitute(g, &next, 1, &p->z, &from, 1, &from);
     if (ir_count(g) <= MOST_NODES) continue;
     diag_report(d, DIAG_NOT_SUPPORTED, p->plan->law->tree->name_where,
