@@ -350,9 +350,11 @@ static ir_node lower_builtin_call(lowering *c, const expr *e) {
 static components lower_of_family(lowering *c, const expr *e) {
   enum { MOST_ARGUMENTS = TENSOR_COUNT };
   components a[MOST_ARGUMENTS] = {lower_value(c, e->arguments[0].value)};
-  const int count = e->builtin == FUNCTION_PRINCIPAL ? 1 : e->argument_count;
+  const bool which = e->builtin == FUNCTION_PRINCIPAL || e->builtin == FUNCTION_PRINCIPAL_DIRECTION;
+  const int count = which ? 1 : e->argument_count;
   for (int k = 1; k < count && !c->failed; k++)
-    a[k] = scalar(lower_expr(c, e->arguments[k].value));
+    a[k] = e->builtin == FUNCTION_PRODUCT ? lower_value(c, e->arguments[k].value)
+                                          : scalar(lower_expr(c, e->arguments[k].value));
   return c->failed ? a[0] : lower_family_call(c, e, a);
 }
 

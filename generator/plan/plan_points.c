@@ -229,6 +229,34 @@ static force_fields stress_fields(planner *p) {
   return is_new ? FORCES_OF_NEW : is_old ? FORCES_OF_OLD : FORCES_OF_BOTH;
 }
 
+/* Where a point has failed nothing acts and nothing is stored, and its outputs are those without
+   stress. */
+static void fail_points(planner *p) {
+  ir *g = p->graph;
+  if (!p->plan->law->failed) return;
+  const int at = p->plan->law->failed->index;
+  const ir_node zero = ir_constant(g, 0), one = ir_constant(g, 1);
+  lowered_law *both[] = {&p->step, &p->frozen};
+  for (int k = 0; k < 2; k++) {
+    const ir_node failed = k == 0 ? p->step.fields[at] : lower_field(g, p->plan->law, at);
+    const ir_node gone = ir_binary(g, IR_LE, one, failed);
+    ir_node from[TENSOR_COUNT], to[TENSOR_COUNT];
+    int count = 0;
+    for (int c = 0; c < TENSOR_COUNT; c++) {
+      const ir_node acts = both[k]->sigma[c];
+      both[k]->sigma[c] = ir_select(g, gone, zero, acts);
+      if (ir_is_uniform(g, acts)) continue;
+      from[count] = acts;
+      to[count++] = both[k]->sigma[c];
+    }
+    ir_substitute(g, both[k]->outputs, p->plan->law->outputs.count, from, to, count,
+                  both[k]->outputs);
+    if (both[k]->W != IR_NONE) both[k]->W = ir_select(g, gone, zero, both[k]->W);
+    for (int c = 0; c < p->strains * p->strains && k == 0; c++)
+      p->tangent[c] = ir_select(g, gone, zero, p->tangent[c]);
+  }
+}
+
 /* --- energies --------------------------------------------------------------------------------- */
 
 /* stress : strain, of what a kernel reads; shears count twice. */
@@ -442,11 +470,13 @@ bool plan_points(kernel_plan *plan, diagnostics *d) {
       !lower_law_varying(plan->law, plan->graph, LOWER_FROZEN, v, plan->memory, &p.frozen, d))
     return false;
   point_at_inputs(&p);
-  const force_fields stress = stress_fields(&p);
+  const force_fields alive = stress_fields(&p),
+                     stress = plan->law->failed && alive == FORCES_OF_OLD ? FORCES_OF_BOTH : alive;
   if (plan->dimensions == 3)
     find_tangent(&p, false);
   else if (!settle_plane(&p, d))
     return false;
+  fail_points(&p);
   plan->linear = is_linear(&p);
   plan->stores = plan->law->nonconservative == NULL;
   plan->reads_rates = reads_rates(&p);
