@@ -19,7 +19,8 @@ typedef struct plot_crack {
 typedef struct plot_mesh {
   char name[80];
   long cell_count;
-  int32_t *cells; /* [cell_count][4] particles, counter-clockwise */
+  long all_count; /* with those that have died, which stand behind */
+  int32_t *cells; /* [all_count][4] particles, counter-clockwise */
   double size;    /* m: a side of a cell of the same area */
   crack_lines lines;
 } plot_mesh;
