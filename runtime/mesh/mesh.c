@@ -21,6 +21,8 @@ void mesh_open(mesh *m, const int nodes[2], const double corner[2], const double
   m->cut = must_calloc(cells, 1);
   m->cell = must_alloc(cells);
   m->element_gauss = must_alloc(cells);
+  m->mean_dilatation = must_calloc(cells, 1);
+  m->hourglass = must_calloc(cells, sizeof *m->hourglass);
   memset(m->element_free, 1, count);
   memset(m->cell, CELL_ELEMENT_FREE, cells);
   memset(m->element_gauss, 2, cells);
@@ -36,6 +38,8 @@ void mesh_close(mesh *m) {
   free(m->cut);
   free(m->cell);
   free(m->element_gauss);
+  free(m->mean_dilatation);
+  free(m->hourglass);
   crack_lines_close(&m->cracks);
   holes_close(&m->holes);
 }
