@@ -7,6 +7,7 @@
 
 #include "dsl/base/elementary.h"
 #include "generator/drive/explain_bad.h"
+#include "generator/drive/explain_point.h"
 #include "generator/kernel/document.h"
 #include "generator/run/bad_bond.h"
 #include "generator/run/moment.h"
@@ -476,13 +477,33 @@ void describe_monitors(const run *r, char *text, size_t size) {
 /* The bond at fault, for `perilat drive`. */
 static void write_bad_bond(const run *r, const bad_state *b) {
   char path[4200], error[ERROR_LENGTH + 4200];
-  bad_bond_path(r->result_path, path, sizeof path);
+  bad_bond_path(r->result_path, b, path, sizeof path);
   if (bad_bond_write(path, r->options->deck_path, r->model_of[b->interaction],
                      &r->laws[b->interaction], simulation_rows(r->simulation, b->body), b, error,
                      sizeof error))
     fprintf(stderr, "  this bond alone: perilat drive %s\n", path);
   else
     fprintf(stderr, "  %s\n", error);
+}
+
+static void write_bad_point(const run *r, const bad_state *b) {
+  char path[4200], error[ERROR_LENGTH + 4200];
+  bad_bond_path(r->result_path, b, path, sizeof path);
+  if (bad_point_write(path, r->options->deck_path, r->model_of[b->interaction],
+                      &r->laws[b->interaction], r->deck->lattices[b->body].setting, b, error,
+                      sizeof error))
+    fprintf(stderr, "  this point alone: perilat drive %s\n", path);
+  else
+    fprintf(stderr, "  %s\n", error);
+}
+
+/* What its law says there, line by line. */
+static void explain_bad_point(const run *r, const bad_state *b) {
+  const simulation_law *l = &r->laws[b->interaction];
+  const point_state *p = b->point;
+  const asked_point at = {p->strain, p->field, p->size, simulation_step_limit(r->simulation)->step};
+  if (r->model_of[b->interaction])
+    explain_point(r->model_of[b->interaction]->plan, l->parameters, &at, stderr);
 }
 
 static void print_fields(const pl_law *kernel, const double *values, bool on_particles) {
@@ -615,7 +636,11 @@ void report_bad(const run *r) {
       r->deck->relaxation.increments > 0 ? "after " : "", moment(r, b.time, when), b.particle,
       rows_place_text(simulation_rows(r->simulation, b.body)->dimensions, b.place, place_text));
   if (b.family) print_family(r, &b);
-  if (b.point) print_point(r, &b);
+  if (b.point) {
+    print_point(r, &b);
+    explain_bad_point(r, &b);
+    write_bad_point(r, &b);
+  }
   if (b.bond_particle >= 0) {
     fprintf(stderr,
             "  bond to particle %ld: stretch %.6g, stretch rate %.6g 1/s, end rotations %.6g and "

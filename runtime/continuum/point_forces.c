@@ -542,6 +542,7 @@ static void take_point(const point_forces *p, const strip *s, const point_scratc
     out->strain[c] = own->strain[c][k];
   for (int c = 0; c < STRESSES; c++)
     out->stress[c] = own->stress[c][k];
+  out->size = p->size[s->at + k];
   for (int f = 0; f < p->law->field_count; f++)
     out->field[f] = own->old_field[f][k];
 }

@@ -98,6 +98,7 @@ typedef struct point_state {
   int cell[2];                 /* i, j */
   double at[2];                /* m */
   double strain[3], stress[4]; /* Pa */
+  double size;                 /* m: of its cell */
   double *field;               /* [fields] of before the step; the caller's memory */
 } point_state;
 /* Of the points that push a node that with the largest stress, or without a finite one: its square,
