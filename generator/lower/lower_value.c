@@ -276,13 +276,18 @@ static components lower_user_call(lowering *c, const expr *e) {
   return result;
 }
 
-/* previous(x): the value at the end of the last step, of x[j] and x'[j] the neighbour's. */
+/* previous(x): the value at the end of the last step, of x[j] and x'[j] the neighbour's. Of a flow
+   that is solved for, x itself moves in its guard and previous(x) does not. */
 static components lower_previous(lowering *c, const expr *e) {
   const expr *name = e->arguments[0].value;
   const symbol *s = name->symbol;
   if (!s || (s->kind != SYMBOL_STATE && s->kind != SYMBOL_DAMAGE))
     return lower_failed_value(c, e->where, "`previous` asks for a state or a damage");
-  return of_whom(c, name, lower_field_value(c, s, true));
+  components old = lower_field_value(c, s, true);
+  for (int k = 0; k < old.count && c->mode != LOWER_FROZEN && lower_is_returned(s); k++)
+    if (ir_operation(c->graph, old.of[k]) == IR_INPUT)
+      old.of[k] = lower_kept_field(c->graph, c->law, s->index + k);
+  return of_whom(c, name, old);
 }
 
 /* diff(f, x): x is a parameter, a quantity, a state or a damage, all of them inputs here. */
