@@ -122,6 +122,7 @@ cells *cells_new(const deck *k, int lattice, rows *nodes, diagnostics *d) {
 void cells_free(cells *c) {
   if (!c) return;
   if (c->has_stencil) node_stencil_close(&c->stencil);
+  if (c->has_matrix) node_matrix_close(&c->matrix);
   point_forces_free(c->by_points);
   integration_points_close(&c->points);
   mesh_close(&c->mesh);
@@ -138,7 +139,9 @@ static plane_stiffness tangent_at_rest(const cells *c, const double *parameters,
 void cells_take_law(cells *c, const pl_law *law, const double *parameters) {
   c->law = law;
   c->stiffness = tangent_at_rest(c, parameters, false);
-  c->has_stencil = law->linear;
+  c->has_stencil = law->linear && !c->mesh.lists;
+  c->has_matrix = law->linear && c->mesh.lists;
+  if (c->has_matrix) node_matrix_open(&c->matrix, &c->mesh, &c->points, &c->stiffness, NULL);
   if (c->has_stencil) node_stencil_open(&c->stencil, &c->mesh, &c->points, &c->stiffness, NULL);
 }
 
@@ -146,6 +149,13 @@ void cells_take_law(cells *c, const pl_law *law, const double *parameters) {
 static double highest(const cells *c, const plane_stiffness *law, const double *mass,
                       const unsigned char *held) {
   node_stencil k;
+  if (c->mesh.lists) {
+    node_matrix of;
+    node_matrix_open(&of, &c->mesh, &c->points, law, NULL);
+    const double omega = frequency_limit_of_matrix(&of, mass, held);
+    node_matrix_close(&of);
+    return omega;
+  }
   node_stencil_open(&k, &c->mesh, &c->points, law, NULL);
   const double omega = frequency_limit(&k, mass, held);
   node_stencil_close(&k);
@@ -167,8 +177,9 @@ void cells_step_limit(const cells *c, const double *parameters, const unsigned c
     mass[node] = c->nodes->site_mass[c->nodes->particle_site[p]];
     memcpy(held_nodes + 2 * node, held + 2 * p, 2);
   }
-  const double omega = c->has_stencil ? frequency_limit(&c->stencil, mass, held_nodes)
-                                      : highest(c, &c->stiffness, mass, held_nodes);
+  const double omega = c->has_stencil  ? frequency_limit(&c->stencil, mass, held_nodes)
+                       : c->has_matrix ? frequency_limit_of_matrix(&c->matrix, mass, held_nodes)
+                                       : highest(c, &c->stiffness, mass, held_nodes);
   if (c->law->reads_rates) {
     const plane_stiffness viscosity = tangent_at_rest(c, parameters, true);
     const double root = highest(c, &viscosity, mass, held_nodes);
@@ -214,6 +225,8 @@ static void find_resistance(sweep *w, int block, bool seen) {
   const point_motion motion = motion_of(w);
   if (e->of->by_points)
     point_forces_find(e->of->by_points, block, b->first, b->last, &motion, seen);
+  else if (e->of->has_matrix)
+    node_matrix_multiply(&e->of->matrix, motion.displacement, e->resisting, b->first, b->last);
   else
     node_stencil_multiply(&e->of->stencil, motion.displacement, e->resisting, b->first, b->last);
 }
@@ -396,7 +409,8 @@ static double output_at(const sweep *w, int number, int point) {
   point_shape s;
   double gradient[2][2], strain[3], *observed = own(w)->observed;
   shape_functions(&c->mesh, c->points.cell[point], at, &s);
-  mesh_field(&s, &c->stencil.layout, motion_of(w).displacement, NULL, gradient);
+  const node_layout l = node_layout_of(c->mesh.nodes, c->mesh.support);
+  mesh_field(&s, &l, motion_of(w).displacement, NULL, gradient);
   mesh_strain(gradient, strain);
   point_law_observe(own(w)->one, strain, mesh_cell_size(&c->mesh, c->points.cell[point]), observed);
   return observed[1 + number];
@@ -405,14 +419,15 @@ static double output_at(const sweep *w, int number, int point) {
 /* Means over the points of the cells around the nodes. */
 static void show_linear(const sweep *w, int number, double *values) {
   const cells *c = own(w)->of;
+  const node_layout l = node_layout_of(c->mesh.nodes, c->mesh.support);
   double *area = must_calloc((size_t)w->lattice->size, sizeof *area);
   memset(values, 0, (size_t)w->lattice->size * sizeof *values);
   for (int n = 0; n < c->points.count; n++) {
     const double value = output_at(w, number, n);
-    int corner[4];
-    mesh_corners(&c->mesh, c->points.cell[n], corner);
-    for (int k = 0; k < 4; k++) {
-      const long site = node_layout_at(&c->stencil.layout, corner[k]);
+    int corner[ELEMENT_MOST_NODES];
+    const int corners = mesh_cell_nodes(&c->mesh, c->points.cell[n], corner);
+    for (int k = 0; k < corners; k++) {
+      const long site = node_layout_at(&l, corner[k]);
       values[site] += c->points.area[n] * value;
       area[site] += c->points.area[n];
     }
@@ -575,5 +590,6 @@ bool cells_states_near(const cells *c, const double at[2], double *field) {
 
 double cells_bytes(const cells *c) {
   return (c->has_stencil ? (double)sizeof(double) * (double)c->stencil.block_count : 0) +
+         (c->has_matrix ? (double)node_matrix_bytes(&c->matrix) : 0) +
          (c->by_points ? (double)point_forces_bytes(c->by_points) : 0);
 }

@@ -14,6 +14,7 @@
 
 #include "dsl/base/diagnostics.h"
 #include "runtime/analysis/step_limit.h"
+#include "runtime/continuum/node_matrix.h"
 #include "runtime/continuum/node_stencil.h"
 #include "runtime/continuum/point_forces.h"
 #include "runtime/continuum/tips.h"
@@ -35,8 +36,9 @@ typedef struct cells {
   integration_points points;
   plane_stiffness stiffness; /* at rest */
   node_stencil stencil;
-  bool has_stencil;        /* of a linear law */
-  point_forces *by_points; /* of any other law, once the run has begun; else NULL */
+  node_matrix matrix;           /* of a mesh of lists in its place */
+  bool has_stencil, has_matrix; /* of a linear law one of them */
+  point_forces *by_points;      /* of any other law, once the run has begun; else NULL */
   cells_stiffened stiffened;
   tips *tips; /* of its cracks; NULL without */
 } cells;

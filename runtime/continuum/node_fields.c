@@ -14,7 +14,7 @@ void node_field_values(const cells *c, const double *const planes[2], double *va
   const node_layout l = layout_of(c);
   for (int n = 0; n < mesh_node_count(&c->mesh); n++) {
     const int32_t particle = c->nodes->site_particle[node_layout_at(&l, n)];
-    int around[4];
+    int around[MESH_MOST_AROUND];
     double at[2];
     point_shape s;
     if (particle < 0) continue;
@@ -28,7 +28,7 @@ void node_field_values(const cells *c, const double *const planes[2], double *va
 }
 
 /* Functions of element-free cells are the same in all of them: one speaks for all. */
-static int cells_that_differ(const mesh *m, int node, int around[4]) {
+static int cells_that_differ(const mesh *m, int node, int around[MESH_MOST_AROUND]) {
   const int count = mesh_cells_around(m, node, around);
   bool alike = count > 0;
   for (int n = 0; n < count; n++)
@@ -39,7 +39,7 @@ static int cells_that_differ(const mesh *m, int node, int around[4]) {
 /* The mean over the cells around the node; false: there are none. */
 static bool strain_at(const cells *c, const node_layout *l, const double *const displacement[2],
                       int node, double strain[3]) {
-  int around[4];
+  int around[MESH_MOST_AROUND];
   double there[2];
   const int count = cells_that_differ(&c->mesh, node, around);
   mesh_place(&c->mesh, node, there);
@@ -78,7 +78,7 @@ void node_field_stress(const cells *c, const double *parameters,
   for (int n = 0; n < mesh_node_count(&c->mesh); n++) {
     const long site = node_layout_at(&l, n);
     double strain[3], here[4] = {NAN, NAN, NAN, NAN};
-    int around[4];
+    int around[MESH_MOST_AROUND];
     if (c->nodes->site_particle[site] < 0) continue;
     if (!cells_mean_stress(c, n, here) && strain_at(c, &l, displacement, n, strain) &&
         mesh_cells_around(&c->mesh, n, around) > 0)

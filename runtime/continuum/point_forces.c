@@ -108,7 +108,7 @@ void point_forces_rest(const mesh *m, const pl_law *law, const double *parameter
   const double rest[STRAINS] = {0};
   point_law *one = point_law_new(law, parameters);
   double most = -INFINITY;
-  for (int cell = 0; cell < mesh_cell_count(m) && (m->mapped || cell == 0); cell++) {
+  for (int cell = 0; cell < mesh_cell_count(m) && (m->mapped || m->lists || cell == 0); cell++) {
     double here[STRAINS][STRAINS];
     if (viscous)
       point_law_viscosity(one, mesh_cell_size(m, cell), here);
@@ -427,7 +427,7 @@ static void add_cell(const point_forces *p, const double *plane, int cell, doubl
 }
 
 double point_forces_mean(const point_forces *p, const double *plane, int node) {
-  int cell[4];
+  int cell[MESH_MOST_AROUND];
   const int count = mesh_cells_around(p->of, node, cell);
   double sum = 0, volume = 0;
   for (int n = 0; n < count; n++)
@@ -436,15 +436,15 @@ double point_forces_mean(const point_forces *p, const double *plane, int node) {
 }
 
 static int corners_there(const mesh *m, int cell) {
-  int corner[4], count = 0;
-  mesh_corners(m, cell, corner);
-  for (int k = 0; k < 4; k++)
+  int corner[ELEMENT_MOST_NODES], count = 0;
+  const int nodes = mesh_cell_nodes(m, cell, corner);
+  for (int k = 0; k < nodes; k++)
     count += !m->gone[corner[k]];
   return count;
 }
 
 double point_forces_share(const point_forces *p, const double *plane, int node) {
-  int cell[4];
+  int cell[MESH_MOST_AROUND];
   const int count = mesh_cells_around(p->of, node, cell);
   double share = 0;
   for (int n = 0; n < count; n++) {

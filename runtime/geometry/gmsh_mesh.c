@@ -214,7 +214,7 @@ static void number_cells(maker *k) {
 }
 
 static void places_of(const gmsh_mesh *m, int cell, double corner[][2]) {
-  for (int q = 0; q < m->nodes[cell]; q++)
+  for (int q = 0; q < m->nodes[cell] && q < ELEMENT_MOST_NODES; q++)
     memcpy(corner[q], m->at[m->cell[cell][q]], sizeof corner[q]);
 }
 
@@ -300,6 +300,14 @@ static bool cell_is_sound(const maker *k, int c) {
                       ? "let Gmsh mend it (Mesh.HighOrderOptimize = 2), or take a finer mesh there"
                       : "look at the mesh in Gmsh (Tools, Statistics, quality), and mesh it anew");
   return false;
+}
+
+static void find_area(gmsh_mesh *m) {
+  for (int c = 0; c < m->cell_count; c++) {
+    double corner[ELEMENT_MOST_NODES][2];
+    places_of(m, c, corner);
+    m->area += element_area(m->nodes[c], (const double(*)[2])corner);
+  }
 }
 
 static bool cells_are_sound(const maker *k) {
@@ -608,6 +616,7 @@ static bool make(maker *k, span where) {
   const bool good = sides_fit(k, sides, count);
   if (good) {
     find_least(k->m, sides, count);
+    find_area(k->m);
     take_sides(k, sides, count, line);
     take_groups(k, line);
     warn_of_twins(k);

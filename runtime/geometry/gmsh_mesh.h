@@ -33,7 +33,8 @@ typedef struct gmsh_mesh {
   int64_t *cell_tag;
   gmsh_side *sides;
   gmsh_group *groups;
-  double least; /* m: the shortest side of a cell */
+  double least; /* m: the shortest side of a cell; of those with a node between half of it */
+  double area;  /* m^2 */
 } gmsh_mesh;
 
 enum { GMSH_MOST_NODES = 4000000, GMSH_MOST_AROUND = 64 /* cells around a node */ };
