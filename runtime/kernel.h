@@ -465,6 +465,10 @@ typedef struct pl_law {
 
   /* Laws of cracks (kind PL_CRACK) have this alone. */
   pl_tip_function tip_look;
+
+  /* Of laws of a continuum whose points can fail: place in `fields` of what is 1 where the point has
+     failed, for good, else 0; -1 without such. A failed point has no stress, and stores nothing. */
+  int failed_field;
 } pl_law;
 
 /* The one symbol that a compiled kernel exports. */

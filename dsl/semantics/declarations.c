@@ -154,13 +154,26 @@ static void declare_function(checker *ck, stmt *s) {
     declare_argument(ck, s, i, &e->arguments[i]);
 }
 
+/* A bond that fails says so by a damage. */
+static bool refuse_failure(checker *ck, const stmt *s) {
+  if (ck->tree->law == LAW_CONTINUUM) return false;
+  complain(ck, DIAG_LAW_KIND, s->name_where, "a %s law has no points that fail", law_word(ck));
+  diag_hint(ck->d, "`failed when` belongs to `law continuum`; elsewhere a damage of 1 says it");
+  return true;
+}
+
 static void declare_field(checker *ck, stmt *s) {
+  if (s->failure && refuse_failure(ck, s)) return;
   entry *e = declare(ck, s->kind == STMT_STATE ? SYMBOL_STATE : SYMBOL_DAMAGE, s);
   if (!e) return;
   append(ck, &ck->law->fields, e);
   if (s->kind == STMT_DAMAGE && s->value) {
     e->rule_at = ck->now;
     e->symbol.rule = s;
+  }
+  if (s->failure) {
+    e->symbol.doc = s->doc || s->text ? e->symbol.doc : "1 where the point has failed";
+    ck->law->failed = &e->symbol;
   }
 }
 

@@ -24,6 +24,8 @@ C_LINKAGE_BEGIN
 #define LAW_IRREGULAR "irregular"
 /* `for anisotropic`: a law of a continuum that knows the axes. */
 #define LAW_ANISOTROPIC "anisotropic"
+/* The damage that `failed when ...` declares. */
+#define LAW_FAILED "failed"
 
 typedef enum expr_kind {
   EXPR_NUMBER, /* 30 [GPa] */
@@ -178,6 +180,7 @@ struct stmt {
   expr *when;       /* FLOW: guard */
   bool returned;    /* FLOW along ... returned */
   bool tensor;      /* STATE: begins at `tensor 0` */
+  bool failure;     /* DAMAGE: written `failed when ...` */
   const char *text; /* quoted text: description, reason, or included file */
   span text_where;
   const char *doc; /* lines of !> before it, joined by newline; NULL without */

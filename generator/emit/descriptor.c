@@ -37,11 +37,11 @@ static void write_varying(c_text *out, const kernel_plan *p) {
 }
 
 static const char *place_of_field(const symbol *s) {
-  return s->place == ON_POINT    ? "PL_ON_POINT"
+  return s->place == ON_POINT      ? "PL_ON_POINT"
          : s->place == ON_TIP      ? "PL_ON_TIP"
          : s->place <= ON_PARTICLE ? "PL_ON_PARTICLE"
-         : s->place == ON_BOND   ? "PL_ON_BOND"
-                                 : "PL_ON_NEIGHBOUR";
+         : s->place == ON_BOND     ? "PL_ON_BOND"
+                                   : "PL_ON_NEIGHBOUR";
 }
 
 static void write_fields(c_text *out, const symbol_list *list, const char *name) {
@@ -104,7 +104,8 @@ static void write_law(c_text *out, const kernel_plan *p) {
   c_text_number(out, p->flops_per_bond);
   c_text_add(out, ",\n    .divisions_per_bond = ");
   c_text_number(out, p->divisions_per_bond);
-  c_text_add(out, ",\n    .prepare = prepare,\n    .bounds = bounds,\n");
+  c_text_add(out, ",\n    .prepare = prepare,\n    .bounds = bounds,\n    .failed_field = %d,\n",
+             p->law->failed ? p->law->failed->index : -1);
 }
 
 static void write_program(c_text *out, const kernel_plan *of, const kernel_program *p) {

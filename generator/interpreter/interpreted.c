@@ -258,6 +258,7 @@ static void describe(interpreted *p) {
       .force_planes = plan->force_planes,
       .name = l->tree->name,
       .key = "",
+      .failed_field = l->failed ? l->failed->index : -1,
       .parameter_count = l->parameters.count,
       .parameters = describe_parameters(p->memory, &l->parameters),
       .density = l->rho ? l->rho->index : -1,

@@ -74,7 +74,9 @@ void node_matrix_open(node_matrix *k, const mesh *m, const integration_points *p
   find_partners(k, m);
   for (int n = 0; n < p->count; n++) {
     const int cell = p->cell[n];
-    const plane_stiffness *law = &laws[law_of_cell ? law_of_cell[cell] : 0];
+    const int number = law_of_cell ? law_of_cell[cell] : 0;
+    if (number == NO_LINEAR_LAW) continue;
+    const plane_stiffness *law = &laws[number];
     point_shape s;
     shape_functions(m, cell, p->at[n], &s);
     for (int a = 0; a < s.count; a++)
