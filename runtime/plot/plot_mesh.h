@@ -20,8 +20,10 @@ typedef struct plot_mesh {
   char name[80];
   long cell_count;
   long all_count; /* with those that have died, which stand behind */
-  int32_t *cells; /* [all_count][4] particles, counter-clockwise */
-  double size;    /* m: a side of a cell of the same area */
+  /* [all_count][4] particles, counter-clockwise; a triangle has its last one twice, one of 6 nodes is
+     four of them */
+  int32_t *cells;
+  double size; /* m: a side of a cell of the same area */
   crack_lines lines;
 } plot_mesh;
 
