@@ -119,7 +119,7 @@ static void take_forces(const run_body *of, int d, double *force) {
     force[q] = of->body->force[d][q] + body_outer(of->body, d, q);
   for (long i = 0; i < l->force_count; i++)
     if (l->forces[i].link && l->forces[i].component == d)
-      force[l->forces[i].site] += l->forces[i].now;
+      force[l->forces[i].site] += loads_acting(&l->forces[i]);
 }
 
 /* Since the last look: work of the forces, and its motion. */
@@ -130,6 +130,7 @@ static void add_motion(const run_body *of, relaxed_body *last, double *force, do
     take_forces(of, d, force);
     for (long p = 0; p < w->lattice->particle_count; p++) {
       const long q = w->lattice->particle_site[p];
+      if (!(body_mass(w, d, q) > 0)) continue; /* a tie moves it */
       const double way = w->displacement[d][q] - last->displacement[d][q];
       *work -= way * (force[q] - last->force[d][q]);
       *motion += body_mass(w, d, q) * way * way;
@@ -169,7 +170,7 @@ static int free_moment(const run_body *of, long i, int d, double *left) {
   for (long n = load_steps_first_force(l, site); n < l->force_count && l->forces[n].site == site;
        n++)
     if (l->forces[n].component >= w->dimensions)
-      moment[l->forces[n].component - w->dimensions] += l->forces[n].now;
+      moment[l->forces[n].component - w->dimensions] += loads_acting(&l->forces[n]);
   const int count = load_steps_release(l, w, i, moment);
   if (d >= w->dimensions) *left = moment[d - w->dimensions];
   return count;
@@ -185,11 +186,14 @@ static void add_component(const relaxation *r, const run_body *of, int d, square
     const double load = gravity * body_mass(w, d, q) + body_outer(w, d, q);
     r->total[q] = w->force[d][q] + load;
     sum->applied += load * load;
+    if (body_mass(w, d, q) > 0) continue;
+    sum->held += square_of(r->total[q] / arm); /* by a tie */
+    r->total[q] = 0;
   }
   for (long i = 0; i < l->force_count; i++) {
     if (l->forces[i].component != d) continue;
-    r->total[l->forces[i].site] += l->forces[i].now;
-    sum->applied += square_of(l->forces[i].now / arm);
+    r->total[l->forces[i].site] += loads_acting(&l->forces[i]);
+    sum->applied += square_of(loads_acting(&l->forces[i]) / arm);
   }
   for (long i = 0; i < l->constraint_count; i++) {
     const constraint *c = &l->constraints[i];
