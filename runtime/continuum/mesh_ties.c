@@ -15,6 +15,8 @@
    are written with a few digits; and how far from a bond's middle it is looked on which side the mesh
    is. */
 static const double ON_EDGE = 2e-3, ASIDE = 0.05;
+/* From which distance on, in spacings, a free particle next to the mesh is as it should be. */
+static const double BESIDE = 0.7;
 
 typedef struct tier {
   const deck *deck;
@@ -152,6 +154,64 @@ static void sort_bonds(tier *t, bool halves) {
   rows_count_bonds(g);
 }
 
+/* Tied particles that lie deeper than on the edge, with bonds to free ones: in between there are bonds and
+   cells. */
+static void warn_of_overlap(const tier *t) {
+  const double on_the_edge = 0.45;
+  const rows *g = t->lattice;
+  long deep = 0;
+  for (long n = 0; n < t->tie->count; n++) {
+    const tied_particle *p = &t->tie->particles[n];
+    const long site = g->particle_site[p->particle];
+    bool bound = false;
+    for (int k = 0; k < 2 * g->directions; k++)
+      bound = bound || (rows_has_neighbour(g, site, k) && !is_tied(t, rows_partner(g, site, k)));
+    deep += bound && p->outside < on_the_edge;
+  }
+  if (deep == 0) return;
+  diag_report(t->d, DIAG_DECK_WARNING, t->from->item.where,
+              "%ld particle%s of `%s` that hold%s on to free ones lie%s inside of `%s`, not on its "
+              "edge: what "
+              "is between counts twice, and waves are thrown back there",
+              deep, deep == 1 ? "" : "s", t->from->lattice, deep == 1 ? "s" : "",
+              deep == 1 ? "s" : "", t->from->mesh);
+  diag_hint(t->d, "let the mesh's edge run along a row of sites: `rotation` turns the lattice");
+}
+
+/* Nearer to the mesh than half a row, but not in it. */
+static bool is_beside(const tier *t, const double at[3]) {
+  enum { POINTS = 48 };
+  const double radius = BESIDE * t->lattice->spacing;
+  bool beside = false;
+  for (int p = 0; p < POINTS && !beside; p++) {
+    const double angle = 2 * M_PI * (p + 0.5) / POINTS;
+    beside = cell_at(&t->mesh, at[0] + radius * pl_cos(angle), at[1] + radius * pl_sin(angle)) >= 0;
+  }
+  return beside;
+}
+
+static void warn_of_gap(const tier *t) {
+  const rows *g = t->lattice;
+  long free = 0;
+  double at[3], first[3];
+  char text[ROWS_PLACE_TEXT];
+  for (long p = 0; p < g->particle_count; p++) {
+    rows_place(g, g->particle_site[p], at);
+    if (t->number[p] > 0 || !is_beside(t, at)) continue;
+    if (free++ == 0) memcpy(first, at, sizeof first);
+  }
+  if (free == 0) return;
+  diag_report(
+      t->d, DIAG_DECK_WARNING, t->from->item.where,
+      "%ld particle%s of `%s`, such as that at %s, %s beside `%s`, but not on its edge: what is "
+      "between is in neither",
+      free, free == 1 ? "" : "s", t->from->lattice, rows_place_text(2, first, text),
+      free == 1 ? "stands" : "stand", t->from->mesh);
+  diag_hint(t->d,
+            "let a row of sites stand on the edge, or the lattice reach into the mesh: particles "
+            "there are tied");
+}
+
 /* --- all of them ------------------------------------------------------------------------------ */
 
 static bool open_tie(tier *t, bool halves) {
@@ -162,7 +222,11 @@ static bool open_tie(tier *t, bool halves) {
   const bool built = mesh_build(t->deck, t->tie->mesh, &t->mesh, &quiet);
   diag_clear(&quiet);
   const bool good = built && tie_particles(t);
-  if (good) sort_bonds(t, halves);
+  if (good) {
+    sort_bonds(t, halves);
+    warn_of_overlap(t);
+    warn_of_gap(t);
+  }
   mesh_close(&t->mesh);
   return good;
 }

@@ -326,6 +326,11 @@ const rows *simulation_rows(const simulation *s, int number) {
   return s->bodies[number].lattice_rows;
 }
 
+const mesh_tie *simulation_ties(const simulation *s, int number, int *count) {
+  *count = s->bodies[number].tie_count;
+  return s->bodies[number].ties;
+}
+
 double simulation_sample_interval(const simulation *s) {
   return s->plan.sample_interval;
 }
