@@ -327,6 +327,21 @@ static void announce_lattice(const run *r, int lattice) {
       1e3 * w->height, depth);
 }
 
+/* "tie        core to left: 17 particles, 0.31 kg of which goes to 18 nodes; 16 bonds count by halves" */
+static void announce_ties(const run *r, int lattice) {
+  int count;
+  const mesh_tie *ties = simulation_ties(r->simulation, lattice, &count);
+  for (int n = 0; n < count; n++) {
+    const mesh_tie *t = &ties[n];
+    printf("  tie        %s to %s: %ld particles, %.4g kg of them goes to its nodes",
+           t->from->lattice, t->from->mesh, t->count,
+           mesh_tie_mass(t, simulation_rows(r->simulation, lattice)));
+    if (t->half_count > 0) printf("; %ld bonds along its edge count by halves", t->half_count);
+    if (t->left_out > 0) printf("; %ld bonds inside it are left out", t->left_out);
+    putchar('\n');
+  }
+}
+
 /* "mass       0.2 kg on 3 particles of `tip`" */
 static void announce_point_mass(const run *r, int index) {
   long particles;
@@ -431,6 +446,7 @@ void announce(const run *r) {
       announce_particles(r, k);
     else
       announce_lattice(r, k);
+    announce_ties(r, k);
     announce_notches(r, k);
     announce_laws(r, k);
   }
