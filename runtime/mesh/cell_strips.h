@@ -11,6 +11,7 @@
 
 #include "runtime/mesh/integration_points.h"
 #include "runtime/mesh/node_layout.h"
+#include "runtime/mesh/rectangle_cells.h"
 
 /* What acts at the points of a group. Away from edges, zones and cracks it is the same in all cells
    (to rounding, 1e-11 of a slope) and stored once for all groups like it. */
@@ -24,12 +25,15 @@ typedef struct cell_table {
   double *slope;      /* [entries][2][lanes] N_,x and N_,y, 1/m */
   int *first_of_node; /* [nodes + 1] of the two below */
   int *entry, *point; /* [entries] node by node */
+  bool rectangle;     /* the same in all cells, bilinear rectangles with 2 x 2 points, of these */
+  rectangle_slopes slopes;
 } cell_table;
 
 typedef struct cell_group {
   int first, count; /* cells of its row: i of the first; at most PL_LANES */
   int at;           /* place of its first point; PL_LANES for each point of a cell follow */
   const cell_table *table;
+  double even; /* m^3: of each point, where it is full of rectangles with the same; else 0 */
 } cell_group;
 
 typedef struct cell_strips {
@@ -62,6 +66,9 @@ void cell_strips_strain(const cell_strips *s, int row, const cell_group *g,
    with node row `row + low`, at node 0. */
 void cell_strips_push(const cell_strips *s, const cell_group *g, const double *const traction[3],
                       double *const force[2]);
+/* The same of `count` groups side by side that are alike and even, from their stress. */
+void cell_strips_push_even(const cell_strips *s, const cell_group *g, int count,
+                           const double *const stress[3], double *const force[2]);
 /* Doubles of such a plane. */
 long cell_strips_plane(const cell_strips *s);
 
