@@ -272,22 +272,42 @@ static pl_points motion_of(const point_forces *p, const strip *s, point_scratch 
   return view_of(p, s, own, at);
 }
 
-static void push(const point_forces *p, const strip *s, const point_scratch *own,
-                 double *const stress[STRAINS]) {
-  const double *volume = p->strips.volume + s->at;
+/* Groups from g on that are side by side, even and alike; 0: g is not even. */
+static int even_from(const cell_group *groups, int g, int last) {
+  int count = 0;
+  while (g + count < last && groups[g + count].even > 0 &&
+         groups[g + count].even == groups[g].even && groups[g + count].table == groups[g].table &&
+         groups[g + count].first == groups[g].first + count * PL_LANES)
+    count++;
+  return count;
+}
+
+static void push_group(const point_forces *p, int row, const cell_group *g,
+                       const point_scratch *own, const double *const stress[STRAINS]) {
+  const double *volume = p->strips.volume + g->at;
+  const long count = (long)g->points * PL_LANES;
   for (int c = 0; c < STRAINS; c++) {
     double *traction = own->traction[c];
     const double *from = stress[c];
     INDEPENDENT
-    for (long k = 0; k < s->count; k++)
+    for (long k = 0; k < count; k++)
       traction[k] = volume[k] * from[k];
   }
-  for (int g = s->first; g < s->last; g++) {
-    const cell_group *group = &p->strips.groups[g];
-    const long to = group->at - s->at;
-    const double *traction[STRAINS] = {own->traction[0] + to, own->traction[1] + to,
-                                       own->traction[2] + to};
-    cell_strips_push(&p->strips, s->row, group, traction, p->pushed);
+  cell_strips_push(&p->strips, row, g, (const double *const *)own->traction, p->pushed);
+}
+
+static void push(const point_forces *p, const strip *s, const point_scratch *own,
+                 double *const stress[STRAINS]) {
+  const cell_group *groups = p->strips.groups;
+  for (int g = s->first; g < s->last;) {
+    const long to = groups[g].at - s->at;
+    const double *const here[STRAINS] = {stress[0] + to, stress[1] + to, stress[2] + to};
+    const int even = even_from(groups, g, s->last);
+    if (even > 0)
+      cell_strips_push_even(&p->strips, s->row, &groups[g], even, here, p->pushed);
+    else
+      push_group(p, s->row, &groups[g], own, here);
+    g += even > 0 ? even : 1;
   }
 }
 
