@@ -50,14 +50,25 @@ static const char *path_of(const run *r, int interaction) {
   return path && strncmp(path, "./", 2) == 0 ? path + 2 : path;
 }
 
-/* "law        elastic (elastic.plm): linear; waves of 3690 and 2334 m/s" */
-static void announce_law(const run *r, int interaction, const cells *c) {
+static int cells_of_law(const cells *c, int number) {
+  int count = 0;
+  for (int n = 0; n < mesh_cell_count(&c->mesh); n++)
+    count += c->mesh.cell[n] != CELL_ABSENT && cell_laws_at(&c->where, n) == number;
+  return count;
+}
+
+/* "law        elastic (elastic.plm): linear; waves of 3690 and 2334 m/s"; of several laws also
+   "in 336 cells of `steel`" */
+static void announce_law(const run *r, int interaction, int number, const cells *c) {
   const pl_law *kernel = r->laws[interaction].law;
   const char *path = path_of(r, interaction);
-  const double(*D)[3] = c->stiffness.D,
+  const double(*D)[3] = c->stiffness[number].D,
         rho = material_density(kernel, r->laws[interaction].parameters);
   printf("  law        %s", kernel->name);
+  const char *region = r->deck->interactions[interaction].material->region;
   if (path) printf(" (%s)", path);
+  if (c->where.count > 1)
+    printf(" in %d cells%s%s", cells_of_law(c, number), region ? " of " : "", region ? region : "");
   printf(": %s; waves of %.4g and %.4g m/s%s\n", kernel->linear ? "linear" : "not linear",
          sqrt(D[0][0] / rho), sqrt(D[2][2] / rho), kernel->linear ? "" : " at rest");
 }
@@ -96,9 +107,10 @@ static void announce_crack(const run *r, const tips *t, const deck_crack *k) {
 void announce_mesh(const run *r, int lattice) {
   const cells *c = simulation_cells(r->simulation, lattice);
   const deck *k = r->deck;
+  int number = 0;
   announce_cells(c, &k->lattices[lattice]);
   for (int n = 0; n < k->interaction_count; n++)
-    if (k->interactions[n].lattice == lattice) announce_law(r, n, c);
+    if (k->interactions[n].lattice == lattice) announce_law(r, n, number++, c);
   for (int n = 0; n < k->crack_count && c->tips; n++)
     if (strcmp(k->cracks[n].mesh, k->lattices[lattice].name) == 0)
       announce_crack(r, c->tips, &k->cracks[n]);

@@ -103,32 +103,34 @@ static void find_scale(const double rest[STRAINS][STRAINS], double scale[STRAINS
     }
 }
 
-void point_forces_rest(const mesh *m, const pl_law *law, const double *parameters, bool viscous,
-                       double tangent[3][3]) {
+void point_forces_rest(const mesh *m, const unsigned char *own, const pl_law *law,
+                       const double *parameters, bool viscous, double tangent[3][3]) {
   const double rest[STRAINS] = {0};
   point_law *one = point_law_new(law, parameters);
   double most = -INFINITY;
   for (int cell = 0; cell < mesh_cell_count(m) && (m->mapped || cell == 0); cell++) {
     double here[STRAINS][STRAINS];
+    if (m->mapped && own && !own[cell]) continue;
     if (viscous)
       point_law_viscosity(one, mesh_cell_size(m, cell), here);
     else
       point_law_tangent(one, rest, mesh_cell_size(m, cell), here);
     const double trace = here[0][0] + here[1][1] + here[2][2];
-    if (cell > 0 && !(trace > most)) continue;
+    if (isfinite(most) && !(trace > most)) continue;
     most = trace;
     memcpy(tangent, here, sizeof here);
   }
   point_law_free(one);
 }
 
-static void find_rest(point_forces *p, const double *parameters) {
+static void find_rest(point_forces *p, const unsigned char *own, const double *parameters) {
   double tangent[STRAINS][STRAINS];
-  point_forces_rest(p->of, p->law, parameters, false, tangent);
+  point_forces_rest(p->of, own, p->law, parameters, false, tangent);
   find_scale(tangent, p->scale);
 }
 
-point_forces *point_forces_new(const mesh *m, const integration_points *points, const pl_law *law,
+point_forces *point_forces_new(const mesh *m, const unsigned char *own,
+                               const integration_points *points, const pl_law *law,
                                const double *parameters, int blocks, bool ledger) {
   const pl_bond_class none = {.size = sizeof none};
   point_forces *p = must_calloc(1, sizeof *p);
@@ -136,7 +138,7 @@ point_forces *point_forces_new(const mesh *m, const integration_points *points, 
   p->memory = pool_new();
   p->uniforms = must_calloc((size_t)law->uniform_count + 1, sizeof(double));
   law->prepare(law, parameters, &none, p->uniforms);
-  cell_strips_open(&p->strips, m, points);
+  cell_strips_open(&p->strips, m, points, own);
   open_states(p, ledger);
   p->plane = cell_strips_plane(&p->strips);
   for (int d = 0; d < 2; d++)
@@ -146,7 +148,7 @@ point_forces *point_forces_new(const mesh *m, const integration_points *points, 
   p->scratch = must_calloc((size_t)blocks + 1, sizeof *p->scratch);
   for (int b = 0; b < blocks; b++)
     open_scratch(p, &p->scratch[b]);
-  find_rest(p, parameters);
+  find_rest(p, own, parameters);
   return p;
 }
 
@@ -388,14 +390,14 @@ void point_forces_find(point_forces *p, int block, int from, int to, const point
   }
 }
 
-void point_forces_take(const point_forces *p, int row, double *const force[2]) {
+void point_forces_take(const point_forces *p, int row, bool more, double *const force[2]) {
   const cell_strips *s = &p->strips;
   const node_layout *l = &s->layout;
   const int from = row - s->high < 0 ? 0 : row - s->high,
             to = row - s->low > s->rows - 1 ? s->rows - 1 : row - s->low;
   for (int d = 0; d < 2; d++) {
     double *out = force[d] + l->origin + row * l->stride;
-    memset(out, 0, (size_t)l->padded * sizeof *out);
+    if (!more) memset(out, 0, (size_t)l->padded * sizeof *out);
     for (int c = from; c <= to; c++) {
       const double *in = p->pushed[d] + c * p->plane + (row - c - s->low) * l->stride;
       INDEPENDENT
@@ -418,7 +420,8 @@ void point_forces_turn(point_forces *p) {
 /* Volume of a cell's points, and the integral of a plane over them. */
 static void add_cell(const point_forces *p, const double *plane, int cell, double *volume,
                      double *sum) {
-  const int count = p->points->first[cell + 1] - p->points->first[cell];
+  const int count =
+      point_forces_has(p, cell) ? p->points->first[cell + 1] - p->points->first[cell] : 0;
   for (int k = 0; k < count; k++) {
     const int at = p->strips.of_cell[cell] + k * PL_LANES;
     *volume += p->strips.volume[at];
@@ -482,7 +485,7 @@ static bool reaches(const point_forces *p, const cell_group *g, long at, const i
   return at % PL_LANES < g->count && away >= p->strips.low && away <= p->strips.high;
 }
 
-void point_forces_worst(point_forces *p, int node, const point_motion *at, point_state *out) {
+double point_forces_worst(point_forces *p, int node, const point_motion *at, point_state *out) {
   const int place[2] = {node % p->of->nodes[0], node / p->of->nodes[0]};
   point_scratch *own = &p->scratch[0];
   double most = -1;
@@ -501,4 +504,5 @@ void point_forces_worst(point_forces *p, int node, const point_motion *at, point
       }
     }
   }
+  return isfinite(most) ? most : NAN;
 }

@@ -44,13 +44,15 @@ typedef struct point_forces {
 } point_forces;
 
 /* Tangent at rest (Pa), or how the stress there follows the strain rate (Pa s), xx, yy, xy by xx, yy,
-   xy; of a law that reads the size of a cell that of the cell where its trace is largest. */
-void point_forces_rest(const mesh *m, const pl_law *law, const double *parameters, bool viscous,
-                       double tangent[3][3]);
+   xy; of a law that reads the size of a cell that of the cell where its trace is largest. own[cells]
+   marks cells of the law; NULL: all are. */
+void point_forces_rest(const mesh *m, const unsigned char *own, const pl_law *law,
+                       const double *parameters, bool viscous, double tangent[3][3]);
 
 /* `blocks` threads at most; `ledger`: energies are kept. What is pointed to must outlive it. */
-point_forces *point_forces_new(const mesh *m, const integration_points *p, const pl_law *law,
-                               const double *parameters, int blocks, bool ledger);
+point_forces *point_forces_new(const mesh *m, const unsigned char *own, const integration_points *p,
+                               const pl_law *law, const double *parameters, int blocks,
+                               bool ledger);
 void point_forces_free(point_forces *p);
 
 /* The motion that points see: displacements of the present state and velocities half a step before,
@@ -65,11 +67,15 @@ typedef struct point_motion {
    is how stiff the rows are. */
 void point_forces_find(point_forces *p, int block, int from, int to, const point_motion *at,
                        bool seen);
-/* N: adds up what pushes a row of nodes; force[2]: planes of the layout. */
-void point_forces_take(const point_forces *p, int row, double *const force[2]);
+/* N: adds up what pushes a row of nodes; force[2]: planes of the layout. `more`: to what is there. */
+void point_forces_take(const point_forces *p, int row, bool more, double *const force[2]);
 /* After a step: new states are old ones. */
 void point_forces_turn(point_forces *p);
 
+/* Whether a cell is of this law and has points. */
+static inline bool point_forces_has(const point_forces *p, int cell) {
+  return p->strips.of_cell[cell] >= 0;
+}
 /* Mean of a plane [strips.count] over the points around a node, by their areas; NaN without. */
 double point_forces_mean(const point_forces *p, const double *plane, int node);
 /* The node's part of what the cells around it hold, a plane [strips.count] per m^3: their corners that
@@ -83,8 +89,9 @@ typedef struct point_state {
   double strain[3], stress[4]; /* Pa */
   double *field;               /* [fields] of before the step; the caller's memory */
 } point_state;
-/* Of the points that push a node that with the largest stress, or without a finite one. */
-void point_forces_worst(point_forces *p, int node, const point_motion *at, point_state *out);
+/* Of the points that push a node that with the largest stress, or without a finite one: its square,
+   Pa^2; -1: there is none. */
+double point_forces_worst(point_forces *p, int node, const point_motion *at, point_state *out);
 
 /* B held, shape tables included. */
 long point_forces_bytes(const point_forces *p);

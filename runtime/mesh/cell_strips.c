@@ -190,14 +190,19 @@ static void place_group(cell_strips *s, const mesh *m, const integration_points 
   }
 }
 
-static void add_group(cell_strips *s, const mesh *m, const integration_points *p, int row, int i,
-                      draft *d) {
+/* Points of a cell that is among those asked for. */
+static int points_here(const integration_points *p, const unsigned char *own, int cell) {
+  return own && !own[cell] ? 0 : points_of(p, cell);
+}
+
+static void add_group(cell_strips *s, const mesh *m, const integration_points *p,
+                      const unsigned char *own, int row, int i, draft *d) {
   const int points = points_of(p, mesh_cell_at(m, i, row));
   cell_group *g = &s->groups[s->group_count++];
   *g = (cell_group){.first = i};
   draft_clear(d, points);
   while (g->count < PL_LANES && i + g->count < m->nodes[0] - 1 &&
-         points_of(p, mesh_cell_at(m, i + g->count, row)) == points) {
+         points_here(p, own, mesh_cell_at(m, i + g->count, row)) == points) {
     draft_cell(d, m, p, i + g->count, row, g->count);
     g->count++;
   }
@@ -217,7 +222,8 @@ static void find_reach(cell_strips *s) {
     }
 }
 
-void cell_strips_open(cell_strips *s, const mesh *m, const integration_points *p) {
+void cell_strips_open(cell_strips *s, const mesh *m, const integration_points *p,
+                      const unsigned char *own) {
   const int rows = m->nodes[1] - 1, wide = m->nodes[0] - 1;
   const size_t room = (size_t)(p->count + 1) * PL_LANES;
   draft d = draft_new(m, p);
@@ -233,8 +239,8 @@ void cell_strips_open(cell_strips *s, const mesh *m, const integration_points *p
     s->first_group[row] = s->group_count;
     s->first_point[row] = s->count;
     for (int i = 0; i < wide; i++) {
-      if (points_of(p, mesh_cell_at(m, i, row)) == 0) continue;
-      add_group(s, m, p, row, i, &d);
+      if (points_here(p, own, mesh_cell_at(m, i, row)) == 0) continue;
+      add_group(s, m, p, own, row, i, &d);
       i += s->groups[s->group_count - 1].count - 1;
     }
   }

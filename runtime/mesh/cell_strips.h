@@ -49,8 +49,9 @@ typedef struct cell_strips {
   long bytes; /* of it all */
 } cell_strips;
 
-/* The mesh's cracks are those of now. */
-void cell_strips_open(cell_strips *s, const mesh *m, const integration_points *p);
+/* Of the cells that own[cells] marks; NULL: of all. The mesh's cracks are those of now. */
+void cell_strips_open(cell_strips *s, const mesh *m, const integration_points *p,
+                      const unsigned char *own);
 void cell_strips_close(cell_strips *s);
 
 /* strain xx, yy, xy (of tensors) of the points of a group; u: planes laid out as `layout`;
