@@ -19,6 +19,7 @@
 #include "runtime/continuum/tips.h"
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/filling/bar_placing.h"
+#include "runtime/geometry/gmsh_mesh.h"
 #include "runtime/geometry/polyline.h"
 #include "runtime/lattice/notch_depth.h"
 #include "runtime/lattice/parameter_planes.h"
@@ -511,11 +512,16 @@ static void print_family(const run *r, const bad_state *b) {
 static void print_point(const run *r, const bad_state *b) {
   const pl_law *kernel = r->laws[b->interaction].law;
   const point_state *p = b->point;
-  fprintf(stderr,
-          "  point (%.6g, %.6g) mm of cell (%d, %d): strain xx %.6g, yy %.6g, xy %.6g; stress xx "
-          "%.6g, yy %.6g, xy %.6g MPa",
-          1e3 * p->at[0], 1e3 * p->at[1], p->cell[0], p->cell[1], p->strain[0], p->strain[1],
-          p->strain[2], 1e-6 * p->stress[0], 1e-6 * p->stress[1], 1e-6 * p->stress[2]);
+  const gmsh_mesh *file =
+      r->deck->lattices[r->deck->interactions[b->interaction].lattice].gmsh; /* has own numbers */
+  fprintf(stderr, "  point (%.6g, %.6g) mm of cell ", 1e3 * p->at[0], 1e3 * p->at[1]);
+  if (file)
+    fprintf(stderr, "%lld", (long long)file->cell_tag[p->cell[0]]);
+  else
+    fprintf(stderr, "(%d, %d)", p->cell[0], p->cell[1]);
+  fprintf(stderr, ": strain xx %.6g, yy %.6g, xy %.6g; stress xx %.6g, yy %.6g, xy %.6g MPa",
+          p->strain[0], p->strain[1], p->strain[2], 1e-6 * p->stress[0], 1e-6 * p->stress[1],
+          1e-6 * p->stress[2]);
   for (int f = 0; f < kernel->field_count; f++)
     fprintf(stderr, ", %s %.6g", kernel->fields[f].name, p->field[f]);
   fputc('\n', stderr);

@@ -74,9 +74,8 @@ static void find_sizes(point_forces *p, const mesh *m) {
     for (int n = p->strips.first_group[row]; n < p->strips.first_group[row + 1]; n++) {
       const cell_group *g = &p->strips.groups[n];
       for (int lane = 0; lane < PL_LANES; lane++) {
-        const int i = g->first + (lane < g->count ? lane : 0); /* what fills up is of the first */
-        const double h = mesh_cell_size(m, mesh_cell_at(m, i, row));
-        for (int k = 0; k < g->table->points; k++)
+        const double h = mesh_cell_size(m, cell_strips_cell(&p->strips, m, row, g, lane));
+        for (int k = 0; k < g->points; k++)
           p->size[g->at + k * PL_LANES + lane] = h;
       }
     }
@@ -108,9 +107,9 @@ void point_forces_rest(const mesh *m, const unsigned char *own, const pl_law *la
   const double rest[STRAINS] = {0};
   point_law *one = point_law_new(law, parameters);
   double most = -INFINITY;
-  for (int cell = 0; cell < mesh_cell_count(m) && (m->mapped || cell == 0); cell++) {
+  for (int cell = 0; cell < mesh_cell_count(m) && (m->mapped || m->lists || cell == 0); cell++) {
     double here[STRAINS][STRAINS];
-    if (m->mapped && own && !own[cell]) continue;
+    if ((m->mapped || m->lists) && own && !own[cell]) continue;
     if (viscous)
       point_law_viscosity(one, mesh_cell_size(m, cell), here);
     else
@@ -140,9 +139,8 @@ point_forces *point_forces_new(const mesh *m, const unsigned char *own,
   law->prepare(law, parameters, &none, p->uniforms);
   cell_strips_open(&p->strips, m, points, own);
   open_states(p, ledger);
-  p->plane = cell_strips_plane(&p->strips);
   for (int d = 0; d < 2; d++)
-    p->pushed[d] = doubles(p, p->plane * p->strips.rows);
+    p->pushed[d] = doubles(p, cell_strips_pushed(&p->strips));
   find_sizes(p, m);
   p->rows = must_calloc((size_t)p->strips.rows + 1, sizeof *p->rows);
   p->scratch = must_calloc((size_t)blocks + 1, sizeof *p->scratch);
@@ -182,7 +180,7 @@ static strip next_strip(const point_forces *p, int row, int first) {
   const cell_strips *s = &p->strips;
   strip out = {row, first, first, s->groups[first].at, 0};
   while (out.last < s->first_group[row + 1]) {
-    const long more = (long)s->groups[out.last].table->points * PL_LANES;
+    const long more = (long)s->groups[out.last].points * PL_LANES;
     if (out.count > 0 && out.count + more > STRIP) break;
     out.count += more;
     out.last++;
@@ -232,7 +230,6 @@ static pl_points motion_of(const point_forces *p, const strip *s, point_scratch 
 static void push(const point_forces *p, const strip *s, const point_scratch *own,
                  double *const stress[STRAINS]) {
   const double *volume = p->strips.volume + s->at;
-  double *force[2] = {p->pushed[0] + s->row * p->plane, p->pushed[1] + s->row * p->plane};
   for (int c = 0; c < STRAINS; c++) {
     double *traction = own->traction[c];
     const double *from = stress[c];
@@ -245,7 +242,7 @@ static void push(const point_forces *p, const strip *s, const point_scratch *own
     const long to = group->at - s->at;
     const double *traction[STRAINS] = {own->traction[0] + to, own->traction[1] + to,
                                        own->traction[2] + to};
-    cell_strips_push(&p->strips, group, traction, force);
+    cell_strips_push(&p->strips, s->row, group, traction, p->pushed);
   }
 }
 
@@ -376,8 +373,7 @@ void point_forces_find(point_forces *p, int block, int from, int to, const point
                        bool seen) {
   const int last = to < p->strips.rows ? to : p->strips.rows;
   for (int row = from; row < last; row++) {
-    for (int d = 0; d < 2; d++)
-      memset(p->pushed[d] + row * p->plane, 0, (size_t)p->plane * sizeof(double));
+    cell_strips_clear(&p->strips, row, p->pushed);
     if (seen) p->rows[row] = (point_row){0};
     strip s = {.last = p->strips.first_group[row]};
     while (s.last < p->strips.first_group[row + 1]) {
@@ -391,22 +387,7 @@ void point_forces_find(point_forces *p, int block, int from, int to, const point
 }
 
 void point_forces_take(const point_forces *p, int row, bool more, double *const force[2]) {
-  const cell_strips *s = &p->strips;
-  const node_layout *l = &s->layout;
-  const int from = row - s->high < 0 ? 0 : row - s->high,
-            to = row - s->low > s->rows - 1 ? s->rows - 1 : row - s->low;
-  for (int d = 0; d < 2; d++) {
-    double *out = force[d] + l->origin + row * l->stride;
-    if (!more) memset(out, 0, (size_t)l->padded * sizeof *out);
-    for (int c = from; c <= to; c++) {
-      const double *in = p->pushed[d] + c * p->plane + (row - c - s->low) * l->stride;
-      INDEPENDENT
-      for (long k = 0; k < l->padded; k++)
-        out[k] += in[k];
-    }
-    for (long k = l->nodes[0]; k < l->padded; k++)
-      out[k] = 0;
-  }
+  cell_strips_take(&p->strips, row, p->pushed, more, force);
 }
 
 void point_forces_turn(point_forces *p) {
@@ -430,7 +411,7 @@ static void add_cell(const point_forces *p, const double *plane, int cell, doubl
 }
 
 double point_forces_mean(const point_forces *p, const double *plane, int node) {
-  int cell[4];
+  int cell[MESH_MOST_AROUND];
   const int count = mesh_cells_around(p->of, node, cell);
   double sum = 0, volume = 0;
   for (int n = 0; n < count; n++)
@@ -439,15 +420,15 @@ double point_forces_mean(const point_forces *p, const double *plane, int node) {
 }
 
 static int corners_there(const mesh *m, int cell) {
-  int corner[4], count = 0;
-  mesh_corners(m, cell, corner);
-  for (int k = 0; k < 4; k++)
+  int corner[ELEMENT_MOST_NODES], count = 0;
+  const int nodes = mesh_cell_nodes(m, cell, corner);
+  for (int k = 0; k < nodes; k++)
     count += !m->gone[corner[k]];
   return count;
 }
 
 double point_forces_share(const point_forces *p, const double *plane, int node) {
-  int cell[4];
+  int cell[MESH_MOST_AROUND];
   const int count = mesh_cells_around(p->of, node, cell);
   double share = 0;
   for (int n = 0; n < count; n++) {
@@ -470,7 +451,7 @@ static double size_of(double *const stress[STRESSES], long k) {
 static void take_point(const point_forces *p, const strip *s, const point_scratch *own, long k,
                        point_state *out) {
   const cell_group *g = &p->strips.groups[s->first];
-  cell_group_place(p->of, p->points, s->row, g, (int)(s->at + k), out->at, out->cell);
+  cell_strips_place(&p->strips, p->of, p->points, s->row, g, (int)(s->at + k), out->at, out->cell);
   for (int c = 0; c < STRAINS; c++)
     out->strain[c] = own->strain[c][k];
   for (int c = 0; c < STRESSES; c++)
@@ -479,26 +460,21 @@ static void take_point(const point_forces *p, const strip *s, const point_scratc
     out->field[f] = own->old_field[f][k];
 }
 
-/* Whether a point may push the node. */
-static bool reaches(const point_forces *p, const cell_group *g, long at, const int node[2]) {
-  const int away = node[0] - g->first - (int)(at % PL_LANES);
-  return at % PL_LANES < g->count && away >= p->strips.low && away <= p->strips.high;
-}
-
 double point_forces_worst(point_forces *p, int node, const point_motion *at, point_state *out) {
-  const int place[2] = {node % p->of->nodes[0], node / p->of->nodes[0]};
+  const int at_row = node / p->of->nodes[0];
   point_scratch *own = &p->scratch[0];
   double most = -1;
-  for (int row = place[1] - p->strips.high; row <= place[1] - p->strips.low; row++) {
+  for (int row = at_row - p->strips.high; row <= at_row - p->strips.low; row++) {
     if (row < 0 || row >= p->strips.rows) continue;
     for (int g = p->strips.first_group[row]; g < p->strips.first_group[row + 1]; g++) {
       const cell_group *group = &p->strips.groups[g];
-      const strip s = {row, g, g + 1, group->at, (long)group->table->points * PL_LANES};
+      const strip s = {row, g, g + 1, group->at, (long)group->points * PL_LANES};
       const pl_points points = motion_of(p, &s, own, at);
       p->law->point_step(p->law, p->uniforms, &points);
       for (long k = 0; k < s.count && isfinite(most); k++) {
         const double here = size_of(own->stress, k);
-        if (!reaches(p, group, k, place) || here <= most) continue;
+        if (!cell_strips_reach(&p->strips, p->of, group, (int)(k % PL_LANES), node) || here <= most)
+          continue;
         most = here;
         take_point(p, &s, own, k, out);
       }

@@ -11,7 +11,7 @@
 #include "runtime/result/result_read.h"
 #include "runtime/result/result_sets.h"
 
-enum { CORNERS = 4, MOST_NEAR = 256 };
+enum { CORNERS = 4, MOST_NODES = 6, MOST_NEAR = 256 };
 
 void plot_meshes_free(plot_meshes *m) {
   for (int k = 0; k < m->count; k++) {
@@ -45,6 +45,45 @@ static bool read_first(result_file *f, const char *group, int64_t *first) {
   return good;
 }
 
+/* Cells of a file as cells of four corners: how many, at `to`. */
+static int split(const int32_t *cell, int columns, int32_t (*to)[CORNERS]) {
+  static const int parts[4][CORNERS] = {{0, 3, 5, 5}, {3, 1, 4, 4}, {5, 4, 2, 2}, {3, 4, 5, 5}};
+  int nodes = 0;
+  while (nodes < columns && cell[nodes] >= 0)
+    nodes++;
+  if (nodes == MOST_NODES) {
+    for (int k = 0; k < CORNERS * CORNERS; k++)
+      to[k / CORNERS][k % CORNERS] = cell[parts[k / CORNERS][k % CORNERS]];
+    return CORNERS;
+  }
+  for (int k = 0; k < CORNERS; k++)
+    to[0][k] = k < nodes ? cell[k] : nodes > 0 ? cell[nodes - 1] : -1;
+  return 1;
+}
+
+/* m: the root of the mean area. */
+static double mean_size(const plot_mesh *m, const double *reference) {
+  double sum = 0;
+  for (long c = 0; c < m->cell_count; c++)
+    for (int k = 0; k < CORNERS; k++) {
+      const double *a = reference + 2 * m->cells[CORNERS * c + k],
+                   *b = reference + 2 * m->cells[CORNERS * c + (k + 1) % CORNERS];
+      sum += 0.5 * (a[0] * b[1] - b[0] * a[1]);
+    }
+  return m->cell_count > 0 ? sqrt(fabs(sum) / (double)m->cell_count) : 0;
+}
+
+/* Of a mesh of a file. */
+static void take_lists(plot_mesh *m, int columns) {
+  int32_t *given = m->cells;
+  long count = 0;
+  m->cells = must_calloc(CORNERS * CORNERS * (size_t)m->cell_count + 1, sizeof *m->cells);
+  for (long c = 0; c < m->cell_count; c++)
+    count += split(given + columns * c, columns, (int32_t(*)[CORNERS])m->cells + count);
+  m->cell_count = count;
+  free(given);
+}
+
 /* Its cells as particles of the result. */
 static bool read_mesh(plot_mesh *m, result_file *f, const char *name, const double *reference,
                       long particles) {
@@ -54,12 +93,15 @@ static bool read_mesh(plot_mesh *m, result_file *f, const char *name, const doub
   snprintf(m->name, sizeof m->name, "%.79s", name);
   snprintf(group, sizeof group, "/meshes/%.400s", name);
   snprintf(path, sizeof path, "%s/cells", group);
-  m->cells = result_read_table(f, path, true, CORNERS, CORNERS, &m->cell_count, &columns);
+  m->cells = result_read_table(f, path, true, 3, MOST_NODES, &m->cell_count, &columns);
   if (!m->cells || !read_first(f, group, &first) || first < 0 || first > particles) return false;
+  if (columns != CORNERS) take_lists(m, columns);
   if (!names_particles(m->cells, m->cell_count, particles - (long)first)) return false;
   for (long k = 0; k < CORNERS * m->cell_count; k++)
     m->cells[k] += (int32_t)first;
-  if (m->cell_count > 0) {
+  if (columns != CORNERS) {
+    m->size = mean_size(m, reference);
+  } else if (m->cell_count > 0) {
     const double *low = reference + 2 * m->cells[0], *high = reference + 2 * m->cells[2];
     m->size = sqrt(fabs((high[0] - low[0]) * (high[1] - low[1])));
   }
@@ -296,16 +338,18 @@ int32_t *plot_mesh_outline(const plot_mesh *m, long *count) {
   const long all = CORNERS * m->cell_count;
   cell_side *sides = must_calloc((size_t)all + 1, sizeof *sides);
   int32_t *outline = must_calloc(2 * (size_t)all + 1, sizeof *outline);
+  long there = 0;
   for (long k = 0; k < all; k++) {
     const int32_t i = m->cells[k],
                   j = m->cells[k / CORNERS * CORNERS + (k % CORNERS + 1) % CORNERS];
-    sides[k] = (cell_side){i < j ? i : j, i < j ? j : i, i, j};
+    if (i == j) continue; /* of a triangle */
+    sides[there++] = (cell_side){i < j ? i : j, i < j ? j : i, i, j};
   }
-  qsort(sides, (size_t)all, sizeof *sides, compare_sides);
+  qsort(sides, (size_t)there, sizeof *sides, compare_sides);
   *count = 0;
-  for (long k = 0; k < all;) {
+  for (long k = 0; k < there;) {
     long next = k + 1;
-    while (next < all && compare_sides(&sides[k], &sides[next]) == 0)
+    while (next < there && compare_sides(&sides[k], &sides[next]) == 0)
       next++;
     if (next == k + 1) {
       outline[2 * *count] = sides[k].from;
