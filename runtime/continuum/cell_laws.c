@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/geometry/gmsh_mesh.h"
 #include "runtime/lattice/rows_select.h"
 #include "runtime/mesh/node_layout.h"
 
@@ -25,14 +26,14 @@ static unsigned char *nodes_of(const deck *k, const deck_material *m, const rows
 }
 
 static bool holds_cell(const mesh *m, const unsigned char *inside, int cell) {
-  int corner[4], there = 0, held = 0;
+  int corner[ELEMENT_MOST_NODES], there = 0, held = 0;
   if (m->cell[cell] == CELL_ABSENT) return false;
-  mesh_corners(m, cell, corner);
-  for (int n = 0; n < 4; n++) {
+  const int count = mesh_cell_nodes(m, cell, corner);
+  for (int n = 0; n < count; n++) {
     held += inside[corner[n]] != 0;
     there += !m->gone[corner[n]];
   }
-  return held == 4 && there > 0;
+  return held == count && there > 0;
 }
 
 static bool report_no_cell(const deck_material *m, const mesh *of, diagnostics *d) {
@@ -49,6 +50,12 @@ static bool report_no_cell(const deck_material *m, const mesh *of, diagnostics *
 /* Its cells are of that law from now on. */
 static bool take_region(cell_laws *l, const deck *k, const deck_material *m, int law,
                         const rows *nodes, const mesh *of, diagnostics *d) {
+  const gmsh_group *group = k->regions[deck_find_region(k, m->region)].group;
+  if (group && group->dimension == 2) {
+    for (int n = 0; n < group->item_count; n++)
+      l->of_cell[group->items[n]] = (unsigned char)law;
+    return group->item_count > 0 || report_no_cell(m, of, d);
+  }
   unsigned char *inside = nodes_of(k, m, nodes, of);
   long count = 0;
   for (int c = 0; c < mesh_cell_count(of); c++) {
@@ -81,7 +88,7 @@ static void find_parts(cell_laws *l, int law, const rows *nodes, const mesh *m) 
   for (int c = 0; c < mesh_cell_count(m); c++)
     l->cells[law][c] = l->of_cell[c] == law && m->cell[c] != CELL_ABSENT;
   for (int n = 0; n < mesh_node_count(m); n++) {
-    int around[4];
+    int around[MESH_MOST_AROUND];
     double own = 0, all = 0;
     const int count = mesh_cells_around(m, n, around);
     for (int k = 0; k < count; k++) {

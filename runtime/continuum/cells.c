@@ -127,6 +127,7 @@ cells *cells_new(const deck *k, int lattice, rows *nodes, diagnostics *d) {
 void cells_free(cells *c) {
   if (!c) return;
   if (c->has_stencil) node_stencil_close(&c->stencil);
+  if (c->has_matrix) node_matrix_close(&c->matrix);
   for (int n = 0; n < c->where.count && c->by_points; n++)
     point_forces_free(c->by_points[n]);
   free(c->by_points);
@@ -149,8 +150,11 @@ static plane_stiffness tangent_at_rest(const cells *c, int law, bool viscous) {
 
 /* Cells of laws that are not linear have no part in the stencil. */
 static void find_linear(cells *c) {
+  bool any = false;
   for (int n = 0; n < c->where.count; n++)
-    c->has_stencil = c->has_stencil || c->laws[n].law->linear;
+    any = any || c->laws[n].law->linear;
+  c->has_stencil = any && !c->mesh.lists;
+  c->has_matrix = any && c->mesh.lists;
   if (c->where.count == 1) return;
   c->linear = must_calloc((size_t)mesh_cell_count(&c->mesh) + 1, 1);
   for (int cell = 0; cell < mesh_cell_count(&c->mesh); cell++) {
@@ -168,6 +172,7 @@ void cells_take_laws(cells *c, const cells_law *laws) {
   for (int n = 0; n < c->where.count; n++)
     c->stiffness[n] = tangent_at_rest(c, n, false);
   find_linear(c);
+  if (c->has_matrix) node_matrix_open(&c->matrix, &c->mesh, &c->points, c->stiffness, c->linear);
   if (!c->has_stencil) return;
   node_stencil_open(&c->stencil, &c->mesh, &c->points, c->stiffness, c->linear);
   node_stencil_resist_hourglass(&c->stencil);
@@ -193,6 +198,10 @@ void cells_mark_pushed(const cells *c, unsigned char *node) {
   }
 }
 
+static bool has_linear(const cells *c) {
+  return c->has_stencil || c->has_matrix;
+}
+
 static bool all_linear(const cells *c) {
   for (int n = 0; n < c->where.count; n++)
     if (!c->laws[n].law->linear) return false;
@@ -203,6 +212,13 @@ static bool all_linear(const cells *c) {
 static double highest(const cells *c, const plane_stiffness *laws, const double *mass,
                       const unsigned char *held) {
   node_stencil k;
+  if (c->mesh.lists) {
+    node_matrix of;
+    node_matrix_open(&of, &c->mesh, &c->points, laws, c->where.of_cell);
+    const double omega = frequency_limit_of_matrix(&of, mass, held);
+    node_matrix_close(&of);
+    return omega;
+  }
   node_stencil_open(&k, &c->mesh, &c->points, laws, c->where.of_cell);
   if (laws == c->stiffness) node_stencil_resist_hourglass(&k); /* rates are not resisted so */
   const double omega = frequency_limit(&k, mass, held);
@@ -238,8 +254,9 @@ void cells_step_limit(const cells *c, const unsigned char *held, step_limit *lim
     mass[node] = c->nodes->site_mass[c->nodes->particle_site[p]];
     memcpy(held_nodes + 2 * node, held + 2 * p, 2);
   }
-  const double omega = all_linear(c) ? frequency_limit(&c->stencil, mass, held_nodes)
-                                     : highest(c, c->stiffness, mass, held_nodes);
+  const double omega = !all_linear(c)  ? highest(c, c->stiffness, mass, held_nodes)
+                       : c->has_matrix ? frequency_limit_of_matrix(&c->matrix, mass, held_nodes)
+                                       : frequency_limit(&c->stencil, mass, held_nodes);
   const double root = highest_viscous(c, mass, held_nodes), damping = root * root;
   *limit = (step_limit){.omega_max = omega, .mode = "translation"};
   if (omega > 0) {
@@ -298,6 +315,8 @@ static void find_resistance(sweep *w, int block, bool seen) {
   const point_motion motion = motion_of(w);
   if (c->has_stencil)
     node_stencil_multiply(&c->stencil, motion.displacement, linear_forces(e), b->first, b->last);
+  if (c->has_matrix)
+    node_matrix_multiply(&c->matrix, motion.displacement, linear_forces(e), b->first, b->last);
   for (int n = 0; n < c->where.count; n++)
     if (c->by_points[n])
       point_forces_find(c->by_points[n], block, b->first, b->last, &motion, seen);
@@ -308,7 +327,7 @@ static void take_resistance(const cells_engine *e, int row) {
   const cells *c = e->of;
   bool more = e->linear[0] != NULL;
   for (int d = 0; d < 2 && more; d++) {
-    const node_layout *l = &c->stencil.layout;
+    const node_layout *l = c->has_matrix ? &c->matrix.layout : &c->stencil.layout;
     const long at = l->origin + row * l->stride;
     memcpy(e->resisting[d] + at, e->linear[d] + at, (size_t)l->padded * sizeof(double));
   }
@@ -399,7 +418,7 @@ static double stored_in_row(const sweep *w, int row) {
   const cells_engine *e = own(w);
   const long start = body_start(w->body, row), count = w->body->count[row];
   double sum = 0;
-  for (int d = 0; d < 2 && e->of->has_stencil; d++)
+  for (int d = 0; d < 2 && has_linear(e->of); d++)
     sum +=
         0.5 * lane_dot(count, NULL, linear_forces(e)[d] + start, w->body->displacement[d] + start);
   return sum;
@@ -497,7 +516,7 @@ static void stored(sweep *w, double *values) {
   double *const *force = linear_forces(e);
   for (long q = 0; q < w->lattice->size; q++) {
     values[q] = 0;
-    for (int d = 0; d < 2 && e->of->has_stencil; d++)
+    for (int d = 0; d < 2 && has_linear(e->of); d++)
       values[q] += 0.5 * force[d][q] * w->body->displacement[d][q];
   }
   for (int n = 0; n < e->of->where.count; n++) {
@@ -525,7 +544,8 @@ static double output_at(const cells_part *of, int number, int point) {
   point_shape s;
   double gradient[2][2], strain[3];
   shape_functions(&c->mesh, c->points.cell[point], at, &s);
-  mesh_field(&s, &c->stencil.layout, motion_of(of->state).displacement, NULL, gradient);
+  const node_layout l = node_layout_of(c->mesh.nodes, c->mesh.support);
+  mesh_field(&s, &l, motion_of(of->state).displacement, NULL, gradient);
   mesh_strain(gradient, strain);
   cells_mean_dilatation(c, c->points.cell[point], motion_of(of->state).displacement, strain);
   point_law_observe(of->one, strain, mesh_cell_size(&c->mesh, c->points.cell[point]), of->observed);
@@ -535,15 +555,16 @@ static double output_at(const cells_part *of, int number, int point) {
 /* Means over the points of the law's cells around the nodes. */
 static void show_linear(const cells_part *of, int number, double *values) {
   const cells *c = of->engine->of;
+  const node_layout l = node_layout_of(c->mesh.nodes, c->mesh.support);
   const rows *nodes = of->state->lattice;
   double *area = must_calloc((size_t)nodes->size, sizeof *area);
   for (int n = 0; n < c->points.count; n++) {
-    int corner[4];
+    int corner[ELEMENT_MOST_NODES];
     if (cell_laws_at(&c->where, c->points.cell[n]) != of->number) continue;
     const double value = output_at(of, number, n);
-    mesh_corners(&c->mesh, c->points.cell[n], corner);
-    for (int k = 0; k < 4; k++) {
-      const long site = node_layout_at(&c->stencil.layout, corner[k]);
+    const int corners = mesh_cell_nodes(&c->mesh, c->points.cell[n], corner);
+    for (int k = 0; k < corners; k++) {
+      const long site = node_layout_at(&l, corner[k]);
       values[site] += c->points.area[n] * value;
       area[site] += c->points.area[n];
     }
@@ -630,7 +651,7 @@ static void open_forces(cells_engine *e, body *of) {
   for (size_t k = 0; k < sizeof planes / sizeof *planes; k++)
     for (int d = 0; d < 2; d++)
       planes[k][d] = body_doubles(of, of->lattice->size);
-  for (int d = 0; d < 2 && e->of->has_stencil && !all_linear(e->of); d++)
+  for (int d = 0; d < 2 && has_linear(e->of) && !all_linear(e->of); d++)
     e->linear[d] = body_doubles(of, of->lattice->size);
   e->row_rate = body_doubles(of, of->lattice->row_count);
 }
@@ -714,7 +735,7 @@ void cells_restored(sweep *w) {
 
 void cells_watch_stiffness(cells *c, double part, double time) {
   if (all_linear(c)) return;
-  c->stiffened.now = c->has_stencil ? 1 : 0;
+  c->stiffened.now = has_linear(c) ? 1 : 0;
   for (int n = 0; n < c->where.count; n++) {
     const point_forces *p = c->by_points[n];
     for (int row = 0; p && row < p->strips.rows; row++)
@@ -834,6 +855,7 @@ bool cells_states_near(const cells *c, const double at[2], double *field) {
 
 double cells_bytes(const cells *c) {
   double bytes = c->has_stencil ? (double)sizeof(double) * (double)c->stencil.block_count : 0;
+  if (c->has_matrix) bytes += (double)node_matrix_bytes(&c->matrix);
   for (int n = 0; n < c->where.count; n++)
     if (c->by_points[n]) bytes += (double)point_forces_bytes(c->by_points[n]);
   return bytes;

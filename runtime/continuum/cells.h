@@ -17,6 +17,7 @@
 #include "dsl/base/diagnostics.h"
 #include "runtime/analysis/step_limit.h"
 #include "runtime/continuum/cell_laws.h"
+#include "runtime/continuum/node_matrix.h"
 #include "runtime/continuum/node_stencil.h"
 #include "runtime/continuum/point_forces.h"
 #include "runtime/continuum/tips.h"
@@ -44,8 +45,9 @@ typedef struct cells {
   cell_laws where;            /* each law has its cells */
   cells_law *laws;            /* [where.count] */
   plane_stiffness *stiffness; /* [where.count] at rest */
-  node_stencil stencil;       /* of linear laws */
-  bool has_stencil;
+  node_stencil stencil;       /* of linear laws; in a mesh of lists */
+  node_matrix matrix;
+  bool has_stencil, has_matrix;
   unsigned char *linear; /* [cells] where.of_cell, NO_LINEAR_LAW where it is not; NULL of one law */
   point_forces *
       *by_points; /* [where.count] of the others, once the run has begun; NULL of linear ones */

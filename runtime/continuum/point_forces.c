@@ -75,9 +75,8 @@ static void find_sizes(point_forces *p, const mesh *m) {
     for (int n = p->strips.first_group[row]; n < p->strips.first_group[row + 1]; n++) {
       const cell_group *g = &p->strips.groups[n];
       for (int lane = 0; lane < PL_LANES; lane++) {
-        const int i = g->first + (lane < g->count ? lane : 0); /* what fills up is of the first */
-        const double h = mesh_cell_size(m, mesh_cell_at(m, i, row));
-        for (int k = 0; k < g->table->points; k++)
+        const double h = mesh_cell_size(m, cell_strips_cell(&p->strips, m, row, g, lane));
+        for (int k = 0; k < g->points; k++)
           p->size[g->at + k * PL_LANES + lane] = h;
       }
     }
@@ -109,9 +108,9 @@ void point_forces_rest(const mesh *m, const unsigned char *own, const pl_law *la
   const double rest[STRAINS] = {0};
   point_law *one = point_law_new(law, parameters);
   double most = -INFINITY;
-  for (int cell = 0; cell < mesh_cell_count(m) && (m->mapped || cell == 0); cell++) {
+  for (int cell = 0; cell < mesh_cell_count(m) && (m->mapped || m->lists || cell == 0); cell++) {
     double here[STRAINS][STRAINS];
-    if (m->mapped && own && !own[cell]) continue;
+    if ((m->mapped || m->lists) && own && !own[cell]) continue;
     if (viscous)
       point_law_viscosity(one, mesh_cell_size(m, cell), here);
     else
@@ -137,7 +136,7 @@ static void for_each_cell(point_forces *p, take_cell *take) {
   for (int row = 0; row < p->strips.rows; row++)
     for (int n = p->strips.first_group[row]; n < p->strips.first_group[row + 1]; n++)
       for (int lane = 0; lane < p->strips.groups[n].count; lane++)
-        take(p, n, lane, mesh_cell_at(p->of, p->strips.groups[n].first + lane, row));
+        take(p, n, lane, cell_strips_cell(&p->strips, p->of, row, &p->strips.groups[n], lane));
 }
 
 static void open_mean(point_forces *p, int group, int lane, int cell) {
@@ -150,9 +149,9 @@ static void open_mean(point_forces *p, int group, int lane, int cell) {
     p->part = doubles(p, p->strips.count);
   }
   p->mean[group * PL_LANES + lane] = 1;
-  for (int k = 0; k < g->table->points; k++)
+  for (int k = 0; k < g->points; k++)
     whole += volume[k * PL_LANES];
-  for (int k = 0; k < g->table->points; k++)
+  for (int k = 0; k < g->points; k++)
     p->part[g->at + k * PL_LANES + lane] = volume[k * PL_LANES] / whole;
 }
 
@@ -180,9 +179,8 @@ point_forces *point_forces_new(const mesh *m, const unsigned char *own,
   law->prepare(law, parameters, &none, p->uniforms);
   cell_strips_open(&p->strips, m, points, own);
   open_states(p, ledger);
-  p->plane = cell_strips_plane(&p->strips);
   for (int d = 0; d < 2; d++)
-    p->pushed[d] = doubles(p, p->plane * p->strips.rows);
+    p->pushed[d] = doubles(p, cell_strips_pushed(&p->strips));
   find_sizes(p, m);
   p->rows = must_calloc((size_t)p->strips.rows + 1, sizeof *p->rows);
   p->scratch = must_calloc((size_t)blocks + 1, sizeof *p->scratch);
@@ -228,7 +226,7 @@ static strip next_strip(const point_forces *p, int row, int first) {
   const cell_strips *s = &p->strips;
   strip out = {row, first, first, s->groups[first].at, 0};
   while (out.last < s->first_group[row + 1]) {
-    const long more = (long)s->groups[out.last].table->points * PL_LANES;
+    const long more = (long)s->groups[out.last].points * PL_LANES;
     if (out.count > 0 && out.count + more > STRIP) break;
     out.count += more;
     out.last++;
@@ -268,23 +266,36 @@ static pl_points view_of(const point_forces *p, const strip *s, point_scratch *o
                      .time_step = at->time_step};
 }
 
-/* Takes the cells' mean dilatation in place of the points' own, of strains xx, yy; and of tractions (a
-   stress times the volume) what is due to it: the transpose. */
-static void take_mean(const point_forces *p, const strip *s, double *xx, double *yy,
+/* Some cell of the group takes the mean dilatation. */
+static bool takes_mean(const point_forces *p, const cell_group *g) {
+  const double *taken = p->mean ? p->mean + (g - p->strips.groups) * PL_LANES : NULL;
+  for (int lane = 0; lane < PL_LANES && taken; lane++)
+    if (taken[lane] > 0) return true;
+  return false;
+}
+
+/* Takes the cells' mean dilatation in place of the points' own, of strains xx, yy of a group; and of
+   tractions (a stress times the volume) what is due to it: the transpose. */
+static void take_mean(const point_forces *p, const cell_group *g, double *xx, double *yy,
                       bool tractions) {
+  const double *taken = p->mean + (g - p->strips.groups) * PL_LANES, *part = p->part + g->at;
+  double sum[PL_LANES] = {0};
+  for (int k = 0; k < g->points * PL_LANES; k++)
+    sum[k % PL_LANES] += (tractions ? 1 : part[k]) * (xx[k] + yy[k]);
+  for (int k = 0; k < g->points * PL_LANES; k++) {
+    const int lane = k % PL_LANES;
+    const double shift =
+        taken[lane] * 0.5 * ((tractions ? part[k] : 1) * sum[lane] - (xx[k] + yy[k]));
+    xx[k] += shift;
+    yy[k] += shift;
+  }
+}
+
+static void take_means(const point_forces *p, const strip *s, double *const strain[STRAINS]) {
   for (int g = s->first; g < s->last; g++) {
     const cell_group *group = &p->strips.groups[g];
-    const double *taken = p->mean + (long)g * PL_LANES, *part = p->part + group->at;
-    double *x = xx + (group->at - s->at), *y = yy + (group->at - s->at), sum[PL_LANES] = {0};
-    for (int k = 0; k < group->table->points * PL_LANES; k++)
-      sum[k % PL_LANES] += (tractions ? 1 : part[k]) * (x[k] + y[k]);
-    for (int k = 0; k < group->table->points * PL_LANES; k++) {
-      const int lane = k % PL_LANES;
-      const double shift =
-          taken[lane] * 0.5 * ((tractions ? part[k] : 1) * sum[lane] - (x[k] + y[k]));
-      x[k] += shift;
-      y[k] += shift;
-    }
+    const long to = group->at - s->at;
+    if (takes_mean(p, group)) take_mean(p, group, strain[0] + to, strain[1] + to, false);
   }
 }
 
@@ -293,7 +304,7 @@ static void take_mean(const point_forces *p, const strip *s, double *xx, double 
 static void find_dead(const cell_group *g, const double *failed, double dead[PL_LANES]) {
   for (int lane = 0; lane < PL_LANES; lane++)
     dead[lane] = lane < g->count;
-  for (int k = 0; k < g->table->points; k++)
+  for (int k = 0; k < g->points; k++)
     for (int lane = 0; lane < PL_LANES; lane++)
       dead[lane] = failed[k * PL_LANES + lane] >= 1 ? dead[lane] : 0;
 }
@@ -306,7 +317,7 @@ static void leave_dead(const point_forces *p, const strip *s, double *const stra
     double dead[PL_LANES];
     find_dead(group, p->old_field + p->failed * (long)p->strips.count + group->at, dead);
     for (int c = 0; c < STRAINS; c++)
-      for (int k = 0; k < group->table->points; k++)
+      for (int k = 0; k < group->points; k++)
         for (int lane = 0; lane < PL_LANES; lane++) {
           double *at = strain[c] + to + k * PL_LANES + lane;
           *at = dead[lane] > 0 ? 0 : *at;
@@ -331,31 +342,52 @@ static pl_points motion_of(const point_forces *p, const strip *s, point_scratch 
   const bool rates = p->law->reads_rates || p->loses;
   find_strains(p, s, at->displacement, own->strain);
   if (rates) find_strains(p, s, at->velocity, own->rate);
-  if (p->mean) take_mean(p, s, own->strain[0], own->strain[1], false);
-  if (p->mean && rates) take_mean(p, s, own->rate[0], own->rate[1], false);
+  if (p->mean) take_means(p, s, own->strain);
+  if (p->mean && rates) take_means(p, s, own->rate);
   if (p->failed >= 0) leave_dead(p, s, own->strain);
   if (p->failed >= 0 && rates) leave_dead(p, s, own->rate);
   return view_of(p, s, own, at);
 }
 
-static void push(const point_forces *p, const strip *s, const point_scratch *own,
-                 double *const stress[STRAINS]) {
-  const double *volume = p->strips.volume + s->at;
-  double *force[2] = {p->pushed[0] + s->row * p->plane, p->pushed[1] + s->row * p->plane};
+/* Groups from g on that are side by side, even and alike, and whose points have their own dilatations;
+   0: g is not so. */
+static int even_from(const point_forces *p, int g, int last) {
+  const cell_group *groups = p->strips.groups;
+  int count = 0;
+  while (g + count < last && groups[g + count].even > 0 && !takes_mean(p, &groups[g + count]) &&
+         groups[g + count].even == groups[g].even && groups[g + count].table == groups[g].table &&
+         groups[g + count].first == groups[g].first + count * PL_LANES)
+    count++;
+  return count;
+}
+
+static void push_group(const point_forces *p, int row, const cell_group *g,
+                       const point_scratch *own, const double *const stress[STRAINS]) {
+  const double *volume = p->strips.volume + g->at;
+  const long count = (long)g->points * PL_LANES;
   for (int c = 0; c < STRAINS; c++) {
     double *traction = own->traction[c];
     const double *from = stress[c];
     INDEPENDENT
-    for (long k = 0; k < s->count; k++)
+    for (long k = 0; k < count; k++)
       traction[k] = volume[k] * from[k];
   }
-  if (p->mean) take_mean(p, s, own->traction[0], own->traction[1], true);
-  for (int g = s->first; g < s->last; g++) {
-    const cell_group *group = &p->strips.groups[g];
-    const long to = group->at - s->at;
-    const double *traction[STRAINS] = {own->traction[0] + to, own->traction[1] + to,
-                                       own->traction[2] + to};
-    cell_strips_push(&p->strips, group, traction, force);
+  if (takes_mean(p, g)) take_mean(p, g, own->traction[0], own->traction[1], true);
+  cell_strips_push(&p->strips, row, g, (const double *const *)own->traction, p->pushed);
+}
+
+static void push(const point_forces *p, const strip *s, const point_scratch *own,
+                 double *const stress[STRAINS]) {
+  const cell_group *groups = p->strips.groups;
+  for (int g = s->first; g < s->last;) {
+    const long to = groups[g].at - s->at;
+    const double *const here[STRAINS] = {stress[0] + to, stress[1] + to, stress[2] + to};
+    const int even = even_from(p, g, s->last);
+    if (even > 0)
+      cell_strips_push_even(&p->strips, s->row, &groups[g], even, here, p->pushed);
+    else
+      push_group(p, s->row, &groups[g], own, here);
+    g += even > 0 ? even : 1;
   }
 }
 
@@ -387,7 +419,7 @@ static void push_hourglass(const point_forces *p, const strip *s, int g, int axi
   const double *gamma = p->hourglass + (long)g * HOURGLASS * PL_LANES,
                *C = gamma + CORNERS * PL_LANES;
   double *force =
-      p->pushed[axis] + s->row * p->plane - p->strips.low * stride + p->strips.groups[g].first;
+      p->pushed[axis] + cell_strips_corner(&p->strips, s->row) + p->strips.groups[g].first;
   for (int corner = 0; corner < CORNERS; corner++) {
     double *to = force + corner / 2 * stride + corner % 2;
     for (int lane = 0; lane < PL_LANES; lane++)
@@ -405,7 +437,7 @@ static void resist_hourglass(const point_forces *p, const strip *s, const point_
     const double *volume = p->strips.volume + p->strips.groups[g].at;
     const long point = p->strips.groups[g].at - s->at;
     double before[PL_LANES], after[PL_LANES];
-    if (p->strips.groups[g].table->points > 1) continue;
+    if (p->strips.groups[g].points > 1) continue;
     find_alive(p, g, p->old_field, before);
     find_alive(p, g, p->new_field, after);
     for (int axis = 0; axis < 2; axis++) {
@@ -556,8 +588,7 @@ void point_forces_find(point_forces *p, int block, int from, int to, const point
                        bool seen) {
   const int last = to < p->strips.rows ? to : p->strips.rows;
   for (int row = from; row < last; row++) {
-    for (int d = 0; d < 2; d++)
-      memset(p->pushed[d] + row * p->plane, 0, (size_t)p->plane * sizeof(double));
+    cell_strips_clear(&p->strips, row, p->pushed);
     if (seen) p->rows[row] = (point_row){0};
     if (!seen) p->dead[row] = 0;
     strip s = {.last = p->strips.first_group[row]};
@@ -572,22 +603,7 @@ void point_forces_find(point_forces *p, int block, int from, int to, const point
 }
 
 void point_forces_take(const point_forces *p, int row, bool more, double *const force[2]) {
-  const cell_strips *s = &p->strips;
-  const node_layout *l = &s->layout;
-  const int from = row - s->high < 0 ? 0 : row - s->high,
-            to = row - s->low > s->rows - 1 ? s->rows - 1 : row - s->low;
-  for (int d = 0; d < 2; d++) {
-    double *out = force[d] + l->origin + row * l->stride;
-    if (!more) memset(out, 0, (size_t)l->padded * sizeof *out);
-    for (int c = from; c <= to; c++) {
-      const double *in = p->pushed[d] + c * p->plane + (row - c - s->low) * l->stride;
-      INDEPENDENT
-      for (long k = 0; k < l->padded; k++)
-        out[k] += in[k];
-    }
-    for (long k = l->nodes[0]; k < l->padded; k++)
-      out[k] = 0;
-  }
+  cell_strips_take(&p->strips, row, p->pushed, more, force);
 }
 
 void point_forces_turn(point_forces *p, double time) {
@@ -631,7 +647,7 @@ static void add_cell(const point_forces *p, const double *plane, int cell, doubl
 }
 
 double point_forces_mean(const point_forces *p, const double *plane, int node) {
-  int cell[4];
+  int cell[MESH_MOST_AROUND];
   const int count = mesh_cells_around(p->of, node, cell);
   double sum = 0, volume = 0;
   for (int n = 0; n < count; n++)
@@ -640,15 +656,15 @@ double point_forces_mean(const point_forces *p, const double *plane, int node) {
 }
 
 static int corners_there(const mesh *m, int cell) {
-  int corner[4], count = 0;
-  mesh_corners(m, cell, corner);
-  for (int k = 0; k < 4; k++)
+  int corner[ELEMENT_MOST_NODES], count = 0;
+  const int nodes = mesh_cell_nodes(m, cell, corner);
+  for (int k = 0; k < nodes; k++)
     count += !m->gone[corner[k]];
   return count;
 }
 
 double point_forces_share(const point_forces *p, const double *plane, int node) {
-  int cell[4];
+  int cell[MESH_MOST_AROUND];
   const int count = mesh_cells_around(p->of, node, cell);
   double share = 0;
   for (int n = 0; n < count; n++) {
@@ -671,35 +687,31 @@ static double size_of(double *const stress[STRESSES], long k) {
 static void take_point(const point_forces *p, const strip *s, const point_scratch *own, long k,
                        point_state *out) {
   const cell_group *g = &p->strips.groups[s->first];
-  cell_group_place(p->of, p->points, s->row, g, (int)(s->at + k), out->at, out->cell);
+  cell_strips_place(&p->strips, p->of, p->points, s->row, g, (int)(s->at + k), out->at, out->cell);
   for (int c = 0; c < STRAINS; c++)
     out->strain[c] = own->strain[c][k];
   for (int c = 0; c < STRESSES; c++)
     out->stress[c] = own->stress[c][k];
+  out->size = p->size[s->at + k];
   for (int f = 0; f < p->law->field_count; f++)
     out->field[f] = own->old_field[f][k];
 }
 
-/* Whether a point may push the node. */
-static bool reaches(const point_forces *p, const cell_group *g, long at, const int node[2]) {
-  const int away = node[0] - g->first - (int)(at % PL_LANES);
-  return at % PL_LANES < g->count && away >= p->strips.low && away <= p->strips.high;
-}
-
 double point_forces_worst(point_forces *p, int node, const point_motion *at, point_state *out) {
-  const int place[2] = {node % p->of->nodes[0], node / p->of->nodes[0]};
+  const int at_row = node / p->of->nodes[0];
   point_scratch *own = &p->scratch[0];
   double most = -1;
-  for (int row = place[1] - p->strips.high; row <= place[1] - p->strips.low; row++) {
+  for (int row = at_row - p->strips.high; row <= at_row - p->strips.low; row++) {
     if (row < 0 || row >= p->strips.rows) continue;
     for (int g = p->strips.first_group[row]; g < p->strips.first_group[row + 1]; g++) {
       const cell_group *group = &p->strips.groups[g];
-      const strip s = {row, g, g + 1, group->at, (long)group->table->points * PL_LANES};
+      const strip s = {row, g, g + 1, group->at, (long)group->points * PL_LANES};
       const pl_points points = motion_of(p, &s, own, at);
       p->law->point_step(p->law, p->uniforms, &points);
       for (long k = 0; k < s.count && isfinite(most); k++) {
         const double here = size_of(own->stress, k);
-        if (!reaches(p, group, k, place) || here <= most) continue;
+        if (!cell_strips_reach(&p->strips, p->of, group, (int)(k % PL_LANES), node) || here <= most)
+          continue;
         most = here;
         take_point(p, &s, own, k, out);
       }

@@ -36,8 +36,7 @@ typedef struct point_forces {
   double *lost_now;   /* [PL_LOSSES][strips.count] by the state observed */
   double *observed;   /* [1 + outputs][strips.count] in the state observed: J/m^3, then outputs */
   double *stress;     /* [PL_STRESSES(2)][strips.count] Pa, in the state observed */
-  double *pushed[2];  /* [rows][plane] N */
-  long plane;         /* doubles */
+  double *pushed[2];  /* [cell_strips_pushed] N */
   double *size;       /* [strips.count] m: of the points' cells */
   double scale[3][3]; /* Pa^(-1/2): L^-1 of the tangent at rest, L L^T */
   double strip;       /* Pa: element_strip_stiffness of that tangent */
@@ -100,9 +99,10 @@ double point_forces_share(const point_forces *p, const double *plane, int node);
 
 /* How a point is. */
 typedef struct point_state {
-  int cell[2];                 /* i, j */
+  int cell[2];                 /* i, j; of a mesh of lists its number and -1 */
   double at[2];                /* m */
   double strain[3], stress[4]; /* Pa */
+  double size;                 /* m: of its cell */
   double *field;               /* [fields] of before the step; the caller's memory */
 } point_state;
 /* Of the points that push a node that with the largest stress, or without a finite one: its square,

@@ -51,7 +51,8 @@ void element_mean_strain(const mesh *m, int cell, double u[4][2], double strain[
 double element_hourglass(const mesh *m, int cell, double gamma[4]) {
   static const double h[4] = {1, -1, -1, 1};
   double at[4][2], mean[4][2], sum = 0, along[2] = {0, 0};
-  if (!(m->hourglass[cell] > 0) || m->cell[cell] != CELL_ELEMENT || m->element_gauss[cell] != 1)
+  if (m->lists || !(m->hourglass[cell] > 0) || m->cell[cell] != CELL_ELEMENT ||
+      m->element_gauss[cell] != 1)
     return 0;
   const double area = element_mean_gradient(m, cell, mean);
   corners_of(m, cell, at);

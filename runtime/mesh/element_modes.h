@@ -19,9 +19,10 @@
 
 #include "runtime/mesh/mesh.h"
 
-/* Whether the cell is an element with 2 x 2 points whose dilatation is the mean. */
+/* Whether the cell is an element of a grid with 2 x 2 points whose dilatation is the mean. */
 static inline bool element_takes_mean(const mesh *m, int cell) {
-  return m->mean_dilatation[cell] && m->cell[cell] == CELL_ELEMENT && m->element_gauss[cell] == 2;
+  return !m->lists && m->mean_dilatation[cell] && m->cell[cell] == CELL_ELEMENT &&
+         m->element_gauss[cell] == 2;
 }
 /* The cell's mean of the gradients of its corners' functions, 1/m, in the order of mesh_corners; that
    at the point of an element with one. Returns its area, m^2. */

@@ -13,11 +13,12 @@
 #include "runtime/result/result_read.h"
 #include "runtime/result/result_sets.h"
 
-enum { CORNERS = 4, MOST_NEAR = 256 };
+enum { CORNERS = 4, MOST_NODES = 6, MOST_NEAR = 256 };
 
 void plot_meshes_free(plot_meshes *m) {
   for (int k = 0; k < m->count; k++) {
     free(m->items[k].cells);
+    free(m->items[k].begins);
     crack_lines_close(&m->items[k].lines);
   }
   for (int k = 0; k < m->crack_count; k++)
@@ -47,6 +48,66 @@ static bool read_first(result_file *f, const char *group, int64_t *first) {
   return good;
 }
 
+/* Cells of a file as cells of four corners: how many, at `to`. */
+static int split(const int32_t *cell, int columns, int32_t (*to)[CORNERS]) {
+  static const int parts[4][CORNERS] = {{0, 3, 5, 5}, {3, 1, 4, 4}, {5, 4, 2, 2}, {3, 4, 5, 5}};
+  int nodes = 0;
+  while (nodes < columns && cell[nodes] >= 0)
+    nodes++;
+  if (nodes == MOST_NODES) {
+    for (int k = 0; k < CORNERS * CORNERS; k++)
+      to[k / CORNERS][k % CORNERS] = cell[parts[k / CORNERS][k % CORNERS]];
+    return CORNERS;
+  }
+  for (int k = 0; k < CORNERS; k++)
+    to[0][k] = k < nodes ? cell[k] : nodes > 0 ? cell[nodes - 1] : -1;
+  return 1;
+}
+
+/* m: the root of the mean area. */
+static double mean_size(const plot_mesh *m, const double *reference) {
+  double sum = 0;
+  for (long c = 0; c < m->cell_count; c++)
+    for (int k = 0; k < CORNERS; k++) {
+      const double *a = reference + 2 * m->cells[CORNERS * c + k],
+                   *b = reference + 2 * m->cells[CORNERS * c + (k + 1) % CORNERS];
+      sum += 0.5 * (a[0] * b[1] - b[0] * a[1]);
+    }
+  return m->cell_count > 0 ? sqrt(fabs(sum) / (double)m->cell_count) : 0;
+}
+
+/* Of a mesh of a file. */
+static void take_lists(plot_mesh *m, int columns) {
+  int32_t *given = m->cells;
+  plot_beginning *begins = m->begins;
+  const size_t most = CORNERS * (size_t)m->cell_count + 1;
+  long count = 0;
+  m->cells = must_calloc(CORNERS * most, sizeof *m->cells);
+  m->begins = must_calloc(most, sizeof *m->begins);
+  for (long c = 0; c < m->cell_count; c++) {
+    const int parts = split(given + columns * c, columns, (int32_t(*)[CORNERS])m->cells + count);
+    for (int k = 0; k < parts; k++)
+      m->begins[count++] = begins[c];
+  }
+  m->cell_count = count;
+  free(given);
+  free(begins);
+}
+
+/* Its cells, with nodes of its own, begin with these particles. */
+static bool find_begins(plot_mesh *m, int columns, long first, long particles) {
+  unsigned char *begun = must_calloc((size_t)particles + 1, 1);
+  bool good = true;
+  m->begins = must_calloc((size_t)m->cell_count + 1, sizeof *m->begins);
+  for (long c = 0; c < m->cell_count && good; c++) {
+    const long node = m->cells[columns * c];
+    good = node >= 0 && node < particles - first;
+    if (good) m->begins[c] = (plot_beginning){(int32_t)(first + node), begun[first + node]++};
+  }
+  free(begun);
+  return good;
+}
+
 /* Its cells as particles of the result. */
 static bool read_mesh(plot_mesh *m, result_file *f, const char *name, const double *reference,
                       long particles) {
@@ -56,13 +117,17 @@ static bool read_mesh(plot_mesh *m, result_file *f, const char *name, const doub
   snprintf(m->name, sizeof m->name, "%.79s", name);
   snprintf(group, sizeof group, "/meshes/%.400s", name);
   snprintf(path, sizeof path, "%s/cells", group);
-  m->cells = result_read_table(f, path, true, CORNERS, CORNERS, &m->cell_count, &columns);
+  m->cells = result_read_table(f, path, true, 3, MOST_NODES, &m->cell_count, &columns);
   if (!m->cells || !read_first(f, group, &first) || first < 0 || first > particles) return false;
+  if (!find_begins(m, columns, (long)first, particles)) return false;
+  if (columns != CORNERS) take_lists(m, columns);
   if (!names_particles(m->cells, m->cell_count, particles - (long)first)) return false;
   for (long k = 0; k < CORNERS * m->cell_count; k++)
     m->cells[k] += (int32_t)first;
   m->all_count = m->cell_count;
-  if (m->cell_count > 0) {
+  if (columns != CORNERS) {
+    m->size = mean_size(m, reference);
+  } else if (m->cell_count > 0) {
     const double *low = reference + 2 * m->cells[0], *high = reference + 2 * m->cells[2];
     m->size = sqrt(fabs((high[0] - low[0]) * (high[1] - low[1])));
   }
@@ -138,19 +203,17 @@ static void give_lines(plot_meshes *m) {
 }
 
 /* Cells that have died stand behind those that are left. */
-static void bury(plot_mesh *m, const double *dead, long particles) {
-  unsigned char *begun = must_calloc((size_t)particles + 1, 1);
+static void bury(plot_mesh *m, const double *dead) {
   int32_t *gone = must_calloc(CORNERS * (size_t)m->cell_count + 1, sizeof *gone);
   long left = 0, died = 0;
   for (long c = 0; c < m->cell_count; c++) {
-    const int32_t *cell = m->cells + CORNERS * c;
-    int32_t *to = mesh_cell_died(dead[cell[0]], begun[cell[0]]++) ? gone + CORNERS * died++
-                                                                  : m->cells + CORNERS * left++;
-    memmove(to, cell, CORNERS * sizeof *cell);
+    const plot_beginning b = m->begins[c];
+    int32_t *to = mesh_cell_died(dead[b.particle], b.before) ? gone + CORNERS * died++
+                                                             : m->cells + CORNERS * left++;
+    memmove(to, m->cells + CORNERS * c, CORNERS * sizeof *to);
   }
   memcpy(m->cells + CORNERS * left, gone, CORNERS * (size_t)died * sizeof *gone);
   m->cell_count = left;
-  free(begun);
   free(gone);
 }
 
@@ -161,7 +224,7 @@ static void bury_all(plot_meshes *m, result_file *f, long frame, long particles)
   double *dead = result_read_frame(f, MESH_DEAD_CELLS, frame, &count, &components, unit,
                                    sizeof unit, error, sizeof error);
   for (int k = 0; k < m->count && dead && count == particles; k++)
-    bury(&m->items[k], dead, particles);
+    bury(&m->items[k], dead);
   free(dead);
 }
 
@@ -328,16 +391,18 @@ int32_t *plot_mesh_outline(const plot_mesh *m, long *count) {
   const long all = CORNERS * m->cell_count;
   cell_side *sides = must_calloc((size_t)all + 1, sizeof *sides);
   int32_t *outline = must_calloc(2 * (size_t)all + 1, sizeof *outline);
+  long there = 0;
   for (long k = 0; k < all; k++) {
     const int32_t i = m->cells[k],
                   j = m->cells[k / CORNERS * CORNERS + (k % CORNERS + 1) % CORNERS];
-    sides[k] = (cell_side){i < j ? i : j, i < j ? j : i, i, j};
+    if (i == j) continue; /* of a triangle */
+    sides[there++] = (cell_side){i < j ? i : j, i < j ? j : i, i, j};
   }
-  qsort(sides, (size_t)all, sizeof *sides, compare_sides);
+  qsort(sides, (size_t)there, sizeof *sides, compare_sides);
   *count = 0;
-  for (long k = 0; k < all;) {
+  for (long k = 0; k < there;) {
     long next = k + 1;
-    while (next < all && compare_sides(&sides[k], &sides[next]) == 0)
+    while (next < there && compare_sides(&sides[k], &sides[next]) == 0)
       next++;
     if (next == k + 1) {
       outline[2 * *count] = sides[k].from;

@@ -3,7 +3,9 @@
 
      /meshes/<mesh>/{nodes,cells,method}   result.h
      /xdmf/cells/<k>                       [C, 4] particles: cells of all meshes that no crack
-                                           crosses, for the frames of set k
+                                           crosses, for the frames of set k; [C, 3] or [C, 6] of
+                                           triangles; where kinds differ all in one row, each with
+                                           its number of XDMF before it
      /xdmf/cracks/<crack>/<frame>          [P, 3] points of the crack
      /xdmf/nothing/<columns>/<P>           [P] NaN, [P, 3] 0: fields of the nodes on a crack, which
                                            has none; a reader of ParaView's colours a grid only
@@ -36,8 +38,10 @@ typedef struct mesh_path { /* a crack, frame by frame */
 } mesh_path;
 
 typedef struct mesh_cells { /* that are there and no crack crosses */
-  int32_t *corners;         /* [count][4] particles */
-  long count;
+  int32_t *corners;         /* [corner_count] particles, cell by cell */
+  unsigned char *nodes;     /* [count] of each: 3, 4, 6 */
+  long count, corner_count;
+  int alike; /* nodes of all; 0: they differ */
 } mesh_cells;
 
 typedef struct mesh_views {
