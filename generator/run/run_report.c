@@ -869,6 +869,7 @@ void conclude(const run *r, double seconds, long steps) {
     conclude_contact(r, k);
   conclude_energy(r);
   conclude_cracks(r);
+  conclude_deaths(r);
   fflush(stdout);
   warn_of_gain(r);
   warn_of_damping(r);

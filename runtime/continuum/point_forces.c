@@ -146,6 +146,9 @@ point_forces *point_forces_new(const mesh *m, const unsigned char *own,
   p->scratch = must_calloc((size_t)blocks + 1, sizeof *p->scratch);
   for (int b = 0; b < blocks; b++)
     open_scratch(p, &p->scratch[b]);
+  p->failed = point_law_failed(law);
+  p->dead = must_calloc((size_t)p->strips.rows + 1, sizeof *p->dead);
+  p->first_death = -1;
   find_rest(p, own, parameters);
   return p;
 }
@@ -159,6 +162,7 @@ void point_forces_free(point_forces *p) {
   }
   free(p->scratch);
   free(p->rows);
+  free(p->dead);
   free(p->uniforms);
   cell_strips_close(&p->strips);
   pool_free(p->memory);
@@ -220,10 +224,51 @@ static pl_points view_of(const point_forces *p, const strip *s, point_scratch *o
                      .time_step = at->time_step};
 }
 
+/* dead[PL_LANES] 1 in cells of a group all of whose points have failed by these states, a plane that
+   begins with it. */
+static void find_dead(const cell_group *g, const double *failed, double dead[PL_LANES]) {
+  for (int lane = 0; lane < PL_LANES; lane++)
+    dead[lane] = lane < g->count;
+  for (int k = 0; k < g->points; k++)
+    for (int lane = 0; lane < PL_LANES; lane++)
+      dead[lane] = failed[k * PL_LANES + lane] >= 1 ? dead[lane] : 0;
+}
+
+/* Dead cells strain no more. */
+static void leave_dead(const point_forces *p, const strip *s, double *const strain[STRAINS]) {
+  for (int g = s->first; g < s->last; g++) {
+    const cell_group *group = &p->strips.groups[g];
+    const long to = group->at - s->at;
+    double dead[PL_LANES];
+    find_dead(group, p->old_field + p->failed * (long)p->strips.count + group->at, dead);
+    for (int c = 0; c < STRAINS; c++)
+      for (int k = 0; k < group->points; k++)
+        for (int lane = 0; lane < PL_LANES; lane++) {
+          double *at = strain[c] + to + k * PL_LANES + lane;
+          *at = dead[lane] > 0 ? 0 : *at;
+        }
+  }
+}
+
+static long count_dead(const point_forces *p, const strip *s) {
+  double sum = 0;
+  for (int g = s->first; g < s->last; g++) {
+    const cell_group *group = &p->strips.groups[g];
+    double dead[PL_LANES];
+    find_dead(group, p->new_field + p->failed * (long)p->strips.count + group->at, dead);
+    for (int lane = 0; lane < PL_LANES; lane++)
+      sum += dead[lane];
+  }
+  return (long)sum;
+}
+
 static pl_points motion_of(const point_forces *p, const strip *s, point_scratch *own,
                            const point_motion *at) {
+  const bool rates = p->law->reads_rates || p->loses;
   find_strains(p, s, at->displacement, own->strain);
-  if (p->law->reads_rates || p->loses) find_strains(p, s, at->velocity, own->rate);
+  if (rates) find_strains(p, s, at->velocity, own->rate);
+  if (p->failed >= 0) leave_dead(p, s, own->strain);
+  if (p->failed >= 0 && rates) leave_dead(p, s, own->rate);
   return view_of(p, s, own, at);
 }
 
@@ -263,6 +308,7 @@ static void step_strip(const point_forces *p, const strip *s, point_scratch *own
   } else {
     p->law->point_step(p->law, p->uniforms, &points);
   }
+  if (p->failed >= 0) p->dead[s->row] += count_dead(p, s);
   push(p, s, own, own->stress);
 }
 
@@ -375,6 +421,7 @@ void point_forces_find(point_forces *p, int block, int from, int to, const point
   for (int row = from; row < last; row++) {
     cell_strips_clear(&p->strips, row, p->pushed);
     if (seen) p->rows[row] = (point_row){0};
+    if (!seen) p->dead[row] = 0;
     strip s = {.last = p->strips.first_group[row]};
     while (s.last < p->strips.first_group[row + 1]) {
       s = next_strip(p, row, s.last);
@@ -390,10 +437,30 @@ void point_forces_take(const point_forces *p, int row, bool more, double *const 
   cell_strips_take(&p->strips, row, p->pushed, more, force);
 }
 
-void point_forces_turn(point_forces *p) {
+void point_forces_turn(point_forces *p, double time) {
   double *kept = p->old_field;
   p->old_field = p->new_field;
   p->new_field = kept;
+  for (int row = 0; row < p->strips.rows && p->failed >= 0 && p->first_death < 0; row++)
+    if (p->dead[row] > 0) p->first_death = time;
+}
+
+bool point_forces_dead(const point_forces *p, int cell) {
+  if (p->failed < 0 || !point_forces_has(p, cell)) return false;
+  const long plane = p->failed * (long)p->strips.count;
+  const int count = p->points->first[cell + 1] - p->points->first[cell];
+  for (int k = 0; k < count; k++) {
+    const long at = plane + p->strips.of_cell[cell] + k * PL_LANES;
+    if (!(p->old_field[at] >= 1 || p->new_field[at] >= 1)) return false;
+  }
+  return true;
+}
+
+long point_forces_deaths(const point_forces *p) {
+  long count = 0;
+  for (int cell = 0; cell < mesh_cell_count(p->of) && p->failed >= 0; cell++)
+    count += point_forces_dead(p, cell);
+  return count;
 }
 
 /* --- nodes ------------------------------------------------------------------------------------ */

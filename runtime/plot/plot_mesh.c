@@ -7,6 +7,8 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/result/mesh_views.h"
+#include "runtime/result/result_fields.h"
 #include "runtime/result/result_find.h"
 #include "runtime/result/result_read.h"
 #include "runtime/result/result_sets.h"
@@ -16,6 +18,7 @@ enum { CORNERS = 4, MOST_NODES = 6, MOST_NEAR = 256 };
 void plot_meshes_free(plot_meshes *m) {
   for (int k = 0; k < m->count; k++) {
     free(m->items[k].cells);
+    free(m->items[k].first);
     crack_lines_close(&m->items[k].lines);
   }
   for (int k = 0; k < m->crack_count; k++)
@@ -77,9 +80,14 @@ static double mean_size(const plot_mesh *m, const double *reference) {
 static void take_lists(plot_mesh *m, int columns) {
   int32_t *given = m->cells;
   long count = 0;
-  m->cells = must_calloc(CORNERS * CORNERS * (size_t)m->cell_count + 1, sizeof *m->cells);
-  for (long c = 0; c < m->cell_count; c++)
-    count += split(given + columns * c, columns, (int32_t(*)[CORNERS])m->cells + count);
+  const size_t most = CORNERS * (size_t)m->cell_count + 1; /* parts */
+  m->cells = must_calloc(CORNERS * most, sizeof *m->cells);
+  m->first = must_alloc(most * sizeof *m->first);
+  for (long c = 0; c < m->cell_count; c++) {
+    const int parts = split(given + columns * c, columns, (int32_t(*)[CORNERS])m->cells + count);
+    for (int k = 0; k < parts; k++)
+      m->first[count++] = k == 0 ? given[columns * c] : -1;
+  }
   m->cell_count = count;
   free(given);
 }
@@ -99,6 +107,9 @@ static bool read_mesh(plot_mesh *m, result_file *f, const char *name, const doub
   if (!names_particles(m->cells, m->cell_count, particles - (long)first)) return false;
   for (long k = 0; k < CORNERS * m->cell_count; k++)
     m->cells[k] += (int32_t)first;
+  for (long k = 0; m->first && k < m->cell_count; k++)
+    if (m->first[k] >= 0) m->first[k] += (int32_t)first;
+  m->all_count = m->cell_count;
   if (columns != CORNERS) {
     m->size = mean_size(m, reference);
   } else if (m->cell_count > 0) {
@@ -176,6 +187,35 @@ static void give_lines(plot_meshes *m) {
                         m->cracks[c].points + 2 * k);
 }
 
+/* Cells that have died stand behind those that are left. */
+static void bury(plot_mesh *m, const double *dead, long particles) {
+  unsigned char *begun = must_calloc((size_t)particles + 1, 1);
+  int32_t *gone = must_calloc(CORNERS * (size_t)m->cell_count + 1, sizeof *gone);
+  long left = 0, died = 0;
+  bool dies = false;
+  for (long c = 0; c < m->cell_count; c++) {
+    const int32_t *cell = m->cells + CORNERS * c, first = m->first ? m->first[c] : cell[0];
+    if (first >= 0) dies = mesh_cell_died(dead[first], begun[first]++);
+    int32_t *to = dies ? gone + CORNERS * died++ : m->cells + CORNERS * left++;
+    memmove(to, cell, CORNERS * sizeof *cell);
+  }
+  memcpy(m->cells + CORNERS * left, gone, CORNERS * (size_t)died * sizeof *gone);
+  m->cell_count = left;
+  free(begun);
+  free(gone);
+}
+
+static void bury_all(plot_meshes *m, result_file *f, long frame, long particles) {
+  char unit[64], error[512];
+  long count = 0;
+  int components = 0;
+  double *dead = result_read_frame(f, MESH_DEAD_CELLS, frame, &count, &components, unit,
+                                   sizeof unit, error, sizeof error);
+  for (int k = 0; k < m->count && dead && count == particles; k++)
+    bury(&m->items[k], dead, particles);
+  free(dead);
+}
+
 bool plot_meshes_read(plot_meshes *m, result_file *f, long frame, char *error, size_t size) {
   *m = (plot_meshes){.count = 0};
   result_names names = result_list(f, "/meshes");
@@ -189,6 +229,7 @@ bool plot_meshes_read(plot_meshes *m, result_file *f, long frame, char *error, s
   if (!good) snprintf(error, size, "`/meshes` of `%s` is damaged", f->path);
   good = good && (names.count == 0 || read_cracks(m, f, frame, error, size));
   if (good) give_lines(m);
+  if (good && m->count > 0) bury_all(m, f, frame, particles);
   result_names_free(&names);
   free(reference);
   return good;

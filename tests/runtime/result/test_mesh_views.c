@@ -100,6 +100,25 @@ static void cells_that_a_crack_crosses_are_left_out(void **state) {
   close_views(&v);
 }
 
+/* Of a node the first bit is of the cell that begins with it. */
+static void cells_that_have_died_are_left_out(void **state) {
+  (void)state;
+  const result_header h = header("m.h5");
+  mesh_views v = {.particles = ALL, .dead = calloc(3 * ALL, sizeof(double))};
+  v.dead[ALL + 1 + 1] = 1; /* cell 1 from the second frame on, */
+  v.dead[2 * ALL + 1 + 1] = 1;
+  v.dead[2 * ALL + 1 + 3] = 3; /* cell 2 from the third; another would begin there */
+  mesh_views_find(&v, &h, 3);
+  assert_int_equal(v.set_count, 3);
+  for (int k = 0; k < 3; k++) {
+    assert_int_equal(v.set_of_frame[k], k);
+    assert_int_equal(v.sets[k].count, CELLS - k);
+  }
+  assert_int_equal(v.sets[2].corners[4], 1 + cells[12]);
+  mesh_views_free(&v);
+  assert_true(mesh_cell_died(5, 2) && !mesh_cell_died(5, 1) && mesh_cell_died(5, 0));
+}
+
 static bool has_number(hid_t file, const char *name, long rows, int columns) {
   hsize_t shape[3] = {0, 0, 0};
   const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
@@ -200,6 +219,7 @@ static void the_sidecar_has_cells_and_cracks_in_every_frame(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(cells_that_a_crack_crosses_are_left_out),
+      cmocka_unit_test(cells_that_have_died_are_left_out),
       cmocka_unit_test(what_is_written_is_read_back),
       cmocka_unit_test(the_sidecar_has_cells_and_cracks_in_every_frame)};
   return cmocka_run_group_tests(tests, NULL, NULL);
