@@ -390,11 +390,7 @@ static bool can_be_tied(const run_body *b, const deck *k, diagnostics *d) {
     diag_hint(d, "take a law of bonds, such as `elastic_micropolar` or `mplm_bilinear`");
     return false;
   }
-  if (!k->relaxation.solved) return true;
-  diag_report(d, DIAG_NOT_SUPPORTED, k->at_rest.item.where,
-              "a lattice that is tied to a mesh has no static solution");
-  diag_hint(d, "use `&relaxation` in place of `&static`");
-  return false;
+  return true;
 }
 
 static bool open_ties(run_body *b, const deck *k, diagnostics *d) {
