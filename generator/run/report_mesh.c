@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/base/elementary.h"
+#include "generator/run/moment.h"
 #include "generator/run/print_quantity.h"
 #include "runtime/continuum/cells.h"
 
@@ -135,4 +136,21 @@ void announce_mesh(const run *r, int lattice) {
   for (int n = 0; n < k->crack_count && c->tips; n++)
     if (strcmp(k->cracks[n].mesh, k->lattices[lattice].name) == 0)
       announce_crack(r, c->tips, &k->cracks[n]);
+}
+
+/* "cells      plate: 12 of 400 have died, the first at t = 0.31 ms" */
+void conclude_deaths(const run *r) {
+  for (int b = 0; b < simulation_bodies(r->simulation); b++) {
+    const cells *c = simulation_cells(r->simulation, b);
+    double first;
+    char when[MOMENT_TEXT];
+    const long died = c && cells_can_die(c) ? cells_deaths(c, &first) : 0;
+    if (died == 0) continue;
+    long all = 0;
+    for (int cell = 0; cell < mesh_cell_count(&c->mesh); cell++)
+      all += c->mesh.cell[cell] != CELL_ABSENT;
+    printf("  cells      %s: %ld of %ld have died", r->deck->lattices[b].name, died, all);
+    if (isfinite(first)) printf(", the first at %s", moment(r, first, when));
+    putchar('\n');
+  }
 }

@@ -405,7 +405,7 @@ static void turn(sweep *w) {
   }
   e->begun = 1;
   for (int n = 0; n < e->of->where.count; n++)
-    if (e->of->by_points[n]) point_forces_turn(e->of->by_points[n]);
+    if (e->of->by_points[n]) point_forces_turn(e->of->by_points[n], w->body->time);
   if (e->of->tips) tips_after(e->of->tips, w->body, e->before, &e->of->mesh, &e->of->stencil);
 }
 
@@ -683,10 +683,11 @@ static void remember(cells_memory *m, void *plane, size_t bytes) {
   m->bytes[m->count++] = bytes;
 }
 
-static void remember_points(cells_memory *m, const point_forces *p) {
+static void remember_points(cells_memory *m, point_forces *p) {
   const size_t points = (size_t)p->strips.count * sizeof(double);
   if (p->law->field_count > 0) remember(m, p->old_field, points * (size_t)p->law->field_count);
   if (p->loses) remember(m, p->lost, points * PL_LOSSES);
+  if (p->failed >= 0) remember(m, &p->first_death, sizeof p->first_death);
 }
 
 cells_memory cells_remembered(const sweep *w) {
@@ -776,6 +777,29 @@ bool cells_mean_stress(const cells *c, int law, int node, double stress[4]) {
   for (int k = 0; k < PL_STRESSES(2) && p; k++)
     stress[k] = point_forces_mean(p, p->stress + k * (long)p->strips.count, node);
   return p != NULL;
+}
+
+bool cells_can_die(const cells *c) {
+  for (int n = 0; n < c->where.count && c->laws; n++)
+    if (point_law_failed(c->laws[n].law) >= 0) return true;
+  return false;
+}
+
+bool cells_dead(const cells *c, int cell) {
+  const point_forces *p = c->by_points[cell_laws_at(&c->where, cell)];
+  return p && point_forces_dead(p, cell);
+}
+
+long cells_deaths(const cells *c, double *first) {
+  long count = 0;
+  *first = INFINITY;
+  for (int n = 0; n < c->where.count; n++) {
+    const point_forces *p = c->by_points[n];
+    if (!p) continue;
+    count += point_forces_deaths(p);
+    if (p->first_death >= 0 && p->first_death < *first) *first = p->first_death;
+  }
+  return count;
 }
 
 double cells_stored_by(const sweep *law) {

@@ -90,6 +90,11 @@ int cells_worst_point(const sweep *w, long site, point_state *out);
 /* Of the state observed last, with a law that is not linear; false with one that is, whose points
    keep nothing. Stress xx, yy, xy, zz (Pa) at a node: the mean of the points in the law's cells around. */
 bool cells_mean_stress(const cells *c, int law, int node, double stress[4]);
+/* Whether points of some law can fail; whether a cell is dead after the last step, as all of its points
+   have failed; how many are, and when the first one died (s; infinite: none did). */
+bool cells_can_die(const cells *c);
+bool cells_dead(const cells *c, int cell);
+long cells_deaths(const cells *c, double *first);
 /* J stored in the cells of a law in the state observed last, where it has others beside it; of one of
    several linear laws it is not known: NaN. */
 double cells_stored_by(const sweep *law);

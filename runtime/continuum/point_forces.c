@@ -146,6 +146,9 @@ point_forces *point_forces_new(const mesh *m, const unsigned char *own,
   p->scratch = must_calloc((size_t)blocks + 1, sizeof *p->scratch);
   for (int b = 0; b < blocks; b++)
     open_scratch(p, &p->scratch[b]);
+  p->failed = point_law_failed(law);
+  p->dead = must_calloc((size_t)p->strips.rows + 1, sizeof *p->dead);
+  p->first_death = -1;
   find_rest(p, own, parameters);
   return p;
 }
@@ -159,6 +162,7 @@ void point_forces_free(point_forces *p) {
   }
   free(p->scratch);
   free(p->rows);
+  free(p->dead);
   free(p->uniforms);
   cell_strips_close(&p->strips);
   pool_free(p->memory);
@@ -220,29 +224,90 @@ static pl_points view_of(const point_forces *p, const strip *s, point_scratch *o
                      .time_step = at->time_step};
 }
 
+/* dead[PL_LANES] 1 in cells of a group all of whose points have failed by these states, a plane that
+   begins with it. */
+static void find_dead(const cell_group *g, const double *failed, double dead[PL_LANES]) {
+  for (int lane = 0; lane < PL_LANES; lane++)
+    dead[lane] = lane < g->count;
+  for (int k = 0; k < g->table->points; k++)
+    for (int lane = 0; lane < PL_LANES; lane++)
+      dead[lane] = failed[k * PL_LANES + lane] >= 1 ? dead[lane] : 0;
+}
+
+/* Dead cells strain no more. */
+static void leave_dead(const point_forces *p, const strip *s, double *const strain[STRAINS]) {
+  for (int g = s->first; g < s->last; g++) {
+    const cell_group *group = &p->strips.groups[g];
+    const long to = group->at - s->at;
+    double dead[PL_LANES];
+    find_dead(group, p->old_field + p->failed * (long)p->strips.count + group->at, dead);
+    for (int c = 0; c < STRAINS; c++)
+      for (int k = 0; k < group->table->points; k++)
+        for (int lane = 0; lane < PL_LANES; lane++) {
+          double *at = strain[c] + to + k * PL_LANES + lane;
+          *at = dead[lane] > 0 ? 0 : *at;
+        }
+  }
+}
+
+static long count_dead(const point_forces *p, const strip *s) {
+  double sum = 0;
+  for (int g = s->first; g < s->last; g++) {
+    const cell_group *group = &p->strips.groups[g];
+    double dead[PL_LANES];
+    find_dead(group, p->new_field + p->failed * (long)p->strips.count + group->at, dead);
+    for (int lane = 0; lane < PL_LANES; lane++)
+      sum += dead[lane];
+  }
+  return (long)sum;
+}
+
 static pl_points motion_of(const point_forces *p, const strip *s, point_scratch *own,
                            const point_motion *at) {
+  const bool rates = p->law->reads_rates || p->loses;
   find_strains(p, s, at->displacement, own->strain);
-  if (p->law->reads_rates || p->loses) find_strains(p, s, at->velocity, own->rate);
+  if (rates) find_strains(p, s, at->velocity, own->rate);
+  if (p->failed >= 0) leave_dead(p, s, own->strain);
+  if (p->failed >= 0 && rates) leave_dead(p, s, own->rate);
   return view_of(p, s, own, at);
 }
 
-static void push(const point_forces *p, const strip *s, const point_scratch *own,
-                 double *const stress[STRAINS]) {
-  const double *volume = p->strips.volume + s->at;
+/* Groups from g on that are side by side, even and alike; 0: g is not even. */
+static int even_from(const cell_group *groups, int g, int last) {
+  int count = 0;
+  while (g + count < last && groups[g + count].even > 0 &&
+         groups[g + count].even == groups[g].even && groups[g + count].table == groups[g].table &&
+         groups[g + count].first == groups[g].first + count * PL_LANES)
+    count++;
+  return count;
+}
+
+static void push_group(const point_forces *p, int row, const cell_group *g,
+                       const point_scratch *own, const double *const stress[STRAINS]) {
+  const double *volume = p->strips.volume + g->at;
+  const long count = (long)g->points * PL_LANES;
   for (int c = 0; c < STRAINS; c++) {
     double *traction = own->traction[c];
     const double *from = stress[c];
     INDEPENDENT
-    for (long k = 0; k < s->count; k++)
+    for (long k = 0; k < count; k++)
       traction[k] = volume[k] * from[k];
   }
-  for (int g = s->first; g < s->last; g++) {
-    const cell_group *group = &p->strips.groups[g];
-    const long to = group->at - s->at;
-    const double *traction[STRAINS] = {own->traction[0] + to, own->traction[1] + to,
-                                       own->traction[2] + to};
-    cell_strips_push(&p->strips, s->row, group, traction, p->pushed);
+  cell_strips_push(&p->strips, row, g, (const double *const *)own->traction, p->pushed);
+}
+
+static void push(const point_forces *p, const strip *s, const point_scratch *own,
+                 double *const stress[STRAINS]) {
+  const cell_group *groups = p->strips.groups;
+  for (int g = s->first; g < s->last;) {
+    const long to = groups[g].at - s->at;
+    const double *const here[STRAINS] = {stress[0] + to, stress[1] + to, stress[2] + to};
+    const int even = even_from(groups, g, s->last);
+    if (even > 0)
+      cell_strips_push_even(&p->strips, s->row, &groups[g], even, here, p->pushed);
+    else
+      push_group(p, s->row, &groups[g], own, here);
+    g += even > 0 ? even : 1;
   }
 }
 
@@ -263,6 +328,7 @@ static void step_strip(const point_forces *p, const strip *s, point_scratch *own
   } else {
     p->law->point_step(p->law, p->uniforms, &points);
   }
+  if (p->failed >= 0) p->dead[s->row] += count_dead(p, s);
   push(p, s, own, own->stress);
 }
 
@@ -375,6 +441,7 @@ void point_forces_find(point_forces *p, int block, int from, int to, const point
   for (int row = from; row < last; row++) {
     cell_strips_clear(&p->strips, row, p->pushed);
     if (seen) p->rows[row] = (point_row){0};
+    if (!seen) p->dead[row] = 0;
     strip s = {.last = p->strips.first_group[row]};
     while (s.last < p->strips.first_group[row + 1]) {
       s = next_strip(p, row, s.last);
@@ -390,10 +457,30 @@ void point_forces_take(const point_forces *p, int row, bool more, double *const 
   cell_strips_take(&p->strips, row, p->pushed, more, force);
 }
 
-void point_forces_turn(point_forces *p) {
+void point_forces_turn(point_forces *p, double time) {
   double *kept = p->old_field;
   p->old_field = p->new_field;
   p->new_field = kept;
+  for (int row = 0; row < p->strips.rows && p->failed >= 0 && p->first_death < 0; row++)
+    if (p->dead[row] > 0) p->first_death = time;
+}
+
+bool point_forces_dead(const point_forces *p, int cell) {
+  if (p->failed < 0 || !point_forces_has(p, cell)) return false;
+  const long plane = p->failed * (long)p->strips.count;
+  const int count = p->points->first[cell + 1] - p->points->first[cell];
+  for (int k = 0; k < count; k++) {
+    const long at = plane + p->strips.of_cell[cell] + k * PL_LANES;
+    if (!(p->old_field[at] >= 1 || p->new_field[at] >= 1)) return false;
+  }
+  return true;
+}
+
+long point_forces_deaths(const point_forces *p) {
+  long count = 0;
+  for (int cell = 0; cell < mesh_cell_count(p->of) && p->failed >= 0; cell++)
+    count += point_forces_dead(p, cell);
+  return count;
 }
 
 /* --- nodes ------------------------------------------------------------------------------------ */
@@ -456,6 +543,7 @@ static void take_point(const point_forces *p, const strip *s, const point_scratc
     out->strain[c] = own->strain[c][k];
   for (int c = 0; c < STRESSES; c++)
     out->stress[c] = own->stress[c][k];
+  out->size = p->size[s->at + k];
   for (int f = 0; f < p->law->field_count; f++)
     out->field[f] = own->old_field[f][k];
 }

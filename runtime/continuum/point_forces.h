@@ -5,7 +5,10 @@
    of the law, forces. Rows of cells push nodes of several rows; each has planes of its own for
    that, and these are added in one order. So results do not depend on threads.
 
-   States stand at points, old ones and new ones, and change places after a step. */
+   States stand at points, old ones and new ones, and change places after a step.
+
+   A cell all of whose points have failed is dead: it pushes nothing and strains no more, so that nodes
+   that fly away from it do no harm. Which cells these are the states tell at any time. */
 #ifndef PERILAT_RUNTIME_POINT_FORCES_H
 #define PERILAT_RUNTIME_POINT_FORCES_H
 
@@ -37,6 +40,9 @@ typedef struct point_forces {
   double *size;       /* [strips.count] m: of the points' cells */
   double scale[3][3]; /* Pa^(-1/2): L^-1 of the tangent at rest, L L^T */
   point_row *rows;    /* [strips.rows] */
+  int failed;         /* the law's field that tells so; -1: points do not fail */
+  long *dead;         /* [strips.rows] dead cells after the step */
+  double first_death; /* s: of the first one; negative: all are alive */
   struct point_scratch *scratch; /* [blocks] */
   int blocks;
   long doubles; /* of arrays */
@@ -68,8 +74,13 @@ void point_forces_find(point_forces *p, int block, int from, int to, const point
                        bool seen);
 /* N: adds up what pushes a row of nodes; force[2]: planes of the layout. `more`: to what is there. */
 void point_forces_take(const point_forces *p, int row, bool more, double *const force[2]);
-/* After a step: new states are old ones. */
-void point_forces_turn(point_forces *p);
+/* After a step to that time: new states are old ones. */
+void point_forces_turn(point_forces *p, double time);
+
+/* Whether a cell of the law is dead, by the states after the last step or by those observed since; and
+   how many are. */
+bool point_forces_dead(const point_forces *p, int cell);
+long point_forces_deaths(const point_forces *p);
 
 /* Whether a cell is of this law and has points. */
 static inline bool point_forces_has(const point_forces *p, int cell) {
@@ -86,6 +97,7 @@ typedef struct point_state {
   int cell[2];                 /* i, j; of a mesh of lists its number and -1 */
   double at[2];                /* m */
   double strain[3], stress[4]; /* Pa */
+  double size;                 /* m: of its cell */
   double *field;               /* [fields] of before the step; the caller's memory */
 } point_state;
 /* Of the points that push a node that with the largest stress, or without a finite one: its square,

@@ -303,6 +303,11 @@ typedef struct deck_contact {
   double stiffness; /* N/m, of two particles; 0: that of the softer lattice */
 } deck_contact;
 
+typedef struct deck_tie { /* particles of the lattice that lie in the mesh move with it */
+  deck_item item;
+  const char *lattice, *mesh;
+} deck_tie;
+
 typedef struct deck_initial { /* of each particle of the region when the run begins */
   deck_item item;
   const char *region;
@@ -468,6 +473,7 @@ typedef struct deck_file { /* a table that a load was read from */
   LIST(crack)                                                                                      \
   ONE(tips)                                                                                        \
   ONE(newmark)                                                                                     \
+  LIST(tie)                                                                                        \
   LIST(material)                                                                                   \
   LIST(field)                                                                                      \
   LIST(body)                                                                                       \

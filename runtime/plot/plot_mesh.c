@@ -7,6 +7,8 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/result/mesh_views.h"
+#include "runtime/result/result_fields.h"
 #include "runtime/result/result_find.h"
 #include "runtime/result/result_read.h"
 #include "runtime/result/result_sets.h"
@@ -99,6 +101,7 @@ static bool read_mesh(plot_mesh *m, result_file *f, const char *name, const doub
   if (!names_particles(m->cells, m->cell_count, particles - (long)first)) return false;
   for (long k = 0; k < CORNERS * m->cell_count; k++)
     m->cells[k] += (int32_t)first;
+  m->all_count = m->cell_count;
   if (columns != CORNERS) {
     m->size = mean_size(m, reference);
   } else if (m->cell_count > 0) {
@@ -176,6 +179,34 @@ static void give_lines(plot_meshes *m) {
                         m->cracks[c].points + 2 * k);
 }
 
+/* Cells that have died stand behind those that are left. */
+static void bury(plot_mesh *m, const double *dead, long particles) {
+  unsigned char *begun = must_calloc((size_t)particles + 1, 1);
+  int32_t *gone = must_calloc(CORNERS * (size_t)m->cell_count + 1, sizeof *gone);
+  long left = 0, died = 0;
+  for (long c = 0; c < m->cell_count; c++) {
+    const int32_t *cell = m->cells + CORNERS * c;
+    int32_t *to = mesh_cell_died(dead[cell[0]], begun[cell[0]]++) ? gone + CORNERS * died++
+                                                                  : m->cells + CORNERS * left++;
+    memmove(to, cell, CORNERS * sizeof *cell);
+  }
+  memcpy(m->cells + CORNERS * left, gone, CORNERS * (size_t)died * sizeof *gone);
+  m->cell_count = left;
+  free(begun);
+  free(gone);
+}
+
+static void bury_all(plot_meshes *m, result_file *f, long frame, long particles) {
+  char unit[64], error[512];
+  long count = 0;
+  int components = 0;
+  double *dead = result_read_frame(f, MESH_DEAD_CELLS, frame, &count, &components, unit,
+                                   sizeof unit, error, sizeof error);
+  for (int k = 0; k < m->count && dead && count == particles; k++)
+    bury(&m->items[k], dead, particles);
+  free(dead);
+}
+
 bool plot_meshes_read(plot_meshes *m, result_file *f, long frame, char *error, size_t size) {
   *m = (plot_meshes){.count = 0};
   result_names names = result_list(f, "/meshes");
@@ -189,6 +220,7 @@ bool plot_meshes_read(plot_meshes *m, result_file *f, long frame, char *error, s
   if (!good) snprintf(error, size, "`/meshes` of `%s` is damaged", f->path);
   good = good && (names.count == 0 || read_cracks(m, f, frame, error, size));
   if (good) give_lines(m);
+  if (good && m->count > 0) bury_all(m, f, frame, particles);
   result_names_free(&names);
   free(reference);
   return good;

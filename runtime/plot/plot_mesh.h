@@ -19,7 +19,8 @@ typedef struct plot_crack {
 typedef struct plot_mesh {
   char name[80];
   long cell_count;
-  /* [cell_count][4] particles, counter-clockwise; a triangle has its last one twice, one of 6 nodes is
+  long all_count; /* with those that have died, which stand behind */
+  /* [all_count][4] particles, counter-clockwise; a triangle has its last one twice, one of 6 nodes is
      four of them */
   int32_t *cells;
   double size; /* m: a side of a cell of the same area */

@@ -23,6 +23,7 @@ void mesh_views_free(mesh_views *v) {
   free(v->paths);
   free(v->sets);
   free(v->set_of_frame);
+  free(v->dead);
 }
 
 long mesh_path_count(const mesh_path *p, long frame) {
@@ -72,6 +73,10 @@ static bool is_whole(const mesh_views *v, const result_header *h, const result_m
   return true;
 }
 
+static bool has_died(const mesh_views *v, unsigned char *begun, long corner, long frame) {
+  return mesh_cell_died(v->dead[frame * v->particles + corner], begun[corner]++);
+}
+
 static void add_cell(mesh_cells *c, long first_particle, const int32_t *cell, int columns) {
   int nodes = 0;
   for (; nodes < columns && cell[nodes] >= 0; nodes++)
@@ -90,19 +95,24 @@ static mesh_cells cells_of(const mesh_views *v, const result_header *h, long fra
   }
   shown.corners = must_alloc((corners + 1) * sizeof *shown.corners);
   shown.nodes = must_alloc(most + 1);
+  unsigned char *begun = must_calloc((size_t)v->particles + 1, 1); /* cells so far at a corner */
   for (int n = 0; n < h->mesh_count; n++)
     for (long c = 0; c < h->meshes[n].cell_count; c++) {
       const result_mesh *m = &h->meshes[n];
       const int32_t *cell = m->cells + m->columns * c;
-      if (all || is_whole(v, h, m, cell, frame))
-        add_cell(&shown, m->first_particle, cell, m->columns);
+      if (!all && v->dead && has_died(v, begun, m->first_particle + cell[0], frame)) continue;
+      if (all || is_whole(v, h, m, cell, frame)) add_cell(&shown, m->first_particle, cell, m->columns);
     }
+  free(begun);
   return shown;
 }
 
-/* All cracks are as they were a frame before. */
+/* All cracks and dead cells are as they were a frame before. */
 static bool is_unchanged(const mesh_views *v, long frame) {
   bool same = frame > 0;
+  if (v->dead && same)
+    same = memcmp(v->dead + frame * v->particles, v->dead + (frame - 1) * v->particles,
+                  (size_t)v->particles * sizeof *v->dead) == 0;
   for (int k = 0; k < v->path_count && same; k++) {
     const mesh_path *p = &v->paths[k];
     const size_t numbers = 2 * (size_t)p->most;

@@ -11,13 +11,24 @@
                                            has none; a reader of ParaView's colours a grid only
                                            with arrays that all grids have
 
-   A crack that has come further leaves out more cells: frames in between share a set. */
+   A crack that has come further leaves out more cells, and so do cells that died: frames in between
+   share a set. Which cells have died a field of nodes tells, dead_cells: a node has a bit for each
+   cell that begins with it, in their order, 1, 2, 4, ...: 1 where the first has died. */
 #ifndef PERILAT_RUNTIME_MESH_VIEWS_H
 #define PERILAT_RUNTIME_MESH_VIEWS_H
 
 #include <hdf5.h>
+#include <math.h>
+#include <string.h>
 
 #include "runtime/result/result.h"
+
+#define MESH_DEAD_CELLS "dead_cells"
+
+/* Whether a cell has died: what its first corner has, and how many cells before it begin there. */
+static inline bool mesh_cell_died(double value, int before) {
+  return fmod(floor(ldexp(value, -before)), 2) >= 1;
+}
 
 typedef struct mesh_path { /* a crack, frame by frame */
   const result_field *field;
@@ -26,7 +37,7 @@ typedef struct mesh_path { /* a crack, frame by frame */
   double *points;   /* [frames][most][2] m, NaN beyond the last */
 } mesh_path;
 
-typedef struct mesh_cells { /* that no crack crosses */
+typedef struct mesh_cells { /* that are there and no crack crosses */
   int32_t *corners;         /* [corner_count] particles, cell by cell */
   unsigned char *nodes;     /* [count] of each: 3, 4, 6 */
   long count, corner_count;
@@ -39,6 +50,8 @@ typedef struct mesh_views {
   mesh_cells *sets; /* [set_count] one at least where there are meshes */
   int set_count;
   int *set_of_frame; /* [frames] */
+  double *dead;      /* [frames][particles] values of dead_cells; NULL: none can die */
+  long particles;
 } mesh_views;
 
 /* Whose points are known already, with room for `most` of each frame. */

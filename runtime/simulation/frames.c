@@ -10,6 +10,7 @@
 #include "runtime/analysis/particle_tensors.h"
 #include "runtime/continuum/crack_paths.h"
 #include "runtime/continuum/node_fields.h"
+#include "runtime/continuum/point_law.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/output_fields.h"
 #include "runtime/interaction/damage.h"
@@ -215,6 +216,24 @@ static void values_of_dissipated(const frames_of *of, const frame_source *from, 
   }
 }
 
+/* Kept without being asked for: pictures leave out dead cells. */
+static void values_of_dead_cells(const frames_of *of, const frame_source *from, double *values) {
+  const cells *c = of->body->cells;
+  const long count = of->body->lattice_rows->particle_count;
+  int *begun = must_calloc((size_t)count + 1, sizeof *begun);
+  (void)from;
+  memset(values, 0, (size_t)count * sizeof *values);
+  for (int cell = 0; c && cell < mesh_cell_count(&c->mesh); cell++) {
+    int corner[4];
+    mesh_corners(&c->mesh, cell, corner);
+    const int32_t first = cells_particle(c, corner[0]);
+    if (c->mesh.cell[cell] == CELL_ABSENT || first < 0) continue;
+    values[first] += cells_dead(c, cell) ? ldexp(1, begun[first]) : 0;
+    begun[first]++;
+  }
+  free(begun);
+}
+
 /* --- tensors ---------------------------------------------------------------------------------- */
 
 static void find_stress(const frames_of *of, bond_forces *forces, double *const *values) {
@@ -290,6 +309,11 @@ static bool with_losses(const deck_output *asked, const pl_law *law) {
   const bool may_lose = law->field_count > 0 || law->reads_rates;
   return asked->energy &&
          (law->kind != PL_STATE || (asked->losses && may_lose && sweep_knows_losses(law, true)));
+}
+
+static bool with_failing(const deck_output *asked, const pl_law *law) {
+  (void)asked;
+  return law->kind == PL_CONTINUUM && point_law_failed(law) >= 0;
 }
 
 /* as many as there are directions of space, or axes to turn about */
@@ -396,7 +420,8 @@ static int first_law(const frame_set *f, int b) {
 /* What is stored of any law. */
 static void add_own(frame_set *f, const own_field *own, int b) {
   const run_body *of = &f->bodies[b];
-  if (!is_asked(f->asked, own->name) || !exists_on(own, f->asked, of)) return;
+  const bool asked = is_asked(f->asked, own->name) || own->values == values_of_dead_cells;
+  if (!asked || !exists_on(own, f->asked, of)) return;
   const bool largest = own->values == values_of_damage && damage_on_particles(of->law);
   add(f,
       (frame_field){.name = own->name,
