@@ -229,7 +229,7 @@ static pl_points view_of(const point_forces *p, const strip *s, point_scratch *o
 static void find_dead(const cell_group *g, const double *failed, double dead[PL_LANES]) {
   for (int lane = 0; lane < PL_LANES; lane++)
     dead[lane] = lane < g->count;
-  for (int k = 0; k < g->table->points; k++)
+  for (int k = 0; k < g->points; k++)
     for (int lane = 0; lane < PL_LANES; lane++)
       dead[lane] = failed[k * PL_LANES + lane] >= 1 ? dead[lane] : 0;
 }
@@ -242,7 +242,7 @@ static void leave_dead(const point_forces *p, const strip *s, double *const stra
     double dead[PL_LANES];
     find_dead(group, p->old_field + p->failed * (long)p->strips.count + group->at, dead);
     for (int c = 0; c < STRAINS; c++)
-      for (int k = 0; k < group->table->points; k++)
+      for (int k = 0; k < group->points; k++)
         for (int lane = 0; lane < PL_LANES; lane++) {
           double *at = strain[c] + to + k * PL_LANES + lane;
           *at = dead[lane] > 0 ? 0 : *at;
