@@ -229,11 +229,14 @@ static pl_points motion_of(const point_forces *p, const strip *s, point_scratch 
 
 /* Groups from g on that are side by side, even and alike; 0: g is not even. */
 static int even_from(const cell_group *groups, int g, int last) {
+  const cell_group *first = &groups[g];
   int count = 0;
-  while (g + count < last && groups[g + count].even > 0 &&
-         groups[g + count].even == groups[g].even && groups[g + count].table == groups[g].table &&
-         groups[g + count].first == groups[g].first + count * PL_LANES)
-    count++;
+  for (; g + count < last; count++) {
+    const cell_group *next = &first[count];
+    if (!(next->even > 0) || next->even != first->even || next->table != first->table ||
+        next->first != first->first + count * PL_LANES)
+      break;
+  }
   return count;
 }
 
@@ -390,12 +393,20 @@ static void see_strip(const point_forces *p, const strip *s, point_scratch *own,
 
 /* --- rows ------------------------------------------------------------------------------------- */
 
+/* A loop: to begin a memset of this size takes longer. */
+static void clear(double *plane, long count) {
+  INDEPENDENT
+  for (long k = 0; k < count; k++)
+    plane[k] = 0;
+}
+
 void point_forces_find(point_forces *p, int block, int from, int to, const point_motion *at,
                        bool seen) {
-  const int last = to < p->strips.rows ? to : p->strips.rows;
+  const int last = to < p->strips.rows ? to : p->strips.rows,
+            reach = p->strips.high - p->strips.low + 1; /* what is behind is not read */
   for (int row = from; row < last; row++) {
     for (int d = 0; d < 2; d++)
-      memset(p->pushed[d] + row * p->plane, 0, (size_t)p->plane * sizeof(double));
+      clear(p->pushed[d] + row * p->plane, p->strips.layout.stride * reach);
     if (seen) p->rows[row] = (point_row){0};
     strip s = {.last = p->strips.first_group[row]};
     while (s.last < p->strips.first_group[row + 1]) {

@@ -201,9 +201,10 @@ static void place_group(cell_strips *s, const mesh *m, const integration_points 
 /* The volume of each of its points, where that is one. */
 static double even_volume(const cell_strips *s, const cell_group *g) {
   const double *volume = s->volume + g->at;
-  if (!g->table->rectangle || g->count < PL_LANES) return 0;
-  for (int k = 1; k < g->table->points * PL_LANES; k++)
-    if (volume[k] != volume[0]) return 0;
+  if (!g->table->rectangle) return 0;
+  for (int k = 0; k < g->table->points; k++)
+    for (int lane = 0; lane < g->count; lane++)
+      if (volume[k * PL_LANES + lane] != volume[0]) return 0;
   return volume[0];
 }
 
@@ -381,7 +382,8 @@ void cell_strips_push(const cell_strips *s, const cell_group *g, const double *c
 void cell_strips_push_even(const cell_strips *s, const cell_group *g, int count,
                            const double *const stress[3], double *const force[2]) {
   const long at = -s->low * s->layout.stride + g->first;
-  rectangle_cells_push(&g->table->slopes, count, stress, g->even,
+  const int cells = (count - 1) * PL_LANES + g[count - 1].count;
+  rectangle_cells_push(&g->table->slopes, cells, stress, g->even,
                        (double *const[]){force[0] + at, force[1] + at}, s->layout.stride);
 }
 

@@ -33,7 +33,7 @@ typedef struct cell_group {
   int first, count; /* cells of its row: i of the first; at most PL_LANES */
   int at;           /* place of its first point; PL_LANES for each point of a cell follow */
   const cell_table *table;
-  double even; /* m^3: of each point, where it is full of rectangles with the same; else 0 */
+  double even; /* m^3: of each point, where they are rectangles with the same; else 0 */
 } cell_group;
 
 typedef struct cell_strips {
@@ -66,7 +66,8 @@ void cell_strips_strain(const cell_strips *s, int row, const cell_group *g,
    with node row `row + low`, at node 0. */
 void cell_strips_push(const cell_strips *s, const cell_group *g, const double *const traction[3],
                       double *const force[2]);
-/* The same of `count` groups side by side that are alike and even, from their stress. */
+/* The same of `count` groups side by side that are alike and even, from their stress; all but the
+   last are full. */
 void cell_strips_push_even(const cell_strips *s, const cell_group *g, int count,
                            const double *const stress[3], double *const force[2]);
 /* Doubles of such a plane. */
