@@ -136,7 +136,8 @@ static void for_each_cell(point_forces *p, take_cell *take) {
   for (int row = 0; row < p->strips.rows; row++)
     for (int n = p->strips.first_group[row]; n < p->strips.first_group[row + 1]; n++)
       for (int lane = 0; lane < p->strips.groups[n].count; lane++)
-        take(p, n, lane, cell_strips_cell(&p->strips, p->of, row, &p->strips.groups[n], lane));
+        take(p, n, lane,
+             cell_strips_cell(&p->strips, p->of, row, &p->strips.groups[n], lane));
 }
 
 static void open_mean(point_forces *p, int group, int lane, int cell) {
@@ -266,36 +267,23 @@ static pl_points view_of(const point_forces *p, const strip *s, point_scratch *o
                      .time_step = at->time_step};
 }
 
-/* Some cell of the group takes the mean dilatation. */
-static bool takes_mean(const point_forces *p, const cell_group *g) {
-  const double *taken = p->mean ? p->mean + (g - p->strips.groups) * PL_LANES : NULL;
-  for (int lane = 0; lane < PL_LANES && taken; lane++)
-    if (taken[lane] > 0) return true;
-  return false;
-}
-
-/* Takes the cells' mean dilatation in place of the points' own, of strains xx, yy of a group; and of
-   tractions (a stress times the volume) what is due to it: the transpose. */
-static void take_mean(const point_forces *p, const cell_group *g, double *xx, double *yy,
+/* Takes the cells' mean dilatation in place of the points' own, of strains xx, yy; and of tractions (a
+   stress times the volume) what is due to it: the transpose. */
+static void take_mean(const point_forces *p, const strip *s, double *xx, double *yy,
                       bool tractions) {
-  const double *taken = p->mean + (g - p->strips.groups) * PL_LANES, *part = p->part + g->at;
-  double sum[PL_LANES] = {0};
-  for (int k = 0; k < g->points * PL_LANES; k++)
-    sum[k % PL_LANES] += (tractions ? 1 : part[k]) * (xx[k] + yy[k]);
-  for (int k = 0; k < g->points * PL_LANES; k++) {
-    const int lane = k % PL_LANES;
-    const double shift =
-        taken[lane] * 0.5 * ((tractions ? part[k] : 1) * sum[lane] - (xx[k] + yy[k]));
-    xx[k] += shift;
-    yy[k] += shift;
-  }
-}
-
-static void take_means(const point_forces *p, const strip *s, double *const strain[STRAINS]) {
   for (int g = s->first; g < s->last; g++) {
     const cell_group *group = &p->strips.groups[g];
-    const long to = group->at - s->at;
-    if (takes_mean(p, group)) take_mean(p, group, strain[0] + to, strain[1] + to, false);
+    const double *taken = p->mean + (long)g * PL_LANES, *part = p->part + group->at;
+    double *x = xx + (group->at - s->at), *y = yy + (group->at - s->at), sum[PL_LANES] = {0};
+    for (int k = 0; k < group->points * PL_LANES; k++)
+      sum[k % PL_LANES] += (tractions ? 1 : part[k]) * (x[k] + y[k]);
+    for (int k = 0; k < group->points * PL_LANES; k++) {
+      const int lane = k % PL_LANES;
+      const double shift =
+          taken[lane] * 0.5 * ((tractions ? part[k] : 1) * sum[lane] - (x[k] + y[k]));
+      x[k] += shift;
+      y[k] += shift;
+    }
   }
 }
 
@@ -342,22 +330,23 @@ static pl_points motion_of(const point_forces *p, const strip *s, point_scratch 
   const bool rates = p->law->reads_rates || p->loses;
   find_strains(p, s, at->displacement, own->strain);
   if (rates) find_strains(p, s, at->velocity, own->rate);
-  if (p->mean) take_means(p, s, own->strain);
-  if (p->mean && rates) take_means(p, s, own->rate);
+  if (p->mean) take_mean(p, s, own->strain[0], own->strain[1], false);
+  if (p->mean && rates) take_mean(p, s, own->rate[0], own->rate[1], false);
   if (p->failed >= 0) leave_dead(p, s, own->strain);
   if (p->failed >= 0 && rates) leave_dead(p, s, own->rate);
   return view_of(p, s, own, at);
 }
 
-/* Groups from g on that are side by side, even and alike, and whose points have their own dilatations;
-   0: g is not so. */
-static int even_from(const point_forces *p, int g, int last) {
-  const cell_group *groups = p->strips.groups;
+/* Groups from g on that are side by side, even and alike; 0: g is not even. */
+static int even_from(const cell_group *groups, int g, int last) {
+  const cell_group *first = &groups[g];
   int count = 0;
-  while (g + count < last && groups[g + count].even > 0 && !takes_mean(p, &groups[g + count]) &&
-         groups[g + count].even == groups[g].even && groups[g + count].table == groups[g].table &&
-         groups[g + count].first == groups[g].first + count * PL_LANES)
-    count++;
+  for (; g + count < last; count++) {
+    const cell_group *next = &first[count];
+    if (!(next->even > 0) || next->even != first->even || next->table != first->table ||
+        next->first != first->first + count * PL_LANES)
+      break;
+  }
   return count;
 }
 
@@ -372,23 +361,48 @@ static void push_group(const point_forces *p, int row, const cell_group *g,
     for (long k = 0; k < count; k++)
       traction[k] = volume[k] * from[k];
   }
-  if (takes_mean(p, g)) take_mean(p, g, own->traction[0], own->traction[1], true);
   cell_strips_push(&p->strips, row, g, (const double *const *)own->traction, p->pushed);
 }
 
-static void push(const point_forces *p, const strip *s, const point_scratch *own,
-                 double *const stress[STRAINS]) {
+static void push_even(const point_forces *p, const strip *s, const point_scratch *own,
+                      double *const stress[STRAINS]) {
   const cell_group *groups = p->strips.groups;
   for (int g = s->first; g < s->last;) {
     const long to = groups[g].at - s->at;
     const double *const here[STRAINS] = {stress[0] + to, stress[1] + to, stress[2] + to};
-    const int even = even_from(p, g, s->last);
+    const int even = even_from(groups, g, s->last);
     if (even > 0)
       cell_strips_push_even(&p->strips, s->row, &groups[g], even, here, p->pushed);
     else
       push_group(p, s->row, &groups[g], own, here);
     g += even > 0 ? even : 1;
   }
+}
+
+/* Of elements whose dilatation is the mean. */
+static void push_mean(const point_forces *p, const strip *s, const point_scratch *own,
+                      double *const stress[STRAINS]) {
+  const double *volume = p->strips.volume + s->at;
+  for (int c = 0; c < STRAINS; c++) {
+    double *traction = own->traction[c];
+    const double *from = stress[c];
+    INDEPENDENT
+    for (long k = 0; k < s->count; k++)
+      traction[k] = volume[k] * from[k];
+  }
+  take_mean(p, s, own->traction[0], own->traction[1], true);
+  for (int g = s->first; g < s->last; g++) {
+    const cell_group *group = &p->strips.groups[g];
+    const long to = group->at - s->at;
+    const double *traction[STRAINS] = {own->traction[0] + to, own->traction[1] + to,
+                                       own->traction[2] + to};
+    cell_strips_push(&p->strips, s->row, group, traction, p->pushed);
+  }
+}
+
+static void push(const point_forces *p, const strip *s, const point_scratch *own,
+                 double *const stress[STRAINS]) {
+  (p->mean ? push_mean : push_even)(p, s, own, stress);
 }
 
 /* gamma . u of the cells of a group along an axis. */
@@ -419,7 +433,7 @@ static void push_hourglass(const point_forces *p, const strip *s, int g, int axi
   const double *gamma = p->hourglass + (long)g * HOURGLASS * PL_LANES,
                *C = gamma + CORNERS * PL_LANES;
   double *force =
-      p->pushed[axis] + cell_strips_corner(&p->strips, s->row) + p->strips.groups[g].first;
+      cell_strips_row(&p->strips, s->row, p->pushed[axis]) + p->strips.groups[g].first;
   for (int corner = 0; corner < CORNERS; corner++) {
     double *to = force + corner / 2 * stride + corner % 2;
     for (int lane = 0; lane < PL_LANES; lane++)

@@ -445,7 +445,7 @@ static void take_sides(maker *k, const cell_side *sides, int count, int32_t *lin
     if (!there) continue;
     const bool back = side.node[0] > side.node[1];
     const cell_side *of = find_side(sides, count, side.node[back], side.node[!back]);
-    if (of) {
+    if (of && of->between == (side.nodes == 3 ? side.node[2] : -1)) {
       const bool both = of + 1 < sides + count && same_ends(of, of + 1);
       if (both && of->turned != back) of++;
       side.cell = of->cell;

@@ -36,7 +36,7 @@ typedef struct cell_group {
   int points;       /* of each */
   int at;           /* place of its first point; PL_LANES for each point of a cell follow */
   const cell_table *table; /* NULL in a mesh of lists */
-  double even; /* m^3: of each point, where it is full of rectangles with the same; else 0 */
+  double even; /* m^3: of each point, where they are rectangles with the same; else 0 */
 } cell_group;
 
 typedef struct cell_strips {
@@ -72,14 +72,16 @@ void cell_strips_strain(const cell_strips *s, int row, const cell_group *g,
 void cell_strips_push(const cell_strips *s, int row, const cell_group *g,
                       const double *const traction[3], double *const pushed[2]);
 long cell_strips_pushed(const cell_strips *s);
-/* Of a grid: where the lower left node of the row's first cell stands in what the row pushes. */
-long cell_strips_corner(const cell_strips *s, int row);
+/* Where what a row of cells pushes at its lower left node stands in a plane of `pushed`, the other
+   nodes as in the layout; of a grid. */
+double *cell_strips_row(const cell_strips *s, int row, double *pushed);
 /* Before a row of cells pushes. */
 void cell_strips_clear(const cell_strips *s, int row, double *const pushed[2]);
 /* N: the forces of a row of nodes, in planes of the layout; `more`: beside those that are there. */
 void cell_strips_take(const cell_strips *s, int row, double *const pushed[2], bool more,
                       double *const force[2]);
-/* The same of `count` groups side by side that are alike and even, from their stress. */
+/* The same of `count` groups side by side that are alike and even, from their stress; all but the
+   last are full. */
 void cell_strips_push_even(const cell_strips *s, int row, const cell_group *g, int count,
                            const double *const stress[3], double *const pushed[2]);
 

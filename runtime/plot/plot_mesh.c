@@ -18,7 +18,7 @@ enum { CORNERS = 4, MOST_NODES = 6, MOST_NEAR = 256 };
 void plot_meshes_free(plot_meshes *m) {
   for (int k = 0; k < m->count; k++) {
     free(m->items[k].cells);
-    free(m->items[k].begins);
+    free(m->items[k].first);
     crack_lines_close(&m->items[k].lines);
   }
   for (int k = 0; k < m->crack_count; k++)
@@ -79,33 +79,17 @@ static double mean_size(const plot_mesh *m, const double *reference) {
 /* Of a mesh of a file. */
 static void take_lists(plot_mesh *m, int columns) {
   int32_t *given = m->cells;
-  plot_beginning *begins = m->begins;
-  const size_t most = CORNERS * (size_t)m->cell_count + 1;
   long count = 0;
+  const size_t most = CORNERS * (size_t)m->cell_count + 1; /* parts */
   m->cells = must_calloc(CORNERS * most, sizeof *m->cells);
-  m->begins = must_calloc(most, sizeof *m->begins);
+  m->first = must_alloc(most * sizeof *m->first);
   for (long c = 0; c < m->cell_count; c++) {
     const int parts = split(given + columns * c, columns, (int32_t(*)[CORNERS])m->cells + count);
     for (int k = 0; k < parts; k++)
-      m->begins[count++] = begins[c];
+      m->first[count++] = k == 0 ? given[columns * c] : -1;
   }
   m->cell_count = count;
   free(given);
-  free(begins);
-}
-
-/* Its cells, with nodes of its own, begin with these particles. */
-static bool find_begins(plot_mesh *m, int columns, long first, long particles) {
-  unsigned char *begun = must_calloc((size_t)particles + 1, 1);
-  bool good = true;
-  m->begins = must_calloc((size_t)m->cell_count + 1, sizeof *m->begins);
-  for (long c = 0; c < m->cell_count && good; c++) {
-    const long node = m->cells[columns * c];
-    good = node >= 0 && node < particles - first;
-    if (good) m->begins[c] = (plot_beginning){(int32_t)(first + node), begun[first + node]++};
-  }
-  free(begun);
-  return good;
 }
 
 /* Its cells as particles of the result. */
@@ -119,11 +103,12 @@ static bool read_mesh(plot_mesh *m, result_file *f, const char *name, const doub
   snprintf(path, sizeof path, "%s/cells", group);
   m->cells = result_read_table(f, path, true, 3, MOST_NODES, &m->cell_count, &columns);
   if (!m->cells || !read_first(f, group, &first) || first < 0 || first > particles) return false;
-  if (!find_begins(m, columns, (long)first, particles)) return false;
   if (columns != CORNERS) take_lists(m, columns);
   if (!names_particles(m->cells, m->cell_count, particles - (long)first)) return false;
   for (long k = 0; k < CORNERS * m->cell_count; k++)
     m->cells[k] += (int32_t)first;
+  for (long k = 0; m->first && k < m->cell_count; k++)
+    if (m->first[k] >= 0) m->first[k] += (int32_t)first;
   m->all_count = m->cell_count;
   if (columns != CORNERS) {
     m->size = mean_size(m, reference);
@@ -203,17 +188,20 @@ static void give_lines(plot_meshes *m) {
 }
 
 /* Cells that have died stand behind those that are left. */
-static void bury(plot_mesh *m, const double *dead) {
+static void bury(plot_mesh *m, const double *dead, long particles) {
+  unsigned char *begun = must_calloc((size_t)particles + 1, 1);
   int32_t *gone = must_calloc(CORNERS * (size_t)m->cell_count + 1, sizeof *gone);
   long left = 0, died = 0;
+  bool dies = false;
   for (long c = 0; c < m->cell_count; c++) {
-    const plot_beginning b = m->begins[c];
-    int32_t *to = mesh_cell_died(dead[b.particle], b.before) ? gone + CORNERS * died++
-                                                             : m->cells + CORNERS * left++;
-    memmove(to, m->cells + CORNERS * c, CORNERS * sizeof *to);
+    const int32_t *cell = m->cells + CORNERS * c, first = m->first ? m->first[c] : cell[0];
+    if (first >= 0) dies = mesh_cell_died(dead[first], begun[first]++);
+    int32_t *to = dies ? gone + CORNERS * died++ : m->cells + CORNERS * left++;
+    memmove(to, cell, CORNERS * sizeof *cell);
   }
   memcpy(m->cells + CORNERS * left, gone, CORNERS * (size_t)died * sizeof *gone);
   m->cell_count = left;
+  free(begun);
   free(gone);
 }
 
@@ -224,7 +212,7 @@ static void bury_all(plot_meshes *m, result_file *f, long frame, long particles)
   double *dead = result_read_frame(f, MESH_DEAD_CELLS, frame, &count, &components, unit,
                                    sizeof unit, error, sizeof error);
   for (int k = 0; k < m->count && dead && count == particles; k++)
-    bury(&m->items[k], dead);
+    bury(&m->items[k], dead, particles);
   free(dead);
 }
 

@@ -16,12 +16,6 @@ typedef struct plot_crack {
   long first, last; /* of the points: the crack as it was at the beginning */
 } plot_crack;
 
-/* Of what is drawn as a cell: with which particle the cell that it is of begins, and how many cells
-   before that begin there. */
-typedef struct plot_beginning {
-  int32_t particle, before;
-} plot_beginning;
-
 typedef struct plot_mesh {
   char name[80];
   long cell_count;
@@ -29,8 +23,10 @@ typedef struct plot_mesh {
   /* [all_count][4] particles, counter-clockwise; a triangle has its last one twice, one of 6 nodes is
      four of them */
   int32_t *cells;
-  plot_beginning *begins; /* of the cells of the file, until those that have died are known */
-  double size;            /* m: a side of a cell of the same area */
+  int32_t *
+      first; /* [all_count] of a file: the first node of the cell; -1: of the same as the one before;
+                     NULL: cells[.][0] */
+  double size; /* m: a side of a cell of the same area */
   crack_lines lines;
 } plot_mesh;
 

@@ -51,7 +51,7 @@ static void open_planes(loaded *l) {
   }
 }
 
-/* `linear` laws are asked at their points all the same. */
+/* Linear laws are asked at their points all the same. */
 static loaded loaded_open(const char *law_name, const char *setting, bool ledger) {
   char text[TEXT];
   snprintf(text, sizeof text,
@@ -242,7 +242,60 @@ static bool measure_beside(figures *f) {
   return fair;
 }
 
+/* --- all laws --------------------------------------------------------------------------------- */
+
+typedef struct point_case {
+  const char *law, *setting;
+  double strain; /* of the last step: part of the points yield or break */
+} point_case;
+
+static const point_case cases[] = {
+    {"elastic", "plane_strain", 1e-4},        {"stiffening", "plane_strain", 1e-2},
+    {"von_mises", "plane_strain", 4e-3},      {"von_mises", "plane_stress", 4e-3},
+    {"drucker_prager", "plane_strain", 8e-4}, {"drucker_prager", "plane_stress", 8e-4},
+    {"mazars", "plane_strain", 2e-4},         {"mazars", "plane_stress", 2e-4}};
+
+/* Seconds a step, mean of a loading; of this thread alone, or by the clock on the wall. */
+static double seconds_of_loading(loaded *l, double strain, int threads, double *changes) {
+  double (*const clock_of)(void) = threads > 1 ? wall_seconds : processor_seconds, sum = 0;
+  rest(l);
+  *changes = 0;
+  for (int n = 1; n <= STEPS; n++) {
+    load(l, strain * n / STEPS);
+    const double begun = clock_of();
+    find(l, threads);
+    sum += clock_of() - begun;
+    *changes += part_that_changes(l) / STEPS;
+  }
+  return sum / STEPS;
+}
+
+static void measure_law(figures *f, const point_case *c) {
+  loaded l = loaded_open(c->law, c->setting, false);
+  const double points = l.cells->points.count;
+  double one[ROUNDS], two[ROUNDS], changes;
+  for (int round = 0; round < ROUNDS; round++) {
+    one[round] = seconds_of_loading(&l, c->strain, 1, &changes);
+    two[round] = seconds_of_loading(&l, c->strain, 2, &changes);
+  }
+  const double by_one = median_of(one, ROUNDS), by_two = median_of(two, ROUNDS),
+               bytes = (double)point_forces_bytes(l.points) / points;
+  const pl_law *of = l.trial->law.law;
+  printf("  %-16s %-13s %7.1f %7.2f %7.2f %6.0f %7.0f %5.0f %6.0f %%\n", c->law, c->setting,
+         1e-6 * points / by_one, 1e9 * by_one / points, by_one / by_two, bytes, of->flops_per_bond,
+         of->divisions_per_bond, 100 * changes);
+  figures_add(f, 1e-6 * points / by_one, "points_%s_%s_million_per_second", c->law, c->setting);
+  figures_add(f, by_one / by_two, "points_%s_%s_threads_2_over_1", c->law, c->setting);
+  figures_add(f, bytes, "points_%s_%s_bytes_per_point", c->law, c->setting);
+  loaded_close(&l);
+}
+
 bool benchmark_points(figures *f) {
   puts("\nPoints");
-  return measure_beside(f);
+  const bool fair = measure_beside(f);
+  printf("  %-30s %7s %7s %7s %6s %7s %5s %8s\n", "", "10^6/s", "ns", "2 by 1", "bytes", "flops",
+         "div.", "changed");
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
+    measure_law(f, &cases[k]);
+  return fair;
 }
