@@ -572,8 +572,7 @@ static ir_node size_of(ir *g, ir_node n, int deep) {
   const ir_op op = ir_operation(g, n);
   if (deep == DEEP) return ir_unary(g, IR_ABS, n);
   if (op == IR_NEG) return size_of(g, ir_operand(g, n, 0), deep + 1);
-  if (op != IR_ADD && op != IR_SUB && op != IR_MUL && op != IR_DIV)
-    return ir_unary(g, IR_ABS, n);
+  if (op != IR_ADD && op != IR_SUB && op != IR_MUL && op != IR_DIV) return ir_unary(g, IR_ABS, n);
   const ir_node a = size_of(g, ir_operand(g, n, 0), deep + 1),
                 b = size_of(g, ir_operand(g, n, 1), deep + 1);
   return op == IR_MUL ? ir_mul(g, a, b) : op == IR_DIV ? ir_div(g, a, b) : ir_add(g, a, b);

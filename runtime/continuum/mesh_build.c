@@ -5,6 +5,7 @@
 
 #include "dsl/base/arena.h"
 #include "runtime/filling/mesh_rows.h"
+#include "runtime/geometry/gmsh_mesh.h"
 
 static const double ON_OUTLINE = 1e-6; /* spacings: a node is on a zone's outline */
 
@@ -43,7 +44,13 @@ bool mesh_build(const deck *k, int lattice, mesh *out, diagnostics *d) {
   const deck_mesh *l = &k->lattices[lattice];
   const int nodes[2] = {(int)l->nodes[0], (int)l->nodes[1]};
   bool good = true;
-  if (l->corners)
+  if (l->gmsh)
+    mesh_open_lists(out, nodes,
+                    cell_lists_new(l->gmsh->node_count, (const double(*)[2])l->gmsh->at,
+                                   l->gmsh->cell_count, l->gmsh->nodes,
+                                   (const cell_nodes *)l->gmsh->cell),
+                    l->gmsh->least, l->thickness, l->support);
+  else if (l->corners)
     mesh_open_mapped(out, nodes, (const double(*)[2])l->corners, l->thickness, l->support);
   else
     mesh_open(out, nodes, l->corner, l->size, l->thickness, l->support);

@@ -38,8 +38,9 @@ double node_stencil_entry(const node_stencil *k, int node, int other, int a, int
 
 /* --- assembly --------------------------------------------------------------------------------- */
 
-static const plane_stiffness *law_at(const node_stencil *k, int cell) {
-  return &k->laws[k->law_of_cell ? k->law_of_cell[cell] : 0];
+const plane_stiffness *node_stencil_law(const node_stencil *k, int cell) {
+  const int law = k->law_of_cell ? k->law_of_cell[cell] : 0;
+  return law == NO_LINEAR_LAW ? NULL : &k->laws[law];
 }
 
 /* Places of the point's nodes in blocks: of node p toward node q at from[p] + to[q]. */
@@ -54,7 +55,8 @@ static void find_places(const node_stencil *k, const point_shape *s, long *from,
 
 /* t area sign B_I^T D B_J for all pairs of the point's nodes. */
 static void add_point(node_stencil *k, int point, const point_shape *s, double sign) {
-  const plane_stiffness *law = law_at(k, k->points->cell[point]);
+  const plane_stiffness *law = node_stencil_law(k, k->points->cell[point]);
+  if (!law) return;
   const double factor = sign * k->of->thickness * k->points->area[point];
   long from[SHAPE_MOST_NODES], to[SHAPE_MOST_NODES];
   find_places(k, s, from, to);

@@ -11,8 +11,8 @@
 #include "dsl/base/c_linkage.h"
 #include "dsl/base/diagnostics.h"
 #include "dsl/base/units.h"
-#include "runtime/deck/time_function.h"
 #include "runtime/crack/tip_values.h"
+#include "runtime/deck/time_function.h"
 #include "runtime/geometry/shape.h"
 
 C_LINKAGE_BEGIN
@@ -77,7 +77,9 @@ typedef struct deck_lattice {
   double corner[3], size[3]; /* m */
   const double *corners;     /* of a quadrilateral: x1, y1, ... counter-clockwise, m; else NULL */
   int corner_count;          /* values: 8, or 0 */
-  double nodes[2];           /* whole */
+  double nodes[2];           /* whole; of a file: of rows that they are laid out in, and of these */
+  const struct gmsh_mesh *gmsh; /* of a file; else NULL */
+  const char *unit;             /* of places in the file, "mm" */
   mesh_method method;
   double support;   /* d_max, spacings */
   int gauss, parts; /* background rule: gauss x gauss points in each of parts x parts of a cell */
@@ -219,6 +221,7 @@ typedef struct deck_region {
   const char *name;
   const char *lattice; /* filled in when the deck has only one */
   deck_shape shape;
+  const struct gmsh_group *group; /* of a mesh's file (gmsh_mesh.h); NULL: the deck's own */
 } deck_region;
 
 typedef struct deck_point_mass { /* carried by the particles of a region, without stiffness */
@@ -294,6 +297,11 @@ typedef struct deck_contact {
   int lattice_count;
   double stiffness; /* N/m, of two particles; 0: that of the softer lattice */
 } deck_contact;
+
+typedef struct deck_tie { /* particles of the lattice that lie in the mesh move with it */
+  deck_item item;
+  const char *lattice, *mesh;
+} deck_tie;
 
 typedef struct deck_initial { /* of each particle of the region when the run begins */
   deck_item item;
@@ -460,6 +468,7 @@ typedef struct deck_file { /* a table that a load was read from */
   LIST(crack)                                                                                      \
   ONE(tips)                                                                                        \
   ONE(newmark)                                                                                     \
+  LIST(tie)                                                                                        \
   LIST(material)                                                                                   \
   LIST(field)                                                                                      \
   LIST(body)                                                                                       \

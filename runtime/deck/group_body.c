@@ -379,9 +379,10 @@ static void check_notch(deck_reader *r, const namelist_group *from, void *into) 
   const bool known = take_cut_body(r, from, item);
   check_shape(r, from, &deck_group_notch, &item->item, &item->shape, item->lattice);
   if (!known) return;
-  if (item->mesh)
+  if (item->mesh) {
     check_hole(r, item);
-  else
+    deck_refuse_of_file(r, &item->item, item->mesh, "holes");
+  } else
     check_can_be_filled(r, &item->item, &item->shape, item->lattice, false);
 }
 
@@ -445,6 +446,7 @@ static void check_zone(deck_reader *r, const namelist_group *from, void *into) {
   check_shape(r, from, &deck_group_zone, &item->item, &item->shape, item->mesh);
   deck_mesh_known(r, &item->item, item->mesh);
   const int lattice = item->mesh ? deck_find_lattice(r->k, item->mesh) : -1;
+  deck_refuse_of_file(r, &item->item, item->mesh, "zones");
   if (lattice >= 0 && r->k->lattices[lattice].corners && item->method == MESH_ELEMENT_FREE)
     diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "method"),
                 "element-free nodes stand on a rectangle, and `%s` is given by `corners`",

@@ -79,7 +79,8 @@ static bool has_factors(mesh_rest *r, static_result *found) {
   const size_t size = 2 * (size_t)node_count(r);
   if (r->factors && memcmp(r->held, r->factored, size) == 0) return true;
   static_factors_free(r->factors);
-  r->factors = static_factors_new(&r->c->stencil, r->held, found);
+  r->factors = r->c->has_matrix ? static_factors_of_matrix(&r->c->matrix, r->held, found)
+                                : static_factors_new(&r->c->stencil, r->held, found);
   memcpy(r->factored, r->held, size);
   return r->factors != NULL;
 }

@@ -11,6 +11,7 @@
 #include "runtime/analysis/material.h"
 #include "runtime/analysis/stability.h"
 #include "runtime/continuum/line_load.h"
+#include "runtime/continuum/tip_laws.h"
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/filling/lattice.h"
 #include "runtime/filling/linked.h"
@@ -59,7 +60,8 @@ static bool is_for_one_of_several(const run_body *b, const run_law *l, diagnosti
 }
 
 /* A body has particles of one kind, and engines for laws of one kind. */
-static bool laws_are_alike(const run_body *b, diagnostics *d) {
+static bool laws_are_alike(const run_body *b, const deck *k, diagnostics *d) {
+  if (deck_lattice_is_mesh(&k->lattices[b->lattice])) return true;
   for (int n = 0; n < b->law_count && b->law_count > 1; n++) {
     if (!is_for_one_of_several(b, &b->laws[n], d)) return false;
     const pl_law *first = b->law, *law = b->laws[n].law;
@@ -83,15 +85,23 @@ static bool laws_fit(run_body *b, const deck *k, diagnostics *d) {
   for (int n = 0; n < b->law_count; n++) {
     run_law *l = &b->laws[n];
     l->rows = b->lattice_rows;
-    l->fits = l->law && law_fits_lattice(l->law, k, b->lattice, b->lattice_rows, d);
+    l->fits =
+        l->law && law_fits_lattice(l->law, l->from->material, k, b->lattice, b->lattice_rows, d);
     good = good && l->fits;
   }
-  return good && laws_are_alike(b, d);
+  return good && laws_are_alike(b, k, d);
 }
 
-/* Of several laws: which bonds are whose. */
+/* Of several laws: which bonds are whose; of those of a mesh, which nodes. */
 static bool open_parts(run_body *b, const deck *k, diagnostics *d) {
   if (b->law_count == 1) return true;
+  if (b->cells) {
+    for (int n = 0; n < b->law_count; n++) {
+      b->laws[n].own = b->cells->where.sites[n];
+      b->laws[n].share = b->cells->where.share[n];
+    }
+    return true;
+  }
   const int first = (int)(b->laws[0].from - k->interactions);
   const bool families = !b->law->pairwise;
   b->parts = law_parts_new(k, first, b->law_count, b->lattice_rows, families, d);
@@ -142,28 +152,39 @@ static unsigned char *held_freedoms(const run_body *b) {
 }
 
 /* The fields of a tip are those of isotropic plates. */
-static bool is_isotropic(const run_body *b, const deck *k, diagnostics *d) {
-  const double(*D)[3] = b->cells->stiffness.D, scale = 1e-9 * D[0][0];
+static bool is_isotropic(const run_body *b, diagnostics *d) {
+  const int law = b->cells->tips->law;
+  const double(*D)[3] = b->cells->stiffness[law].D, scale = 1e-9 * D[0][0];
   double off = fabs(D[0][0] - D[1][1]) + fabs(D[0][1] - D[1][0]) + fabs(D[0][2]) + fabs(D[1][2]) +
                fabs(D[2][2] - 0.5 * (D[0][0] - D[0][1]));
   if (off <= scale) return true;
-  diag_report(d, DIAG_CONFLICT, law_fits_where(k, b->lattice),
+  diag_report(d, DIAG_CONFLICT, deck_where(&b->laws[law].from->material->item, "model"),
               "cracks need an isotropic law: stress intensities of `%s` have no meaning",
-              b->law->name);
+              b->laws[law].law->name);
   return false;
 }
 
+static void give_laws(const run_body *b) {
+  cells_law *laws = must_calloc((size_t)b->law_count, sizeof *laws);
+  for (int n = 0; n < b->law_count; n++)
+    laws[n] = (cells_law){b->laws[n].law, b->laws[n].parameters};
+  cells_take_laws(b->cells, laws);
+  free(laws);
+}
+
+static bool cracks_suit_laws(const run_body *b, const deck *k, diagnostics *d) {
+  const cells *c = b->cells;
+  return !c->tips || (tip_laws_fit(c->tips, k, b->name, &c->where, c->linear, &c->mesh, d) &&
+                      is_isotropic(b, d));
+}
+
 static bool find_limit_of_cells(run_body *b, const deck *k, diagnostics *d) {
-  const run_law *l = &b->laws[0];
+  give_laws(b);
+  if (!cracks_suit_laws(b, k, d)) return false;
   unsigned char *held = held_freedoms(b);
-  cells_take_law(b->cells, l->law, l->parameters);
-  if (b->cells->tips && !is_isotropic(b, k, d)) {
-    free(held);
-    return false;
-  }
-  cells_step_limit(b->cells, l->parameters, held, &b->limit);
+  cells_step_limit(b->cells, held, &b->limit);
   free(held);
-  return step_limit_check(k, law_fits_where(k, b->lattice), l->law, &b->limit, d);
+  return step_limit_check(k, law_fits_where(k, b->lattice), b->law, &b->limit, d);
 }
 
 static bool find_limit(run_body *b, const deck *k, diagnostics *d) {
@@ -177,6 +198,15 @@ static bool find_limit(run_body *b, const deck *k, diagnostics *d) {
   free(laws);
   l = law_at_fault(b);
   return step_limit_check(k, deck_where(&l->from->material->item, "model"), l->law, &b->limit, d);
+}
+
+/* Of the nodes of a mesh with several laws. */
+static void take_densities_of_cells(const run_body *b, double *rho) {
+  double *density = must_calloc((size_t)b->law_count, sizeof *density);
+  for (int n = 0; n < b->law_count; n++)
+    density[n] = material_density(b->laws[n].law, b->laws[n].parameters);
+  cells_densities(b->cells, density, rho);
+  free(density);
 }
 
 /* Of the particles that a law owns; those between regions own none. */
@@ -209,8 +239,9 @@ static bool set_masses(run_body *b, rows *const *built) {
     return true;
   }
   double *rho = must_calloc((size_t)b->lattice_rows->size, sizeof *rho);
-  for (int n = 0; n < b->law_count; n++)
+  for (int n = 0; n < b->law_count && !b->cells; n++)
     take_densities(b, &b->laws[n], rho);
+  if (b->cells) take_densities_of_cells(b, rho);
   rows_set_densities(b->lattice_rows, rho);
   free(rho);
   return true;
@@ -371,6 +402,65 @@ static bool add_tractions(run_body *b, const deck *k, diagnostics *d) {
   return good;
 }
 
+/* --- ties ------------------------------------------------------------------------------------- */
+
+static bool is_tied_to_mesh(const run_body *b, const deck *k) {
+  for (int n = 0; n < k->tie_count; n++)
+    if (strcmp(k->ties[n].lattice, b->name) == 0) return true;
+  return false;
+}
+
+/* What a tied particle bears of its own bonds is known; of a family it would be the mesh's, too. */
+static bool can_be_tied(const run_body *b, const deck *k, diagnostics *d) {
+  for (int n = 0; n < b->law_count; n++) {
+    const pl_law *law = b->laws[n].law;
+    if (law->kind != PL_STATE || law->pairwise) continue;
+    diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&b->laws[n].from->material->item, "model"),
+                "`%s` is a law of families: a lattice that is tied to a mesh has a law of bonds",
+                law->name);
+    diag_hint(d, "take a law of bonds, such as `elastic_micropolar` or `mplm_bilinear`");
+    return false;
+  }
+  if (!k->relaxation.solved) return true;
+  diag_report(d, DIAG_NOT_SUPPORTED, k->at_rest.item.where,
+              "a lattice that is tied to a mesh has no static solution");
+  diag_hint(d, "use `&relaxation` in place of `&static`");
+  return false;
+}
+
+static bool open_ties(run_body *b, const deck *k, diagnostics *d) {
+  if (!is_tied_to_mesh(b, k)) return true;
+  if (!can_be_tied(b, k, d)) return false;
+  const bool halves = b->law_count == 1 && b->law->kind != PL_STATE;
+  b->ties = mesh_ties_new(k, b->lattice, b->lattice_rows, halves, &b->tie_count, d);
+  return b->ties != NULL;
+}
+
+/* What loads do to tied particles they would do to the mesh. */
+static bool ties_are_free(const run_body *b, const deck *k, diagnostics *d) {
+  unsigned char *tied = must_calloc((size_t)b->lattice_rows->size, 1);
+  bool good = true;
+  for (int n = 0; n < b->tie_count; n++)
+    for (long p = 0; p < b->ties[n].count; p++)
+      tied[b->lattice_rows->particle_site[b->ties[n].particles[p].particle]] = 1;
+  for (long n = 0; n < b->loads->constraint_count && good; n++) {
+    const constraint *c = &b->loads->constraints[n];
+    if (!tied[c->site]) continue;
+    double at[3];
+    char text[ROWS_PLACE_TEXT];
+    rows_place(b->lattice_rows, c->site, at);
+    diag_report(d, DIAG_CONFLICT,
+                c->drive >= 0 ? deck_where(&k->drives[c->drive].item, "region")
+                              : b->ties[0].from->item.where,
+                "the particle of `%s` at %s is held or driven, but tied to a mesh", b->name,
+                rows_place_text(2, at, text));
+    diag_hint(d, "hold or drive nodes of the mesh there, or particles that are not tied");
+    good = false;
+  }
+  free(tied);
+  return good;
+}
+
 bool run_body_open(run_body *b, const deck *k, rows **built, diagnostics *d) {
   enum { ANY_DOF = PL_MAX_DOF };
   b->name = k->lattices[b->lattice].name;
@@ -379,9 +469,10 @@ bool run_body_open(run_body *b, const deck *k, rows **built, diagnostics *d) {
   b->lattice_rows = built[b->lattice];
   if (!b->lattice_rows) return false;
   b->fits = laws_fit(b, k, d);
+  if (b->fits && !open_ties(b, k, d)) return b->fits = false;
   b->loads = loads_new(k, b->lattice, b->lattice_rows, b->fits ? b->law->name : "",
                        b->fits ? b->law->dof : ANY_DOF, d);
-  if (!b->fits) return false;
+  if (!b->fits || (b->loads && !ties_are_free(b, k, d))) return false;
   if (deck_lattice_is_mesh(&k->lattices[b->lattice])) {
     b->cells = cells_new(k, b->lattice, b->lattice_rows, d);
     if (!b->cells || !holds_elements_alone(b, k, d) || !begins_well(b, k, d) ||
@@ -415,8 +506,11 @@ static void open_state(run_body *b, const deck *k, double step) {
                                                   : BODY_LEDGER;
   const int threads = choose_threads(b, k);
   if (b->cells) {
-    b->state = l->state =
-        cells_sweep(b->cells, k, l->parameters, b->cracks, step, threads, energies);
+    sweep **states = must_calloc((size_t)b->law_count, sizeof(sweep *));
+    b->state = cells_sweep(b->cells, k, b->cracks, step, threads, energies, states);
+    for (int n = 0; n < b->law_count; n++)
+      b->laws[n].state = states[n];
+    free(states);
     return;
   }
   if (b->law_count == 1 && !run_body_is_link(b)) {
@@ -435,9 +529,11 @@ static void open_state(run_body *b, const deck *k, double step) {
   free(laws);
 }
 
-/* Nodes on which loads or supports act, which forces of cells alone do not accelerate. */
+/* Nodes on which loads or supports act, or cells of laws that are not linear, which the stiffness
+   alone does not accelerate. */
 static void mark_loaded(run_body *b) {
   tips *t = b->cells ? b->cells->tips : NULL;
+  if (t && b->cells->linear) cells_mark_pushed(b->cells, t->loaded);
   for (long n = 0; t && n < b->loads->constraint_count; n++)
     t->loaded[cells_node(b->cells, b->loads->constraints[n].site)] = 1;
   for (long n = 0; t && n < b->loads->force_count; n++)
@@ -470,12 +566,13 @@ double run_body_limit_now(const run_body *b) {
   step_limit now = b->limit;
   if (!b->cells) return now.limit;
   unsigned char *held = held_freedoms(b);
-  cells_step_limit(b->cells, b->laws[0].parameters, held, &now);
+  cells_step_limit(b->cells, held, &now);
   free(held);
   return now.limit;
 }
 
 void run_body_free(run_body *b) {
+  mesh_ties_free(b->ties, b->tie_count);
   mesh_rest_free(b->rest);
   loads_free(b->loads);
   sweep_free(b->state);
