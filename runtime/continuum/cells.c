@@ -527,14 +527,17 @@ static void stored(sweep *w, double *values) {
 
 void cells_mean_dilatation(const cells *c, int cell, const double *const displacement[2],
                            double strain[3]) {
-  int corner[4];
-  double u[4][2];
+  double mean[ELEMENT_MOST_NODES][2], theta = 0;
   if (!element_takes_mean(&c->mesh, cell)) return;
-  mesh_corners(&c->mesh, cell, corner);
-  for (int q = 0; q < 4; q++)
+  point_shape s;
+  shape_functions(&c->mesh, cell, c->points.at[c->points.first[cell]], &s);
+  element_mean_gradient(&c->mesh, &c->points, cell, mean);
+  for (int q = 0; q < s.count; q++)
     for (int d = 0; d < 2; d++)
-      u[q][d] = displacement[d][cells_site(c, corner[q])];
-  element_mean_strain(&c->mesh, cell, u, strain);
+      theta += mean[q][d] * displacement[d][cells_site(c, s.node[q])];
+  const double shift = 0.5 * (theta - strain[0] - strain[1]);
+  strain[0] += shift;
+  strain[1] += shift;
 }
 
 /* Of a linear law a point remembers nothing: asked for, it is looked at. */

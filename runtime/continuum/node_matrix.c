@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/mesh/element_modes.h"
 #include "runtime/mesh/shape_functions.h"
 
 /* --- which nodes ------------------------------------------------------------------------------ */
@@ -68,6 +69,29 @@ static void add_pair(double block[4], const double D[3][3], double w, const doub
     }
 }
 
+static void add_plain(node_matrix *k, const plane_stiffness *law, const point_shape *s, double w) {
+  for (int a = 0; a < s->count; a++)
+    for (int b = 0; b < s->count; b++) {
+      const double left[2] = {s->nx[a], s->ny[a]}, right[2] = {s->nx[b], s->ny[b]};
+      add_pair(block_of(k, s->node[a], s->node[b]), law->D, w, left, right);
+    }
+}
+
+/* The same with the mean dilatation of the cell. */
+static void add_mean(node_matrix *k, const plane_stiffness *law, const point_shape *s,
+                     const double mean[ELEMENT_MOST_NODES][2], double w) {
+  double B[3][2 * ELEMENT_MOST_NODES];
+  element_mean_strains(s, mean, B);
+  for (int i = 0; i < 2 * s->count; i++)
+    for (int j = 0; j < 2 * s->count; j++) {
+      double sum = 0;
+      for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+          sum += B[a][i] * law->D[a][b] * B[b][j];
+      block_of(k, s->node[i / 2], s->node[j / 2])[2 * (i % 2) + j % 2] += w * sum;
+    }
+}
+
 void node_matrix_open(node_matrix *k, const mesh *m, const integration_points *p,
                       const plane_stiffness *laws, const unsigned char *law_of_cell) {
   *k = (node_matrix){.layout = node_layout_of(m->nodes, m->support), .nodes = m->lists->node_count};
@@ -79,11 +103,14 @@ void node_matrix_open(node_matrix *k, const mesh *m, const integration_points *p
     const plane_stiffness *law = &laws[number];
     point_shape s;
     shape_functions(m, cell, p->at[n], &s);
-    for (int a = 0; a < s.count; a++)
-      for (int b = 0; b < s.count; b++) {
-        const double left[2] = {s.nx[a], s.ny[a]}, right[2] = {s.nx[b], s.ny[b]};
-        add_pair(block_of(k, s.node[a], s.node[b]), law->D, m->thickness * p->area[n], left, right);
-      }
+    const double w = m->thickness * p->area[n];
+    if (!element_takes_mean(m, cell)) {
+      add_plain(k, law, &s, w);
+      continue;
+    }
+    double mean[ELEMENT_MOST_NODES][2];
+    element_mean_gradient(m, p, cell, mean);
+    add_mean(k, law, &s, (const double(*)[2])mean, w);
   }
 }
 

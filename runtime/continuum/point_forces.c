@@ -136,7 +136,8 @@ static void for_each_cell(point_forces *p, take_cell *take) {
   for (int row = 0; row < p->strips.rows; row++)
     for (int n = p->strips.first_group[row]; n < p->strips.first_group[row + 1]; n++)
       for (int lane = 0; lane < p->strips.groups[n].count; lane++)
-        take(p, n, lane, mesh_cell_at(p->of, p->strips.groups[n].first + lane, row));
+        take(p, n, lane,
+             cell_strips_cell(&p->strips, p->of, row, &p->strips.groups[n], lane));
 }
 
 static void open_mean(point_forces *p, int group, int lane, int cell) {
