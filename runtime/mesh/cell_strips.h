@@ -36,7 +36,7 @@ typedef struct cell_group {
   int points;       /* of each */
   int at;           /* place of its first point; PL_LANES for each point of a cell follow */
   const cell_table *table; /* NULL in a mesh of lists */
-  double even; /* m^3: of each point, where they are rectangles with the same; else 0 */
+  double even;             /* m^3: of each point, where they are rectangles with the same; else 0 */
 } cell_group;
 
 typedef struct cell_strips {
