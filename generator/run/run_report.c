@@ -7,6 +7,7 @@
 
 #include "dsl/base/elementary.h"
 #include "generator/drive/explain_bad.h"
+#include "generator/drive/explain_point.h"
 #include "generator/kernel/document.h"
 #include "generator/run/bad_bond.h"
 #include "generator/run/moment.h"
@@ -326,6 +327,21 @@ static void announce_lattice(const run *r, int lattice) {
       1e3 * w->height, depth);
 }
 
+/* "tie        core to left: 17 particles, 0.31 kg of which goes to 18 nodes; 16 bonds count by halves" */
+static void announce_ties(const run *r, int lattice) {
+  int count;
+  const mesh_tie *ties = simulation_ties(r->simulation, lattice, &count);
+  for (int n = 0; n < count; n++) {
+    const mesh_tie *t = &ties[n];
+    printf("  tie        %s to %s: %ld particles, %.4g kg of them goes to its nodes",
+           t->from->lattice, t->from->mesh, t->count,
+           mesh_tie_mass(t, simulation_rows(r->simulation, lattice)));
+    if (t->half_count > 0) printf("; %ld bonds along its edge count by halves", t->half_count);
+    if (t->left_out > 0) printf("; %ld bonds inside it are left out", t->left_out);
+    putchar('\n');
+  }
+}
+
 /* "mass       0.2 kg on 3 particles of `tip`" */
 static void announce_point_mass(const run *r, int index) {
   long particles;
@@ -430,6 +446,7 @@ void announce(const run *r) {
       announce_particles(r, k);
     else
       announce_lattice(r, k);
+    announce_ties(r, k);
     announce_notches(r, k);
     announce_laws(r, k);
   }
@@ -477,13 +494,33 @@ void describe_monitors(const run *r, char *text, size_t size) {
 /* The bond at fault, for `perilat drive`. */
 static void write_bad_bond(const run *r, const bad_state *b) {
   char path[4200], error[ERROR_LENGTH + 4200];
-  bad_bond_path(r->result_path, path, sizeof path);
+  bad_bond_path(r->result_path, b, path, sizeof path);
   if (bad_bond_write(path, r->options->deck_path, r->model_of[b->interaction],
                      &r->laws[b->interaction], simulation_rows(r->simulation, b->body), b, error,
                      sizeof error))
     fprintf(stderr, "  this bond alone: perilat drive %s\n", path);
   else
     fprintf(stderr, "  %s\n", error);
+}
+
+static void write_bad_point(const run *r, const bad_state *b) {
+  char path[4200], error[ERROR_LENGTH + 4200];
+  bad_bond_path(r->result_path, b, path, sizeof path);
+  if (bad_point_write(path, r->options->deck_path, r->model_of[b->interaction],
+                      &r->laws[b->interaction], r->deck->lattices[b->body].setting, b, error,
+                      sizeof error))
+    fprintf(stderr, "  this point alone: perilat drive %s\n", path);
+  else
+    fprintf(stderr, "  %s\n", error);
+}
+
+/* What its law says there, line by line. */
+static void explain_bad_point(const run *r, const bad_state *b) {
+  const simulation_law *l = &r->laws[b->interaction];
+  const point_state *p = b->point;
+  const asked_point at = {p->strain, p->field, p->size, simulation_step_limit(r->simulation)->step};
+  if (r->model_of[b->interaction])
+    explain_point(r->model_of[b->interaction]->plan, l->parameters, &at, stderr);
 }
 
 static void print_fields(const pl_law *kernel, const double *values, bool on_particles) {
@@ -621,7 +658,11 @@ void report_bad(const run *r) {
       r->deck->relaxation.increments > 0 ? "after " : "", moment(r, b.time, when), b.particle,
       rows_place_text(simulation_rows(r->simulation, b.body)->dimensions, b.place, place_text));
   if (b.family) print_family(r, &b);
-  if (b.point) print_point(r, &b);
+  if (b.point) {
+    print_point(r, &b);
+    explain_bad_point(r, &b);
+    write_bad_point(r, &b);
+  }
   if (b.bond_particle >= 0) {
     fprintf(stderr,
             "  bond to particle %ld: stretch %.6g, stretch rate %.6g 1/s, end rotations %.6g and "

@@ -77,6 +77,21 @@ void body_add_mass(body *w, long site, double mass, double inertia) {
   }
 }
 
+void body_give_away(body *w, long site) {
+  if (!w->relative_mass[0]) new_masses(w);
+  for (int d = 0; d < w->dimensions && !w->ahead[d]; d++)
+    w->ahead[d] = body_doubles(w, w->lattice->size);
+  w->relative_mass[0][site] = 0;
+  if (w->weight) w->weight[site] = 0;
+}
+
+/* v = decay v_before + part dt/m f (motion.h), part = (1 + decay)/2. */
+double body_kicked_by(const body *w, int component, long site, double before) {
+  const double gained = w->velocity[component][site] - w->decay * before;
+  return gained * w->mass[component] /
+         (0.5 * (1 + w->decay) * w->time_step * w->mobility[0][site]);
+}
+
 static long doubles_below(const body *w, int row) {
   long sum = 0;
   for (int r = 0; r < row; r++)

@@ -39,6 +39,8 @@ typedef enum volume_correction { VOLUME_WHOLE, VOLUME_LINEAR } volume_correction
 
 /* Of nodes and cells: bilinear finite elements, or moving least squares. */
 typedef enum mesh_method { MESH_ELEMENT_FREE, MESH_FINITE_ELEMENTS } mesh_method;
+/* Of the points of an element: each its own, or the mean of the cell. */
+typedef enum mesh_dilatation { DILATATION_POINT, DILATATION_MEAN } mesh_dilatation;
 
 /* Of a &lattice, or of a &bar, a &link or a &mesh, which are of the kinds `bar`, `link` and `mesh`:
    they stand behind them, in this order. */
@@ -85,6 +87,8 @@ typedef struct deck_lattice {
   int gauss, parts; /* background rule: gauss x gauss points in each of parts x parts of a cell */
   double rich;      /* radius of the enriched basis, spacings along x; 0: a linear basis */
   bool smooth;      /* zones are blended by a smooth ramp */
+  mesh_dilatation dilatation; /* of elements */
+  double hourglass;           /* of elements with one point: part of their stiffness */
 } deck_lattice;
 typedef deck_lattice deck_bar, deck_link, deck_mesh;
 
@@ -93,6 +97,8 @@ typedef struct deck_zone { /* a part of a mesh with the other method */
   const char *mesh;
   mesh_method method;
   int gauss; /* of finite elements: 1 or 2 */
+  mesh_dilatation dilatation;
+  double hourglass;
   deck_shape shape;
 } deck_zone;
 
@@ -303,6 +309,11 @@ typedef struct deck_contact {
   double stiffness; /* N/m, of two particles; 0: that of the softer lattice */
 } deck_contact;
 
+typedef struct deck_tie { /* particles of the lattice that lie in the mesh move with it */
+  deck_item item;
+  const char *lattice, *mesh;
+} deck_tie;
+
 typedef struct deck_initial { /* of each particle of the region when the run begins */
   deck_item item;
   const char *region;
@@ -468,6 +479,7 @@ typedef struct deck_file { /* a table that a load was read from */
   LIST(crack)                                                                                      \
   ONE(tips)                                                                                        \
   ONE(newmark)                                                                                     \
+  LIST(tie)                                                                                        \
   LIST(material)                                                                                   \
   LIST(field)                                                                                      \
   LIST(body)                                                                                       \

@@ -297,3 +297,75 @@ static void check_link(deck_reader *r, const namelist_group *from, void *into) {
 DECK_MORE(link, lattice, .identity = "name", .begin = begin_link, .check = check_link,
           .doc = "Bonds between a bar and the lattice around it; their law is that of a "
                  "`&material link =`. Everywhere else it is named as a lattice is.");
+
+/* --- ties ------------------------------------------------------------------------------------- */
+
+static const deck_key_info tie_keys[] = {
+    {.name = "lattice",
+     .type = DECK_NAME,
+     .required = true,
+     DECK_AT(tie, lattice),
+     .doc = "name of the lattice whose particles in the mesh, or on its edge, are tied"},
+    {.name = "mesh",
+     .type = DECK_NAME,
+     .required = true,
+     DECK_AT(tie, mesh),
+     .doc = "name of the mesh that moves them; its cells there are finite elements"},
+};
+
+static const deck_lattice *lattice_named(const deck_reader *r, const char *name) {
+  const int found = deck_find_lattice(r->k, name);
+  return found < 0 || r->k->lattices[found].item.faulty ? NULL : &r->k->lattices[found];
+}
+
+/* The two are parts of one body. */
+static void compare(deck_reader *r, const deck_tie *item, const deck_lattice *l,
+                    const deck_mesh *m) {
+  const char *lattice = deck_shown(r->memory, item->lattice),
+             *mesh = deck_shown(r->memory, item->mesh);
+  if (deck_lattice_dimensions(l) != 2) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "lattice"),
+                "the lattice `%s` is not in the plane, as meshes are", lattice);
+    return;
+  }
+  if (fabs(l->stiffness_thickness - m->thickness) > 1e-6 * m->thickness) {
+    diag_report(r->d, DIAG_DECK_WARNING, item->item.where, "`%s` is %.6g mm thick, `%s` %.6g mm",
+                lattice, 1e3 * l->stiffness_thickness, mesh, 1e3 * m->thickness);
+    diag_hint(r->d, "give both the same `thickness`");
+  }
+  if (l->setting && m->setting && strcmp(l->setting, m->setting) != 0) {
+    diag_report(r->d, DIAG_DECK_WARNING, item->item.where, "`%s` is in %s, `%s` in %s", lattice,
+                l->setting, mesh, m->setting);
+    diag_hint(r->d, "give both the same `setting`");
+  }
+}
+
+static void check_tie(deck_reader *r, const namelist_group *from, void *into) {
+  const deck_tie *item = into;
+  (void)from;
+  if (!deck_lattice_known(r, &item->item, item->lattice) ||
+      !deck_mesh_known(r, &item->item, item->mesh))
+    return;
+  const deck_lattice *l = lattice_named(r, item->lattice), *m = lattice_named(r, item->mesh);
+  if (!l || !m) return;
+  if (deck_lattice_is_bar(l) || deck_lattice_is_link(l) || deck_lattice_is_mesh(l)) {
+    diag_report(r->d, DIAG_BAD_VALUE, deck_where(&item->item, "lattice"),
+                "`%s` is a %s: a tie joins a lattice to a mesh",
+                deck_shown(r->memory, item->lattice), deck_lattice_word(l));
+    return;
+  }
+  for (int n = 0; n < r->k->tie_count; n++)
+    if (deck_same_name(r->k->ties[n].lattice, item->lattice) &&
+        deck_same_name(r->k->ties[n].mesh, item->mesh)) {
+      diag_report(r->d, DIAG_CONFLICT, item->item.where, "`%s` is tied to `%s` twice",
+                  deck_shown(r->memory, item->lattice), deck_shown(r->memory, item->mesh));
+      diag_note(r->d, r->k->ties[n].item.where, "tied here first");
+      return;
+    }
+  compare(r, item, l, m);
+}
+
+DECK_LIST(
+    tie, .check = check_tie,
+    .doc = "Particles of a lattice that lie in a mesh or on its edge go where the mesh goes, and "
+           "give it what acts on them, see [Lattices in meshes](#lattices-in-meshes).");

@@ -318,6 +318,7 @@ void load_steps_set_back(loads *l, body *w) {
     for (long p = 0; p < l->lattice->particle_count; p++) {
       const int64_t q = l->lattice->particle_site[p];
       double *v = &w->velocity[d][q];
+      if (!(body_mass(w, d, q) > 0)) continue; /* a tie moves it */
       *v =
           back * *v - half * ((w->force[d][q] + body_outer(w, d, q)) / body_mass(w, d, q) + weight);
     }
@@ -605,18 +606,50 @@ static void take_next(const body *w, applied *f, double next) {
   f->now = next;
 }
 
-/* Those of links come when all bodies have moved. */
+/* Those of links come when all bodies have moved, those of ties before the next step ends. */
 static void next_forces(const load_run *r) {
   cause_step known[REMEMBERED] = {{0}};
-  for (long i = r->first_force; i < r->last_force; i++)
-    if (!r->l->forces[i].link)
-      take_next(r->w, &r->l->forces[i], force_after(r, &r->l->forces[i], known));
+  for (long i = r->first_force; i < r->last_force; i++) {
+    applied *f = &r->l->forces[i];
+    if (f->tied)
+      f->velocity = r->w->velocity[f->component][f->site];
+    else if (!f->link)
+      take_next(r->w, f, force_after(r, f, known));
+  }
 }
 
 void load_steps_take_links(loads *l, body *w, int block) {
   const load_run r = run_of(l, w, block, 0);
   for (long i = r.first_force; i < r.last_force; i++)
-    if (l->forces[i].link) take_next(w, &l->forces[i], l->forces[i].share * *l->forces[i].link);
+    if (l->forces[i].link && !l->forces[i].tied)
+      take_next(w, &l->forces[i], l->forces[i].share * *l->forces[i].link);
+}
+
+/* Of the way to the state that the step begins with; nothing has led to the first. */
+static double work_of_tie(const body *w, const applied *f, double here, long step) {
+  return step > 0 ? 0.5 * w->time_step * (f->now + here) * f->velocity : 0;
+}
+
+void load_steps_take_ties(loads *l, const body *w, long step) {
+  for (long i = 0; i < l->force_count; i++) {
+    applied *f = &l->forces[i];
+    if (!f->tied) continue;
+    const double here = f->share * *f->link;
+    f->sums.work += work_of_tie(w, f, here, step);
+    f->now = here;
+  }
+}
+
+double load_steps_see_tie(loads *l, const body *w, int tie, long step) {
+  const int cause = loads_cause_of_tie(l, tie);
+  double work = 0;
+  for (long i = 0; i < l->force_count; i++) {
+    applied *f = &l->forces[i];
+    if (!f->tied || f->cause != cause) continue;
+    f->seen = f->share * *f->link;
+    work += f->sums.work + work_of_tie(w, f, f->seen, step);
+  }
+  return work;
 }
 
 void load_steps_apply(loads *l, body *w, int block, long step) {
@@ -649,6 +682,7 @@ load_sums load_steps_total(const loads *l) {
 /* Velocity after the coming step if nothing but bonds, damping, gravity and outer forces acted on a
    particle. */
 static double free_velocity(const body *w, int component, int64_t site) {
+  if (!(body_mass(w, component, site) > 0)) return w->ahead[component][site];
   const double weight = component < w->dimensions ? w->gravity[component] : 0;
   return w->decay * w->velocity[component][site] +
          given_by(w, component, site, w->force[component][site] + body_outer(w, component, site)) +
@@ -661,7 +695,7 @@ static double loaded_velocity(const loads *l, const body *w, int component, int6
   long i = first_at(l->forces, l->force_count, sizeof *l->forces, site);
   for (; i < l->force_count && l->forces[i].site == site; i++)
     if (l->forces[i].component == component)
-      velocity += given_by(w, component, site, l->forces[i].now);
+      velocity += given_by(w, component, site, loads_acting(&l->forces[i]));
   return velocity;
 }
 
@@ -751,7 +785,7 @@ static void look_at_turn(const loads *l, const body *w, const held_turn *t, long
 }
 
 load_look load_steps_observe(loads *l, const body *w, long step) {
-  load_look sum = {0, 0, 0};
+  load_look sum = {0};
   for (long i = 0; i < l->constraint_count; i++) {
     constraint *c = &l->constraints[i];
     const held_turn turn = turn_at(l, w, i);
@@ -769,9 +803,10 @@ load_look load_steps_observe(loads *l, const body *w, long step) {
   for (long i = 0; i < l->force_count; i++) {
     const applied *f = &l->forces[i];
     constraint *holder = f->holder >= 0 ? &l->constraints[f->holder] : NULL;
-    const double power = 0.5 * w->time_step * f->now * f->velocity;
+    const double here = loads_acting(f), power = 0.5 * w->time_step * here * f->velocity;
+    if (f->tied) sum.work += work_of_tie(w, f, here, step);
     if (holder && holder->active) { /* what holds the particle takes the force up */
-      holder->reaction -= f->now;
+      holder->reaction -= here;
       sum.work -= power;
       continue;
     }

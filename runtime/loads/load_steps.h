@@ -34,9 +34,10 @@
 
 /* At the state observed: what loaded particles add to the sums over the body, J. */
 typedef struct load_look {
-  double kinetic;    /* they are not free */
-  double work;       /* of reactions, from the last half step on */
-  double dissipated; /* by mass damping, likewise */
+  double kinetic;                /* they are not free */
+  double work;                   /* of reactions, from the last half step on */
+  double dissipated;             /* by mass damping, likewise */
+  double stored, free, internal; /* what ties add to those of the body */
 } load_look;
 
 /* Of a static run: the motion prescribed after `step` steps (m), counted from the anchor; the force
@@ -62,6 +63,11 @@ void load_steps_apply(loads *l, body *w, int block, long step);
 void load_steps_turn(const loads *l, body *w, long step);
 /* Then, when they are known: the forces of links at the new places, of the rows of a block. */
 void load_steps_take_links(loads *l, body *w, int block);
+/* In a step, when all rows have moved but before load_steps_apply: what ties exert. */
+void load_steps_take_ties(loads *l, const body *w, long step);
+/* Of the state observed after `step` steps, before load_steps_observe: the same of one tie; returns the
+   work that it has done up to there, J. */
+double load_steps_see_tie(loads *l, const body *w, int tie, long step);
 load_sums load_steps_total(const loads *l);
 
 /* In space, of constraint i, the first of a particle's rotations: the moments about all axes that

@@ -300,6 +300,16 @@ void loads_add_link(loads *l, int64_t site, int component, int link, double shar
                 .share = share};
 }
 
+void loads_add_tie(loads *l, int64_t site, int component, int tie, double share,
+                   const double *force) {
+  loads_add_link(l, site, component, l->deck->lattice_count + tie, share, force);
+  l->forces[l->force_count - 1].tied = 1;
+}
+
+int loads_cause_of_tie(const loads *l, int tie) {
+  return l->deck->force_count + l->deck->end_moment_count + l->deck->lattice_count + tie;
+}
+
 static int64_t holder_of(const loads *l, const applied *f) {
   const constraint key = {.site = f->site, .component = f->component}, *found = NULL;
   if (l->constraint_count > 0)

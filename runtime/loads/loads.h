@@ -40,10 +40,14 @@ typedef struct applied { /* part of a force that acts on one component of one pa
   int32_t component;
   int32_t cause;      /* index into the deck's forces, then end moments, then the run's links */
   const double *link; /* N, N m: of a link, what it exerts in the present state; else NULL */
-  int64_t place;   /* of what differs from place to place: one of loads.places + 1; 0: the site */
-  int64_t holder;  /* index of the constraint on the same component, or -1 */
-  double share;    /* force = share * time function */
-  double now;      /* N: force of the coming step */
+  int64_t place;  /* of what differs from place to place: one of loads.places + 1; 0: the site */
+  int64_t holder; /* index of the constraint on the same component, or -1 */
+  double share;   /* force = share * time function */
+  /* A tie's: it is known when the particles of the lattice have moved, and acts in the same step; in
+     between `seen` (N) is that of the state observed. */
+  int64_t tied;
+  double seen;
+  double now;      /* N: force of the coming step; of a tie of the last one */
   double velocity; /* m/s: after the last step */
   load_sums sums;
 } applied;
@@ -87,6 +91,14 @@ void loads_add_share_there(loads *l, int32_t particle, int component, int force,
 void loads_add_link(loads *l, int64_t site, int component, int link, double share,
                     const double *force);
 void loads_links_added(loads *l);
+/* The same of a tie; numbers of ties go on behind those of links. */
+void loads_add_tie(loads *l, int64_t site, int component, int tie, double share,
+                   const double *force);
+int loads_cause_of_tie(const loads *l, int tie);
+/* N: what acts in the state observed. */
+static inline double loads_acting(const applied *f) {
+  return f->tied ? f->seen : f->now;
+}
 
 /* Puts the deck's point masses on the particles. */
 void loads_point_masses(const loads *l, body *w);

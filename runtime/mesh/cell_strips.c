@@ -132,6 +132,13 @@ static cell_table *table_of(const draft *d, int lanes, long stride) {
   return t;
 }
 
+/* Entries stand point by point and node row by node row, as in a rectangle. */
+static void find_rectangle(cell_table *t, double least) {
+  if (t->lanes == 1 && t->points == 4 && t->nodes == 4 && t->entries == 16)
+    t->rectangle =
+        rectangle_slopes_find(&t->slopes, (const double(*)[4][2])(const void *)t->slope, least);
+}
+
 static void table_free(cell_table *t) {
   free(t->offset);
   free(t->first);
@@ -170,6 +177,7 @@ static const cell_table *keep(cell_strips *s, cell_table *t, double least) {
     s->table_room = s->table_room ? 2 * s->table_room : 64;
     s->tables = must_realloc(s->tables, (size_t)s->table_room * sizeof(cell_table *));
   }
+  find_rectangle(t, least);
   s->bytes += bytes_of(t);
   return s->tables[s->table_count++] = t;
 }
@@ -209,6 +217,15 @@ static void place_group(cell_strips *s, const mesh *m, const integration_points 
   }
 }
 
+/* The volume of each of its points, where that is one. */
+static double even_volume(const cell_strips *s, const cell_group *g) {
+  const double *volume = s->volume + g->at;
+  if (!g->table->rectangle || g->count < PL_LANES) return 0;
+  for (int k = 1; k < g->table->points * PL_LANES; k++)
+    if (volume[k] != volume[0]) return 0;
+  return volume[0];
+}
+
 /* Points of a cell that is among those asked for. */
 static int points_here(const integration_points *p, const unsigned char *own, int cell) {
   return own && !own[cell] ? 0 : points_of(p, cell);
@@ -229,6 +246,7 @@ static void add_group(cell_strips *s, const mesh *m, const integration_points *p
   place_group(s, m, p, row, g);
   g->table =
       keep(s, table_of(d, is_uniform(d, g->count) ? 1 : PL_LANES, s->layout.stride), d->least);
+  g->even = even_volume(s, g);
 }
 
 static void find_reach(cell_strips *s) {
@@ -387,7 +405,10 @@ void cell_strips_strain(const cell_strips *s, int row, const cell_group *g,
     return;
   }
   const long at = s->layout.origin + row * s->layout.stride + g->first;
-  if (g->table->lanes == 1)
+  if (g->table->rectangle)
+    rectangle_cells_strain(&g->table->slopes, (const double *const[]){u[0] + at, u[1] + at},
+                           s->layout.stride, strain);
+  else if (g->table->lanes == 1)
     strain_of_group(g->table, 1, u[0] + at, u[1] + at, strain);
   else
     strain_of_group(g->table, PL_LANES, u[0] + at, u[1] + at, strain);
@@ -431,6 +452,17 @@ void cell_strips_push(const cell_strips *s, int row, const cell_group *g,
     push_group(g->table, 1, traction, pushed[0] + at, pushed[1] + at);
   else
     push_group(g->table, PL_LANES, traction, pushed[0] + at, pushed[1] + at);
+}
+
+double *cell_strips_row(const cell_strips *s, int row, double *pushed) {
+  return pushed + row * plane_of(s) - s->low * s->layout.stride;
+}
+
+void cell_strips_push_even(const cell_strips *s, int row, const cell_group *g, int count,
+                           const double *const stress[3], double *const pushed[2]) {
+  const long at = row * plane_of(s) - s->low * s->layout.stride + g->first;
+  rectangle_cells_push(&g->table->slopes, count, stress, g->even,
+                       (double *const[]){pushed[0] + at, pushed[1] + at}, s->layout.stride);
 }
 
 long cell_strips_pushed(const cell_strips *s) {

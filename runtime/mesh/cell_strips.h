@@ -12,6 +12,7 @@
 #include "runtime/mesh/element_strips.h"
 #include "runtime/mesh/integration_points.h"
 #include "runtime/mesh/node_layout.h"
+#include "runtime/mesh/rectangle_cells.h"
 
 /* What acts at the points of a group. Away from edges, zones and cracks it is the same in all cells
    (to rounding, 1e-11 of a slope) and stored once for all groups like it. */
@@ -25,6 +26,8 @@ typedef struct cell_table {
   double *slope;      /* [entries][2][lanes] N_,x and N_,y, 1/m */
   int *first_of_node; /* [nodes + 1] of the two below */
   int *entry, *point; /* [entries] node by node */
+  bool rectangle;     /* the same in all cells, bilinear rectangles with 2 x 2 points, of these */
+  rectangle_slopes slopes;
 } cell_table;
 
 typedef struct cell_group {
@@ -33,6 +36,7 @@ typedef struct cell_group {
   int points;       /* of each */
   int at;           /* place of its first point; PL_LANES for each point of a cell follow */
   const cell_table *table; /* NULL in a mesh of lists */
+  double even; /* m^3: of each point, where it is full of rectangles with the same; else 0 */
 } cell_group;
 
 typedef struct cell_strips {
@@ -68,11 +72,17 @@ void cell_strips_strain(const cell_strips *s, int row, const cell_group *g,
 void cell_strips_push(const cell_strips *s, int row, const cell_group *g,
                       const double *const traction[3], double *const pushed[2]);
 long cell_strips_pushed(const cell_strips *s);
+/* Where what a row of cells pushes at its lower left node stands in a plane of `pushed`, the other
+   nodes as in the layout; of a grid. */
+double *cell_strips_row(const cell_strips *s, int row, double *pushed);
 /* Before a row of cells pushes. */
 void cell_strips_clear(const cell_strips *s, int row, double *const pushed[2]);
 /* N: the forces of a row of nodes, in planes of the layout; `more`: beside those that are there. */
 void cell_strips_take(const cell_strips *s, int row, double *const pushed[2], bool more,
                       double *const force[2]);
+/* The same of `count` groups side by side that are alike and even, from their stress. */
+void cell_strips_push_even(const cell_strips *s, int row, const cell_group *g, int count,
+                           const double *const stress[3], double *const pushed[2]);
 
 /* Number of a lane's cell; of what fills up the first one's. */
 int cell_strips_cell(const cell_strips *s, const mesh *m, int row, const cell_group *g, int lane);

@@ -40,10 +40,10 @@ static double taken(const ledger *g, const ledger_laws *of, const body_totals *t
 }
 
 static bool is_sound(const ledger *g, const ledger_laws *of, double step, const body_totals *t,
-                     double omega) {
+                     const load_look *look, double omega) {
   const double phase = step * omega, part = pl_fmin(0.5 * phase * phase, 1);
   if (of->silent || (of->families && of->reads_rates)) return true;
-  return !(t->free + part * t->stored <
+  return !(t->free + look->free + part * (t->stored + look->stored) <
            -1e-6 * g->largest); /* numbers that are none are found by the next step */
 }
 
@@ -99,19 +99,20 @@ bool ledger_sample(ledger *g, const ledger_laws *of, const body *state, const lo
   const body_totals t = body_sum(state);
   const load_sums s = load_steps_total(l);
   const double damping = t.dissipated_rate + t.dissipated + s.dissipated + look->dissipated;
-  const double kinetic = t.kinetic + look->kinetic, held = kinetic + t.stored;
-  const double lost = t.internal + s.internal - t.stored;
+  const double kinetic = t.kinetic + look->kinetic, stored = t.stored + look->stored,
+               held = kinetic + stored;
+  const double lost = t.internal + s.internal + look->internal - t.stored;
   if (!g->begun) {
     *g = (ledger){.begun = 1, .lost = lost, .pending = damping};
     g->initial = held + taken(g, of, &t, lost); /* what breaks in the first state was held before */
   }
   terms[LEDGER_KINETIC] = kinetic;
-  terms[LEDGER_STORED] = t.stored;
+  terms[LEDGER_STORED] = stored;
   terms[LEDGER_EXTERNAL] = s.work + look->work + t.gravity + t.outer;
   terms[LEDGER_DISSIPATED_DAMPING] = damping - g->pending;
   terms[LEDGER_DISSIPATED_DAMAGE] = taken(g, of, &t, lost);
   terms[LEDGER_IMBALANCE] = imbalance(g, of, terms);
   g->largest = pl_fmax(pl_fmax(g->largest, fabs(kinetic)),
-                       pl_fmax(fabs(t.stored), fabs(terms[LEDGER_EXTERNAL])));
-  return is_sound(g, of, state->time_step, &t, omega);
+                       pl_fmax(fabs(stored), fabs(terms[LEDGER_EXTERNAL])));
+  return is_sound(g, of, state->time_step, &t, look, omega);
 }

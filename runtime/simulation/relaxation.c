@@ -12,22 +12,45 @@ enum { LOOK_EVERY = 25 };                /* steps */
 static const double forgotten = 0.01;    /* part of the largest force that still counts */
 static const double while_loading = 0.1; /* part of the damping */
 
-/* The longest side of the body, in steps of a long wave there and back: one covers at least half a
-   spacing a step at the stability limit of the lattices at hand. */
-static long ramp_of(const rows *g, double part) {
-  double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
-  double longest = 0;
+typedef struct extent { /* m */
+  double lower[3], upper[3], spacing;
+} extent;
+
+static const extent nowhere = {
+    {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, INFINITY};
+
+static void reach_out(extent *e, const rows *g) {
   for (long p = 0; p < g->particle_count; p++) {
     double at[3];
     rows_place(g, g->particle_site[p], at);
     for (int c = 0; c < g->dimensions; c++) {
-      lower[c] = pl_fmin(lower[c], at[c]);
-      upper[c] = pl_fmax(upper[c], at[c]);
+      e->lower[c] = pl_fmin(e->lower[c], at[c]);
+      e->upper[c] = pl_fmax(e->upper[c], at[c]);
     }
   }
-  for (int c = 0; c < g->dimensions; c++)
-    longest = pl_fmax(longest, upper[c] - lower[c]);
-  return (long)ceil(4 * (longest / g->spacing + 1) / part);
+  e->spacing = pl_fmin(e->spacing, g->spacing);
+}
+
+/* The longest side of the body, in steps of a long wave there and back: one covers at least half a
+   spacing a step at the stability limit of the lattices at hand. */
+static long ramp_of(const extent *e, double part) {
+  double longest = 0;
+  for (int c = 0; c < 3; c++)
+    longest = pl_fmax(longest, e->upper[c] - e->lower[c]);
+  return (long)ceil(4 * (longest / e->spacing + 1) / part);
+}
+
+/* Bodies that are tied to each other are one. */
+static long longest_ramp(const run_body *bodies, int count, double part) {
+  extent tied = nowhere;
+  long ramp = 0;
+  for (int b = 0; b < count; b++) {
+    extent own = nowhere, *e = bodies[b].tied ? &tied : &own;
+    reach_out(e, bodies[b].lattice_rows);
+    const long here = ramp_of(e, part);
+    ramp = here > ramp ? here : ramp;
+  }
+  return ramp;
 }
 
 relaxation *relaxation_new(const deck *k, const run_body *bodies, int count, double part) {
@@ -37,12 +60,10 @@ relaxation *relaxation_new(const deck *k, const run_body *bodies, int count, dou
   r->bodies = bodies;
   r->body_count = count;
   r->interval = k->simulation.end_time / k->relaxation.increments;
+  r->ramp = r->deck->solved ? 1 : longest_ramp(bodies, count, part);
   r->looked_at = must_calloc((size_t)count, sizeof *r->looked_at);
   for (int b = 0; b < count; b++) {
     const size_t size = (size_t)bodies[b].lattice_rows->size;
-    const long ramp = ramp_of(bodies[b].lattice_rows, part);
-    r->ramp = ramp > r->ramp ? ramp : r->ramp;
-    if (r->deck->solved) r->ramp = 1;
     largest = size > largest ? size : largest;
     for (int d = 0; d < bodies[b].body->dof; d++) {
       r->looked_at[b].displacement[d] = must_calloc(size, sizeof(double));
@@ -119,7 +140,7 @@ static void take_forces(const run_body *of, int d, double *force) {
     force[q] = of->body->force[d][q] + body_outer(of->body, d, q);
   for (long i = 0; i < l->force_count; i++)
     if (l->forces[i].link && l->forces[i].component == d)
-      force[l->forces[i].site] += l->forces[i].now;
+      force[l->forces[i].site] += loads_acting(&l->forces[i]);
 }
 
 /* Since the last look: work of the forces, and its motion. */
@@ -130,6 +151,7 @@ static void add_motion(const run_body *of, relaxed_body *last, double *force, do
     take_forces(of, d, force);
     for (long p = 0; p < w->lattice->particle_count; p++) {
       const long q = w->lattice->particle_site[p];
+      if (!(body_mass(w, d, q) > 0)) continue; /* a tie moves it */
       const double way = w->displacement[d][q] - last->displacement[d][q];
       *work -= way * (force[q] - last->force[d][q]);
       *motion += body_mass(w, d, q) * way * way;
@@ -139,13 +161,21 @@ static void add_motion(const run_body *of, relaxed_body *last, double *force, do
   }
 }
 
+/* Bodies that are tied together swing together. */
 static void adapt(relaxation *r) {
+  double work_tied = 0, motion_tied = 0;
   for (int b = 0; b < r->body_count; b++) {
+    const run_body *of = &r->bodies[b];
     double work = 0, motion = 0;
-    if (run_body_is_link(&r->bodies[b])) continue;
-    add_motion(&r->bodies[b], &r->looked_at[b], r->total, &work, &motion);
-    if (work > 0 && motion > 0) r->looked_at[b].state.rate = 2 * sqrt(work / motion);
+    if (run_body_is_link(of)) continue;
+    add_motion(of, &r->looked_at[b], r->total, &work, &motion);
+    if (!of->tied && work > 0 && motion > 0) r->looked_at[b].state.rate = 2 * sqrt(work / motion);
+    work_tied += of->tied ? work : 0;
+    motion_tied += of->tied ? motion : 0;
   }
+  for (int b = 0; b < r->body_count; b++)
+    if (r->bodies[b].tied && work_tied > 0 && motion_tied > 0)
+      r->looked_at[b].state.rate = 2 * sqrt(work_tied / motion_tied);
 }
 
 static double square_of(double x) {
@@ -169,7 +199,7 @@ static int free_moment(const run_body *of, long i, int d, double *left) {
   for (long n = load_steps_first_force(l, site); n < l->force_count && l->forces[n].site == site;
        n++)
     if (l->forces[n].component >= w->dimensions)
-      moment[l->forces[n].component - w->dimensions] += l->forces[n].now;
+      moment[l->forces[n].component - w->dimensions] += loads_acting(&l->forces[n]);
   const int count = load_steps_release(l, w, i, moment);
   if (d >= w->dimensions) *left = moment[d - w->dimensions];
   return count;
@@ -185,11 +215,14 @@ static void add_component(const relaxation *r, const run_body *of, int d, square
     const double load = gravity * body_mass(w, d, q) + body_outer(w, d, q);
     r->total[q] = w->force[d][q] + load;
     sum->applied += load * load;
+    if (body_mass(w, d, q) > 0) continue;
+    sum->held += square_of(r->total[q] / arm); /* by a tie */
+    r->total[q] = 0;
   }
   for (long i = 0; i < l->force_count; i++) {
     if (l->forces[i].component != d) continue;
-    r->total[l->forces[i].site] += l->forces[i].now;
-    sum->applied += square_of(l->forces[i].now / arm);
+    r->total[l->forces[i].site] += loads_acting(&l->forces[i]);
+    sum->applied += square_of(loads_acting(&l->forces[i]) / arm);
   }
   for (long i = 0; i < l->constraint_count; i++) {
     const constraint *c = &l->constraints[i];

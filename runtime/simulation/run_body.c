@@ -437,6 +437,61 @@ static bool add_tractions(run_body *b, const deck *k, diagnostics *d) {
   return good;
 }
 
+/* --- ties ------------------------------------------------------------------------------------- */
+
+static bool is_tied_to_mesh(const run_body *b, const deck *k) {
+  for (int n = 0; n < k->tie_count; n++)
+    if (strcmp(k->ties[n].lattice, b->name) == 0) return true;
+  return false;
+}
+
+/* What a tied particle bears of its own bonds is known; of a family it would be the mesh's, too. */
+static bool can_be_tied(const run_body *b, diagnostics *d) {
+  for (int n = 0; n < b->law_count; n++) {
+    const pl_law *law = b->laws[n].law;
+    if (law->kind != PL_STATE || law->pairwise) continue;
+    diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&b->laws[n].from->material->item, "model"),
+                "`%s` is a law of families: a lattice that is tied to a mesh has a law of bonds",
+                law->name);
+    diag_hint(d, "take a law of bonds, such as `elastic_micropolar` or `mplm_bilinear`");
+    return false;
+  }
+  return true;
+}
+
+static bool open_ties(run_body *b, const deck *k, diagnostics *d) {
+  if (!is_tied_to_mesh(b, k)) return true;
+  if (!can_be_tied(b, d)) return false;
+  const bool halves = b->law_count == 1 && b->law->kind != PL_STATE;
+  b->ties = mesh_ties_new(k, b->lattice, b->lattice_rows, halves, &b->tie_count, d);
+  return b->ties != NULL;
+}
+
+/* What loads do to tied particles they would do to the mesh. */
+static bool ties_are_free(const run_body *b, const deck *k, diagnostics *d) {
+  unsigned char *tied = must_calloc((size_t)b->lattice_rows->size, 1);
+  bool good = true;
+  for (int n = 0; n < b->tie_count; n++)
+    for (long p = 0; p < b->ties[n].count; p++)
+      tied[b->lattice_rows->particle_site[b->ties[n].particles[p].particle]] = 1;
+  for (long n = 0; n < b->loads->constraint_count && good; n++) {
+    const constraint *c = &b->loads->constraints[n];
+    if (!tied[c->site]) continue;
+    double at[3];
+    char text[ROWS_PLACE_TEXT];
+    rows_place(b->lattice_rows, c->site, at);
+    diag_report(d, DIAG_CONFLICT,
+                c->drive >= 0 ? deck_where(&k->drives[c->drive].item, "region")
+                              : b->ties[0].from->item.where,
+                "the particle of `%s` at %s is held or driven, but tied to a mesh", b->name,
+                rows_place_text(2, at, text));
+    diag_hint(d, "hold or drive nodes of the mesh there, or particles that are not tied");
+    good = false;
+  }
+  free(tied);
+  return good;
+}
+
 bool run_body_open(run_body *b, const deck *k, rows **built, diagnostics *d) {
   enum { ANY_DOF = PL_MAX_DOF };
   b->name = k->lattices[b->lattice].name;
@@ -445,9 +500,10 @@ bool run_body_open(run_body *b, const deck *k, rows **built, diagnostics *d) {
   b->lattice_rows = built[b->lattice];
   if (!b->lattice_rows) return false;
   b->fits = laws_fit(b, k, d);
+  if (b->fits && !open_ties(b, k, d)) return b->fits = false;
   b->loads = loads_new(k, b->lattice, b->lattice_rows, b->fits ? b->law->name : "",
                        b->fits ? b->law->dof : ANY_DOF, d);
-  if (!b->fits) return false;
+  if (!b->fits || (b->loads && !ties_are_free(b, k, d))) return false;
   if (deck_lattice_is_mesh(&k->lattices[b->lattice])) {
     b->cells = cells_new(k, b->lattice, b->lattice_rows, d);
     if (!b->cells || !holds_elements_alone(b, k, d) || !begins_well(b, k, d) ||
@@ -547,6 +603,7 @@ double run_body_limit_now(const run_body *b) {
 }
 
 void run_body_free(run_body *b) {
+  mesh_ties_free(b->ties, b->tie_count);
   mesh_rest_free(b->rest);
   loads_free(b->loads);
   sweep_free(b->state);

@@ -8,6 +8,7 @@
 #include "dsl/base/diagnostics.h"
 #include "runtime/analysis/step_limit.h"
 #include "runtime/continuum/cells.h"
+#include "runtime/continuum/mesh_ties.h"
 #include "runtime/interaction/damage.h"
 #include "runtime/interaction/sweep.h"
 #include "runtime/lattice/law_parts.h"
@@ -46,6 +47,9 @@ typedef struct run_body {
   cells *cells;          /* of a mesh; else NULL */
   mesh_rest *rest;       /* of a mesh in a static run; else NULL */
   const tip_law *cracks; /* [cracks of the deck] their laws */
+  mesh_tie *ties;        /* [tie_count] of a lattice to meshes */
+  int tie_count;
+  bool tied; /* a tie is between this one and another body */
   step_limit limit;      /* of this body alone; `step` is that of the run */
   ledger ledger;
   ledger_laws energies;

@@ -20,6 +20,14 @@ static void take_bodies(run_contact *c, const deck *k) {
     if (deck_lattice_touches(&k->lattices[b], c->from)) c->of[c->count++] = b;
 }
 
+/* A tied mesh lies where particles of the lattice are. */
+static void leave_out_tied_meshes(run_contact *c, const run_body *bodies) {
+  int count = 0;
+  for (int n = 0; n < c->count; n++)
+    if (!bodies[c->of[n]].cells || !bodies[c->of[n]].tied) c->of[count++] = c->of[n];
+  c->count = count;
+}
+
 /* --- stiffness -------------------------------------------------------------------------------- */
 
 /* Young's modulus, Pa; NaN without stiffness. */
@@ -285,6 +293,7 @@ contact_overlap run_contacts_overlap(const deck *k, const run_body *bodies) {
   contact_overlap o = {.pairs = 0};
   bool lost = false;
   take_bodies(&c, k);
+  leave_out_tied_meshes(&c, bodies);
   contact_body *of = must_calloc((size_t)c.count + 1, sizeof *of);
   for (int n = 0; n < c.count; n++) {
     const run_body *b = &bodies[c.of[n]];
@@ -332,6 +341,7 @@ void run_contacts_warn(const deck *k, const run_body *bodies, diagnostics *d) {
   static const deck_contact all = {.lattice_count = 0};
   run_contact c = {.from = &all};
   take_bodies(&c, k);
+  leave_out_tied_meshes(&c, bodies);
   contact_body *of = must_calloc((size_t)c.count + 1, sizeof *of);
   for (int n = 0; n < c.count; n++)
     of[n].of = bodies[c.of[n]].body;

@@ -34,6 +34,38 @@ static bool is_sound(simulation *s, rows *const *lattices, diagnostics *d) {
   return good && frames && watched;
 }
 
+static run_body *body_of(const simulation *s, int lattice) {
+  int b = 0;
+  while (s->bodies[b].lattice != lattice)
+    b++;
+  return &s->bodies[b];
+}
+
+/* The step that ties allow: those of each mesh. */
+static void shorten_by_ties(simulation *s) {
+  for (int m = 0; m < s->body_count; m++) {
+    const run_body *with = &s->bodies[m];
+    if (!with->cells) continue;
+    const int nodes = mesh_node_count(&with->cells->mesh);
+    tied_node *node = must_calloc((size_t)nodes, sizeof *node);
+    const run_body *fastest = NULL;
+    for (long p = 0; p < with->lattice_rows->particle_count; p++) {
+      const long site = with->lattice_rows->particle_site[p];
+      node[cells_node(with->cells, site)].mass = with->lattice_rows->site_mass[site];
+    }
+    for (int b = 0; b < s->body_count; b++)
+      for (int n = 0; n < s->bodies[b].tie_count; n++) {
+        const run_body *of = &s->bodies[b];
+        if (of->ties[n].mesh != with->lattice) continue;
+        mesh_tie_add(&of->ties[n], of->lattice_rows, node);
+        if (!fastest || of->limit.limit < fastest->limit.limit) fastest = of;
+      }
+    if (fastest && mesh_tie_limit(node, nodes, &with->limit, &fastest->limit, &s->limit))
+      s->ruling = (int)(fastest - s->bodies);
+    free(node);
+  }
+}
+
 /* The shortest of the bodies' steps is that of the run. */
 static bool choose_step(simulation *s, diagnostics *d) {
   for (int b = 1; b < s->body_count; b++)
@@ -45,12 +77,28 @@ static bool choose_step(simulation *s, diagnostics *d) {
   link_limit(s->bodies, s->body_count, touching, &s->limit, &s->ruling);
   free(touching);
   if (!known) return false;
+  shorten_by_ties(s);
   const run_body *rules = &s->bodies[s->ruling];
   return step_choose(s->deck, rules->law, s->body_count > 1 ? rules->name : NULL, &s->limit, d);
 }
 
 static int most(int a, int b) {
   return a > b ? a : b;
+}
+
+static void open_ties(simulation *s) {
+  s->ties = must_calloc((size_t)s->deck->tie_count + 1, sizeof *s->ties);
+  for (int b = 0; b < s->body_count; b++)
+    for (int n = 0; n < s->bodies[b].tie_count; n++) {
+      run_body *of = &s->bodies[b], *other = body_of(s, of->ties[n].mesh);
+      of->tied = other->tied = true;
+      tie_steps_open(&s->ties[s->tie_count], &of->ties[n], s->tie_count,
+                     (tied_body){of->body, of->loads}, (tied_body){other->body, other->loads},
+                     other->cells, of->laws[0].state, of->laws[0].parameters);
+      s->tie_count++;
+    }
+  for (int b = 0; b < s->body_count && s->tie_count > 0; b++)
+    loads_links_added(s->bodies[b].loads);
 }
 
 /* Their blocks are dealt out to a team with as many as the largest body has. */
@@ -74,6 +122,7 @@ static bool open_bodies(simulation *s, diagnostics *d) {
   s->team = team_new(s->blocks);
   s->links = run_links_new(s->bodies, s->body_count, &s->link_count);
   s->link_stages = s->link_count > 0 ? RUN_LINK_STAGES : 0;
+  if (good) open_ties(s);
   run_contacts_begin(&s->contacts);
   return good;
 }
@@ -238,6 +287,9 @@ void simulation_free(simulation *s) {
   history_free(&s->history);
   bad_search_free(s->bad);
   run_links_free(s->links, s->link_count);
+  for (int n = 0; n < s->tie_count; n++)
+    tie_steps_close(&s->ties[n]);
+  free(s->ties);
   run_contacts_free(&s->contacts);
   for (int b = 0; b < s->body_count; b++)
     run_body_free(&s->bodies[b]);
@@ -272,6 +324,11 @@ double simulation_omega(const simulation *s, int number) {
 
 const rows *simulation_rows(const simulation *s, int number) {
   return s->bodies[number].lattice_rows;
+}
+
+const mesh_tie *simulation_ties(const simulation *s, int number, int *count) {
+  *count = s->bodies[number].tie_count;
+  return s->bodies[number].ties;
 }
 
 double simulation_sample_interval(const simulation *s) {

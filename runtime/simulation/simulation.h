@@ -14,6 +14,7 @@
 #include "dsl/base/c_linkage.h"
 #include "runtime/analysis/material.h"
 #include "runtime/analysis/step_limit.h"
+#include "runtime/continuum/mesh_ties.h"
 #include "runtime/deck/deck.h"
 #include "runtime/kernel.h"
 #include "runtime/lattice/parameter_planes.h"
@@ -61,6 +62,8 @@ int simulation_bodies(const simulation *s);
 const deck *simulation_deck(const simulation *s);
 /* rad/s of a mode, from 1, that the deck gives something by. */
 double simulation_omega(const simulation *s, int mode);
+/* Of a lattice, to meshes: *count of them. */
+const mesh_tie *simulation_ties(const simulation *s, int number, int *count);
 const rows *simulation_rows(const simulation *s, int body);
 /* The cells of a mesh (runtime/continuum/cells.h); NULL of other bodies. */
 const struct cells *simulation_cells(const simulation *s, int body);

@@ -115,6 +115,11 @@ static part_list parts_of(const simulation *s, run_progress *head) {
   }
   for (int k = 0; k < s->link_count; k++)
     add_part(&l, "work of a link", &s->links[k].work, sizeof s->links[k].work);
+  for (int k = 0; k < s->tie_count; k++) {
+    tie_steps *t = &s->ties[k];
+    add_part(&l, "work of a tie", &t->internal, sizeof t->internal);
+    if (t->halves) add_part(&l, "taken by a tie", half_bonds_booked(t->halves), sizeof(double));
+  }
   for (int k = 0; k < s->contacts.count; k++)
     add_contact(&l, &s->contacts.items[k]);
   if (s->relaxation) add_relaxation(&l, s->relaxation);

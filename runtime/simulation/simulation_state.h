@@ -3,6 +3,7 @@
 #define PERILAT_RUNTIME_SIMULATION_STATE_H
 
 #include "runtime/base/team.h"
+#include "runtime/loads/tie_steps.h"
 #include "runtime/simulation/frames.h"
 #include "runtime/simulation/history.h"
 #include "runtime/simulation/monitor.h"
@@ -24,6 +25,8 @@ struct simulation {
   int body_count;
   run_link *links; /* [link_count] between bodies */
   int link_count;
+  tie_steps *ties; /* [tie_count] of lattices to meshes */
+  int tie_count;
   run_contacts contacts;
   tip_law *cracks; /* [cracks of the deck] */
   run_law *laws;   /* [law_count] the deck's interactions, those of one body after the other */

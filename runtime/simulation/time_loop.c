@@ -127,8 +127,47 @@ static void find_contacts(simulation *s) {
   if (s->contacts.count > 0) run_contacts_find(&s->contacts, s->clock.at.step);
 }
 
+/* --- ties ------------------------------------------------------------------------------------- */
+
+/* Lattices tell what acts on their tied particles, then all loads of tied bodies act, and tied particles
+   follow. */
+static void tie_bodies(simulation *s) {
+  const long step = (long)s->clock.at.step;
+  for (int n = 0; n < s->tie_count; n++)
+    tie_steps_give(&s->ties[n]);
+  for (int b = 0; b < s->body_count; b++) {
+    const run_body *of = &s->bodies[b];
+    if (!of->tied) continue;
+    load_steps_take_ties(of->loads, of->body, step);
+    for (int block = 0; block < of->body->block_count; block++)
+      load_steps_apply(of->loads, of->body, block, step);
+  }
+  for (int n = 0; n < s->tie_count; n++)
+    tie_steps_follow(&s->ties[n], true);
+}
+
+static void follow_ties(simulation *s) {
+  for (int n = 0; n < s->tie_count; n++)
+    tie_steps_follow(&s->ties[n], false);
+}
+
+static void see_ties(simulation *s) {
+  for (int n = 0; n < s->tie_count; n++)
+    tie_steps_see(&s->ties[n], (long)s->clock.at.step);
+}
+
+static void look_at_ties(simulation *s) {
+  int n = 0;
+  for (int b = 0; b < s->body_count; b++)
+    for (int k = 0; k < s->bodies[b].tie_count; k++)
+      tie_steps_look(&s->ties[n++], &s->bodies[b].look, (long)s->clock.at.step);
+}
+
+/* --- steps ------------------------------------------------------------------------------------ */
+
 /* What one thread does after all have moved their rows and what is loaded in them. */
 static void after_moving(simulation *s) {
+  if (!some_body_is_bad(s)) tie_bodies(s);
   if (some_body_is_bad(s)) {
     bad_search_velocity(s->bad);
     s->clock.at.status = STEP_BAD;
@@ -168,9 +207,11 @@ static void end_increment(simulation *s) {
 }
 
 static void look_at_loads(simulation *s) {
+  see_ties(s);
   for (int b = 0; b < s->body_count; b++)
     s->bodies[b].look =
         load_steps_observe(s->bodies[b].loads, s->bodies[b].body, (long)s->clock.at.step);
+  look_at_ties(s);
 }
 
 static void look_at_cells(simulation *s) {
@@ -228,7 +269,7 @@ static void do_block(simulation *s, run_body *of, int task, int block) {
   if (task >= engine->step_stages || run_body_is_link(of)) return;
   engine->step(of->state, task, block);
   now = add_time(s, now, &b->stepping);
-  if (task < engine->step_stages - 1) return;
+  if (task < engine->step_stages - 1 || of->tied) return;
   load_steps_apply(of->loads, of->body, block, (long)s->clock.at.step);
   add_time(s, now, &b->loading);
 }
@@ -294,6 +335,7 @@ static void observe_all(simulation *s) {
 
 static void begin(simulation *s) {
   set_time(s);
+  follow_ties(s);
   for (int k = 0; k < s->link_count; k++)
     run_link_begin(&s->links[k]);
   find_contacts(s);
@@ -304,8 +346,10 @@ static void begin(simulation *s) {
     load_steps_begin(s->bodies[b].loads, s->bodies[b].body);
   if (s->relaxation) return;
   observe_all(s);
+  see_ties(s);
   for (int b = 0; b < s->body_count; b++)
     load_steps_set_back(s->bodies[b].loads, s->bodies[b].body);
+  follow_ties(s);
   monitors_step(s->monitors, 0);
 }
 

@@ -28,7 +28,7 @@ static const double reference[2 * ALL] = {9, 9, 0, 0, 1, 0, 2, 0, 0, 1,
                                           1, 1, 2, 1, 0, 2, 1, 2, 2, 2};
 static const int32_t cells[4 * CELLS] = {0, 1, 4, 3, 1, 2, 5, 4, 3, 4, 7, 6, 4, 5, 8, 7};
 static const int32_t method[CELLS] = {1, 2, 2, 3};
-static const result_mesh plate = {"plate", 1, NODES, CELLS, cells, method, 0.5};
+static const result_mesh plate = {"plate", 1, NODES, CELLS, 4, cells, method, 0.5};
 static const result_field fields[] = {{"displacement", "m", NULL, 2, ALL, "other", "displacement"},
                                       {"slit/points", "m", NULL, 2, MOST, "path", "its points"}};
 static const result_crack cracks[] = {{"slit/points", "plate"}};
