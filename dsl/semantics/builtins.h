@@ -162,6 +162,12 @@ enum { MOVES, FIXED };
     "second invariant of a stress deviator")                                                       \
   X(VON_MISES, "von_mises", 1, 1, tensor_to_scalar, NO_VALUE, "\\operatorname{von\\_Mises}",       \
     "x = von_mises(virtual_work(F))", "von Mises equivalent of a stress tensor")                   \
+  X(PRINCIPAL_DIRECTION, "principal_direction", 2, 2, principal_direction, NO_VALUE,               \
+    "\\operatorname{direction}", "x = norm(principal_direction(fit(stretch), 1))",                 \
+    "tensor n n of the unit vector n along principal value 1, 2 or 3 of a tensor")                 \
+  X(PRODUCT, "product", 2, 2, product, NO_VALUE, "\\operatorname{product}",                        \
+    "x = trace(product(fit(stretch), fit(stretch)))",                                              \
+    "symmetric product (a b + b a)/2 of two tensors")                                              \
   X(TENSOR, "tensor", 4, 6, tensor_of_components, NO_VALUE, "\\operatorname{tensor}",              \
     "x = trace(tensor(1, 1, 1, 0))",                                                               \
     "symmetric tensor of its components xx, yy, zz, xy and, where they are not 0, yz, xz")

@@ -335,16 +335,37 @@ static value tensor_to_scalar(checker *ck, expr *e) {
   return with_shape(v, dim, SHAPE_SCALAR);
 }
 
-static value principal(checker *ck, expr *e) {
-  value v = tensor_to_scalar(ck, e);
+/* `v` where the second argument says which principal value is meant. */
+static value of_principal(checker *ck, expr *e, value v) {
   expr *which = operand(e, 1);
   check_number(ck, which);
   bool one_to_three = which->kind == EXPR_NUMBER && !which->unit_text &&
                       (which->number == 1 || which->number == 2 || which->number == 3);
   if (v.broken || one_to_three) return v;
-  complain(ck, DIAG_ARGUMENTS, which->where, "the second argument of `principal` is 1, 2 or 3");
+  complain(ck, DIAG_ARGUMENTS, which->where, "the second argument of `%s` is 1, 2 or 3", e->name);
   diag_hint(ck->d, "1 is the largest principal value");
   return BROKEN;
+}
+
+static value principal(checker *ck, expr *e) {
+  return of_principal(ck, e, tensor_to_scalar(ck, e));
+}
+
+static value principal_direction(checker *ck, expr *e) {
+  value v = tensor_argument(ck, e);
+  if (!v.broken && !v.unknown) v = with_shape(v, DIMENSIONLESS, SHAPE_TENSOR);
+  return of_principal(ck, e, v);
+}
+
+static value product(checker *ck, expr *e) {
+  value a = tensor_argument(ck, e);
+  if (a.broken) return BROKEN;
+  value b = check_number(ck, operand(e, 1));
+  if (b.broken) return BROKEN;
+  value v = {.place = place_join(ck, a.place, b.place), .unknown = a.unknown || b.unknown};
+  if (v.unknown) return v;
+  if (b.shape != SHAPE_TENSOR) return bad_shape(ck, e, b, "both are tensors");
+  return with_shape(v, dim_mul(a.dim, b.dim), SHAPE_TENSOR);
 }
 
 /* xx, yy, zz, xy and, where they are not 0, yz, xz. */

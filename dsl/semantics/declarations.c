@@ -154,13 +154,26 @@ static void declare_function(checker *ck, stmt *s) {
     declare_argument(ck, s, i, &e->arguments[i]);
 }
 
+/* A bond that fails says so by a damage. */
+static bool refuse_failure(checker *ck, const stmt *s) {
+  if (ck->tree->law == LAW_CONTINUUM) return false;
+  complain(ck, DIAG_LAW_KIND, s->name_where, "a %s law has no points that fail", law_word(ck));
+  diag_hint(ck->d, "`failed when` belongs to `law continuum`; elsewhere a damage of 1 says it");
+  return true;
+}
+
 static void declare_field(checker *ck, stmt *s) {
+  if (s->failure && refuse_failure(ck, s)) return;
   entry *e = declare(ck, s->kind == STMT_STATE ? SYMBOL_STATE : SYMBOL_DAMAGE, s);
   if (!e) return;
   append(ck, &ck->law->fields, e);
   if (s->kind == STMT_DAMAGE && s->value) {
     e->rule_at = ck->now;
     e->symbol.rule = s;
+  }
+  if (s->failure) {
+    e->symbol.doc = s->doc || s->text ? e->symbol.doc : "1 where the point has failed";
+    ck->law->failed = &e->symbol;
   }
 }
 
@@ -387,6 +400,25 @@ static void declare_nonconservative(checker *ck, stmt *s) {
   ck->law->nonconservative = s->text ? s->text : "";
 }
 
+/* What a deck sets has its bounds in its own line; of what it does not, only cells have a size. */
+static void declare_required(checker *ck, const stmt *s) {
+  if (!s->name) return;
+  const char *size = builtin_quantities[QUANTITY_CELL_SIZE].name;
+  if (ck->tree->law != LAW_CONTINUUM || strcmp(s->name, size) != 0) {
+    complain(ck, DIAG_LAW_KIND, s->name_where, "`require` is of the size `%s` of cells alone",
+             size);
+    diag_hint(ck->d,
+              ck->tree->law == LAW_CONTINUUM
+                  ? "bounds of a parameter stand in its own line: `parameter x = 1 in (0, 2)`"
+                  : "only a law of a continuum knows cells");
+  } else if (ck->law->sized) {
+    complain(ck, DIAG_DUPLICATE_NAME, s->name_where, "`%s` is required twice", size);
+    diag_note(ck->d, ck->law->sized->name_where, "first required here");
+  } else {
+    ck->law->sized = s;
+  }
+}
+
 static void declare_one(checker *ck, stmt *s) {
   switch (s->kind) {
   case STMT_PARAMETER:
@@ -430,6 +462,9 @@ static void declare_one(checker *ck, stmt *s) {
     break;
   case STMT_NONCONSERVATIVE:
     declare_nonconservative(ck, s);
+    break;
+  case STMT_REQUIRE:
+    declare_required(ck, s);
     break;
   case STMT_INCLUDE:
   case STMT_COUNT:

@@ -143,6 +143,7 @@ void mark_used(checker *ck) {
   }
   for (int i = 0; i < RESULT_COUNT; i++)
     if (ck->law->results[i]) reach(&s, entry_of(ck->law->results[i]));
+  if (ck->law->failed) reach(&s, entry_of(ck->law->failed));
   search_run(&s, NULL);
   free(s.stack);
   for (int i = 0; i < ck->entry_count; i++)

@@ -24,6 +24,8 @@ C_LINKAGE_BEGIN
 #define LAW_IRREGULAR "irregular"
 /* `for anisotropic`: a law of a continuum that knows the axes. */
 #define LAW_ANISOTROPIC "anisotropic"
+/* The damage that `failed when ...` declares. */
+#define LAW_FAILED "failed"
 
 typedef enum expr_kind {
   EXPR_NUMBER, /* 30 [GPa] */
@@ -145,7 +147,8 @@ typedef enum stmt_kind {
           X(MOMENT, "moment") X(ENERGY, "energy") X(STRESS, "stress") X(STRAIN, "strain")          \
               X(YIELD, "yield") X(FLOW, "flow") X(OUTPUT, "output")                                \
                   X(NONCONSERVATIVE, "nonconservative") X(INCLUDE, "include")        \
-                      X(GROW, "grow") X(TOWARD, "toward") X(SPEED, "speed")
+                      X(GROW, "grow") X(TOWARD, "toward") X(SPEED, "speed")        \
+                      X(REQUIRE, "require")
 #define X(code, text) STMT_##code,
   TREE_STATEMENTS(X)
 #undef X
@@ -171,13 +174,14 @@ struct stmt {
   const char *unit_text; /* PARAMETER without default: its unit, NULL for a pure number */
   span unit_where;
   bool along_reference; /* FORCE_STATE: acts along the reference bond, not the current one */
-  bounds in;            /* PARAMETER */
+  bounds in;            /* PARAMETER, REQUIRE */
   const char **words;   /* OPTION: choices; FUNCTION: arguments */
   span *word_where;
   int word_count;
   expr *when;       /* FLOW: guard */
   bool returned;    /* FLOW along ... returned */
   bool tensor;      /* STATE: begins at `tensor 0` */
+  bool failure;     /* DAMAGE: written `failed when ...` */
   const char *text; /* quoted text: description, reason, or included file */
   span text_where;
   const char *doc; /* lines of !> before it, joined by newline; NULL without */

@@ -177,6 +177,19 @@ stmt *build_tip_stmt(parsing *p, stmt_kind kind, span name_where, expr *value, s
   return build_stmt(p, kind, name, none, value, where);
 }
 
+stmt *build_failure(parsing *p, span name_where, expr *guard, span where) {
+  const word name = {.text = LAW_FAILED, .where = name_where}, none = {.text = NULL};
+  expr *whole = build_number(p, 1, none, name_where),
+       *intact = build_number(p, 0, none, name_where);
+  expr *rule = build_case(p, build_cases(p, where), whole, guard, true, guard->where);
+  rule = build_case(p, rule, intact, NULL, false, guard->where);
+  stmt *s = build_stmt(p, STMT_DAMAGE, name, none, rule, where);
+  s->failure = true;
+  s->place = ON_POINT;
+  s->place_where = name_where;
+  return s;
+}
+
 void build_words_of(stmt *s, const words *list) {
   s->words = list->items;
   s->word_where = list->where;

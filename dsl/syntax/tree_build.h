@@ -25,6 +25,8 @@ void build_placement(parsing *p, stmt *s, word on);
 void build_tensor_state(parsing *p, stmt *s, word tensor);
 /* What a law of cracks gives: `grow`, `toward`, `speed`, which are their names, too. */
 stmt *build_tip_stmt(parsing *p, stmt_kind kind, span name_where, expr *value, span where);
+/* `failed when ...`: a damage of the point called `failed`, 0 or 1. */
+stmt *build_failure(parsing *p, span name_where, expr *guard, span where);
 void build_words_of(stmt *s, const words *list);
 void build_force_state(parsing *p, word state, stmt *s, word direction);
 

@@ -21,6 +21,7 @@
 #include "generator/drive/drive_table.h"
 #include "generator/drive/drive_write.h"
 #include "generator/drive/explain_bad.h"
+#include "generator/drive/explain_point.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/material_law.h"
 #include "generator/kernel/settings.h"
@@ -293,6 +294,22 @@ static bool set_values(driving *r) {
 
 /* --- what came out ---------------------------------------------------------------------------- */
 
+/* With the states of the row before. */
+static void explain_bad_point(const driving *r, long row) {
+  const drive_table *t = &r->table;
+  double strain[PL_MAX_STRAINS];
+  double *fields = must_calloc((size_t)t->fields + 1, sizeof *fields);
+  for (int k = 0; k < PL_STRAINS(r->law->dimensions); k++)
+    strain[k] = t->columns[1 + k].values[row];
+  for (int f = 0; f < t->fields; f++)
+    fields[f] = row ? t->columns[t->law_column + f].values[row - 1] : r->initial[f];
+  const double *time = t->columns[DRIVE_COLUMN_TIME].values;
+  const asked_point at = {strain, fields, r->in->point.cell_size,
+                          row ? time[row] - time[row - 1] : 1};
+  explain_point(r->model.plan, r->parameters, &at, stderr);
+  free(fields);
+}
+
 static void report_bad(const driving *r) {
   const drive_table *t = &r->table;
   const long row = t->bad_row;
@@ -302,6 +319,7 @@ static void report_bad(const driving *r) {
   say_error("`%s` is not a number at %.6g s, %s %.6g", t->columns[column].name,
             t->columns[DRIVE_COLUMN_TIME].values[row], t->columns[t->way].name,
             t->columns[t->way].values[row]);
+  if (t->of == DRIVE_OF_POINTS) explain_bad_point(r, row);
   if (t->of != DRIVE_OF_BONDS) return;
   double *fields = must_calloc((size_t)t->fields + 1, sizeof *fields);
   for (int f = 0; f < t->fields; f++)

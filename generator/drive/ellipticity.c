@@ -80,7 +80,7 @@ static ellipticity descend(const searched *s, direction at, double by) {
         direction there = at;
         there.angle[angle] += side * by;
         const ellipticity here = across(s, &there);
-        if (here.least >= best.least) continue;
+        if (!(here.least < best.least)) continue; /* no number is not nearer */
         best = here;
         better = there;
       }

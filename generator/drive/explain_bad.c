@@ -3,30 +3,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "dsl/base/arena.h"
+#include "generator/drive/explain_point.h"
 #include "generator/interpreter/comparison.h"
 #include "generator/lower/law_inputs.h"
-
-/* Named values that the law's states need, in the order of evaluation. An unnamed one may be
-   infinite and yet not matter: it may stand in a case that is not taken. */
-static ir_node *named_values(const kernel_plan *p, int *count) {
-  const ir *g = p->graph;
-  unsigned char *marks = segment_needed(g, plan_segment(p, PROGRAM_STATES));
-  ir_node *named = must_calloc((size_t)ir_count(g) + 1, sizeof *named);
-  *count = 0;
-  for (ir_node n = 0; n < ir_count(g); n++)
-    if (marks[n] && ir_name(g, n) && ir_operation(g, n) != IR_INPUT && ir_where(g, n).end > 0)
-      named[(*count)++] = n;
-  free(marks);
-  return named;
-}
-
-static void say(const kernel_plan *p, ir_node n, const char *what, FILE *out) {
-  span where = ir_where(p->graph, n);
-  place at = source_place(p->law->sources, where.file, where.begin);
-  fprintf(out, "  %s:%d: the law's `%s` %s there\n", p->law->sources->items[where.file].name,
-          at.line, ir_name(p->graph, n), what);
-}
 
 /* The largest of the law's results, or -1 when all are zero. */
 static int largest_result(const kernel_plan *p, const ir_node *named, int count,
@@ -44,7 +23,7 @@ static int largest_result(const kernel_plan *p, const ir_node *named, int count,
 /* The first that is not finite; when all are, the force or moment that is too large. */
 static void report(const kernel_plan *p, const interpreter_inputs *in, FILE *out) {
   int count;
-  ir_node *named = named_values(p, &count);
+  ir_node *named = explain_named_values(p, PROGRAM_STATES, &count);
   double **values = planes_new(count + 1, 1);
   interpreter *program = interpreter_new(p->graph, named, count);
   interpreter_run(program, in, 1, values);
@@ -54,7 +33,7 @@ static void report(const kernel_plan *p, const interpreter_inputs *in, FILE *out
   char what[64] = "stops being finite";
   if (k == count && (k = largest_result(p, named, count, values)) >= 0)
     snprintf(what, sizeof what, "is %.6g (SI)", values[k][0]);
-  if (k >= 0) say(p, named[k], what, out);
+  if (k >= 0) explain_line(p, named[k], what, out);
   interpreter_free(program);
   planes_free(values, count + 1);
   free(named);

@@ -321,6 +321,9 @@ bool point_control_reach(const point_control *c, const drive_input *in, driven_p
   const bool found = converge(&s);
   *to = s.at;
   *answer = s.answer;
-  if (!found) report(&s, time, d);
-  return found;
+  bool finite = true; /* else the row says so */
+  for (int k = 0; k < p->stresses; k++)
+    finite = finite && isfinite(s.answer.stress[k]);
+  if (!found && finite) report(&s, time, d);
+  return found || !finite;
 }

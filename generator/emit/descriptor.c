@@ -37,11 +37,11 @@ static void write_varying(c_text *out, const kernel_plan *p) {
 }
 
 static const char *place_of_field(const symbol *s) {
-  return s->place == ON_POINT    ? "PL_ON_POINT"
+  return s->place == ON_POINT      ? "PL_ON_POINT"
          : s->place == ON_TIP      ? "PL_ON_TIP"
          : s->place <= ON_PARTICLE ? "PL_ON_PARTICLE"
-         : s->place == ON_BOND   ? "PL_ON_BOND"
-                                 : "PL_ON_NEIGHBOUR";
+         : s->place == ON_BOND     ? "PL_ON_BOND"
+                                   : "PL_ON_NEIGHBOUR";
 }
 
 static void write_fields(c_text *out, const symbol_list *list, const char *name) {
@@ -104,7 +104,8 @@ static void write_law(c_text *out, const kernel_plan *p) {
   c_text_number(out, p->flops_per_bond);
   c_text_add(out, ",\n    .divisions_per_bond = ");
   c_text_number(out, p->divisions_per_bond);
-  c_text_add(out, ",\n    .prepare = prepare,\n    .bounds = bounds,\n");
+  c_text_add(out, ",\n    .prepare = prepare,\n    .bounds = bounds,\n    .failed_field = %d,\n",
+             p->law->failed ? p->law->failed->index : -1);
 }
 
 static void write_program(c_text *out, const kernel_plan *of, const kernel_program *p) {
@@ -140,6 +141,16 @@ static void write_programs(c_text *out, const kernel_plan *p) {
   }
 }
 
+/* `require h in ...` */
+static void write_sizes(c_text *out, const stmt *sized) {
+  if (!sized) return;
+  c_text_add(out, "    .size_bounds = size_bounds,\n");
+  if (!sized->text) return;
+  c_text_add(out, "    .size_reason = ");
+  c_text_string(out, sized->text);
+  c_text_add(out, ",\n");
+}
+
 void descriptor_entry(const kernel_plan *p, c_text *out) {
   c_text_add(out, "#if PL_IN_PART(0)\n");
   write_law(out, p);
@@ -147,7 +158,8 @@ void descriptor_entry(const kernel_plan *p, c_text *out) {
 #define X(task, member) c_text_add(out, "    .%s = %s,\n", #member, #member);
     POINT_PROGRAMS(X)
 #undef X
-    c_text_add(out, "    .linear = %d,\n", p->linear);
+    c_text_add(out, "    .linear = %d,\n    .reads_size = %d,\n", p->linear, p->reads_size);
+    write_sizes(out, p->law->sized);
   } else if (p->form == FORM_TIPS) {
 #define X(task, member) c_text_add(out, "    .%s = %s,\n", #member, #member);
     TIP_PROGRAMS(X)

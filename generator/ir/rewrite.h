@@ -48,4 +48,7 @@ double rewrite_degree(const ir *g, ir_node f, const ir_node *x, int count);
  * aside. */
 bool rewrite_nan_follows(const ir *g, ir_node a, ir_node b);
 
+/* The largest of what is added up to a value, as a measure of its rounding. */
+ir_node rewrite_size(ir *g, ir_node n);
+
 #endif

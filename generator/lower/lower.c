@@ -101,10 +101,21 @@ static components chosen(ir *g, ir_node when, components a, components b) {
   return a;
 }
 
+/* 0 where it has returned, else not a number: so that what is made of it is found, and told
+   (explain_point.h). Where f is not linear in lambda it is looked at again. */
+static ir_node unless_returned(ir *g, ir_node over, ir_node falls, bool linear) {
+  static const double RETURNED = 1e-9; /* of what is added up to f */
+  const ir_node most = ir_mul(g, ir_constant(g, RETURNED), rewrite_size(g, over));
+  const ir_node near = ir_binary(g, IR_LE, ir_unary(g, IR_ABS, over), most);
+  const ir_node good = linear ? falls : near;
+  return ir_unary(g, IR_SQRT, ir_select(g, good, ir_constant(g, 0), ir_constant(g, -1)));
+}
+
 /* `flow x along direction returned when f >= 0`: x = old + lambda direction with f(x) = 0, what
-   neighbours have being frozen. Newton's method from lambda = 0 in a fixed number of steps: the
-   returns of the usual convex yield functions have converged to rounding long before; the `flow`
-   check of a law says so where one has not. */
+   neighbours have being frozen. Newton's method from lambda = 0, in one step where f is linear in
+   lambda and else in a fixed number: the returns of the usual convex yield functions have converged
+   to rounding long before. Where one has not, a point of a continuum has states that are no
+   numbers, and of other laws the `flow` check says so. */
 static components flow_returned(lowering *c, const stmt *rule, components old,
                                 components direction) {
   enum { NEWTON_STEPS = 8 };
@@ -132,11 +143,17 @@ static components flow_returned(lowering *c, const stmt *rule, components old,
   ir_node next = ir_sub(g, lambda, ir_div(g, over, safe));
   next = ir_select(g, falls, next, lambda);
   ir_node found = ir_constant(g, 0);
-  for (int k = 0; k < NEWTON_STEPS && !c->failed; k++) {
+  const bool linear = !rewrite_depends(g, &slope, 1, &lambda, 1);
+  for (int k = 0; k < (linear ? 1 : NEWTON_STEPS) && !c->failed; k++) {
     ir_substitute(g, &next, 1, &lambda, &found, 1, &found);
     if (ir_count(g) > MOST_NODES)
       return lower_failed_value(c, rule->where,
                                 "with its return written out the law is too large to compile");
+  }
+  if (c->law->tree->law == LAW_CONTINUUM) {
+    ir_node doubt = unless_returned(g, over, falls, linear);
+    ir_substitute(g, &doubt, 1, &lambda, &found, 1, &doubt);
+    found = ir_add(g, found, doubt);
   }
   ir_substitute(g, &found, 1, stand_in, what, frozen, &found);
   return chosen(g, when, along(g, old, found, direction), old);
@@ -399,7 +416,7 @@ static void lower_results(lowering *c, lowered_law *out) {
   }
 }
 
-static void resolve_text(lowering *c, const ir_node *from, const ir_node *to) {
+static void resolve_text(lowering *c, const ir_node *from, const ir_node *to, int pairs) {
   ir *g = c->graph;
   lowered_text *t = &c->text;
   if (c->mode != LOWER_STEP) return;
@@ -416,7 +433,7 @@ static void resolve_text(lowering *c, const ir_node *from, const ir_node *to) {
     *at++ = t->flows[k].when;
     *at++ = t->flows[k].overstress;
   }
-  ir_substitute(g, all, count, from, to, c->rule_count, all);
+  ir_substitute(g, all, count, from, to, pairs, all);
   at = all;
   for (int k = 0; k < fields; k++)
     t->rules[k] = *at++;
@@ -438,30 +455,47 @@ static void *keep(arena *memory, void *items, int count, size_t size) {
   return kept;
 }
 
+/* What stands for previous values of flows that are solved for, and these. */
+static int kept_fields(lowering *c, ir_node *from, ir_node *to) {
+  const symbol_list *fields = &c->law->fields;
+  int count = 0;
+  for (int k = 0; k < fields->count; k++) {
+    const symbol *s = fields->items[k];
+    if (!lower_is_returned(s->component_of ? s->component_of : s)) continue;
+    from[count] = lower_kept_field(c->graph, c->law, k);
+    to[count++] = lower_field(c->graph, c->law, k);
+  }
+  return count;
+}
+
 /* Puts the rules in place of the opaque new values. A rule reads new values of rules above it. */
 static void resolve_fields(lowering *c, lowered_law *out) {
   ir *g = c->graph;
-  int fields = c->law->fields.count;
-  ir_node *from = must_alloc(((size_t)fields + 1) * sizeof *from);
-  ir_node *to = must_alloc(((size_t)fields + 1) * sizeof *to);
+  const size_t fields = (size_t)c->law->fields.count;
+  ir_node *from = must_alloc((2 * fields + 1) * sizeof *from);
+  ir_node *to = must_alloc((2 * fields + 1) * sizeof *to);
   ir_substitution *known = ir_substitution_new(g);
+  int pairs = kept_fields(c, from, to);
+  for (int k = 0; k < pairs; k++)
+    ir_substitution_add(known, from[k], to[k]);
   for (int k = 0; k < c->rule_count; k++) { /* every field has a rule: the checker sees to that */
     int f = c->rule_order[k];
     out->fields[f] = ir_substitution_apply(known, c->rule[f]);
     lower_name_node(g, out->fields[f], c->law->fields.items[f]->name,
                     c->law->fields.items[f]->rule->where);
-    from[k] = c->new_value[f];
-    to[k] = out->fields[f];
-    ir_substitution_add(known, from[k], to[k]);
+    from[pairs] = c->new_value[f];
+    to[pairs] = out->fields[f];
+    ir_substitution_add(known, from[pairs], to[pairs]);
+    pairs++;
   }
   ir_substitution_free(known);
   ir_node *results[LOWERED_FORCES + 1];
   int count = lowered_forces(out, results);
   if (out->W != IR_NONE) results[count++] = &out->W;
   for (int k = 0; k < count; k++)
-    ir_substitute(g, results[k], 1, from, to, c->rule_count, results[k]);
-  ir_substitute(g, out->outputs, c->law->outputs.count, from, to, c->rule_count, out->outputs);
-  resolve_text(c, from, to);
+    ir_substitute(g, results[k], 1, from, to, pairs, results[k]);
+  ir_substitute(g, out->outputs, c->law->outputs.count, from, to, pairs, out->outputs);
+  resolve_text(c, from, to, pairs);
   free(from);
   free(to);
 }

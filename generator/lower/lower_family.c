@@ -5,6 +5,7 @@
 #include "generator/lower/kinematics.h"
 #include "generator/lower/lower_inputs.h"
 #include "generator/lower/lower_tensor.h"
+#include "generator/lower/principal_axes.h"
 
 /* --- families --------------------------------------------------------------------------------- */
 
@@ -226,6 +227,10 @@ components lower_family_call(lowering *c, const expr *e, const components *a) {
     return tensor_hooke(g, lower_hooke_setting(c), a[0], a[1].of[0], a[2].of[0]);
   case FUNCTION_PRINCIPAL:
     return scalar(tensor_principal(g, a[0], (int)e->arguments[1].value->number));
+  case FUNCTION_PRINCIPAL_DIRECTION:
+    return tensor_direction(g, a[0], (int)e->arguments[1].value->number);
+  case FUNCTION_PRODUCT:
+    return tensor_product(g, a[0], a[1]);
   case FUNCTION_TRACE:
     return scalar(tensor_trace(g, a[0]));
   case FUNCTION_DEV:

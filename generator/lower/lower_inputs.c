@@ -29,6 +29,14 @@ ir_node lower_field(ir *g, const law *l, int k) {
   return ir_input(g, IR_FROM_FIELD, k, l->fields.items[k]->name, l->fields.items[k]->place);
 }
 
+bool lower_is_returned(const symbol *s) {
+  return s->rule && s->rule->kind == STMT_FLOW && s->rule->returned;
+}
+
+ir_node lower_kept_field(ir *g, const law *l, int k) {
+  return ir_input(g, IR_FROM_FIELD, -1 - k, l->fields.items[k]->name, l->fields.items[k]->place);
+}
+
 ir_node lower_volume(ir *g, const law *l) {
   return l->irregular ? kinematics_input(g, ENDS_VOLUME_I) : lower_quantity(g, QUANTITY_V);
 }

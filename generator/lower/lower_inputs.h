@@ -17,6 +17,10 @@ ir_node lower_bending(ir *g, const law *l, builtin_quantity theta, int axis);
 /* The input node of parameter or field k. */
 ir_node lower_parameter(ir *g, const law *l, int k);
 ir_node lower_field(ir *g, const law *l, int k);
+/* Whether the rule of a state is a flow that is solved for. */
+bool lower_is_returned(const symbol *s);
+/* previous(field k) where that is so: stands in for field k until all rules are known. */
+ir_node lower_kept_field(ir *g, const law *l, int k);
 /* 2 in a plane, 3 in space. */
 static inline int lower_dimensions(const law *l) {
   return l->setting == SETTING_SPACE ? 3 : 2;

@@ -4,6 +4,10 @@ static bool is_shear(int k) {
   return k >= TENSOR_XY;
 }
 
+ir_node tensor_scaled(ir *g, ir_node factor, ir_node component) {
+  return ir_is_number(g, component, 0) ? component : ir_mul(g, factor, component);
+}
+
 ir_node tensor_contract(ir *g, components a, components b) {
   ir_node sum = ir_constant(g, 0);
   for (int k = 0; k < a.count; k++) {
@@ -103,7 +107,7 @@ components tensor_hooke(ir *g, law_setting setting, components eps, ir_node E, i
   }
   ir_node pressure = ir_mul(g, lambda, sum);
   for (int k = 0; k < TENSOR_COUNT; k++) {
-    eps.of[k] = ir_mul(g, twice_mu, eps.of[k]);
+    eps.of[k] = tensor_scaled(g, twice_mu, eps.of[k]);
     if (k < TENSOR_XY) eps.of[k] = ir_add(g, pressure, eps.of[k]);
   }
   if (setting == SETTING_PLANE_STRESS) eps.of[TENSOR_ZZ] = ir_constant(g, 0);
@@ -129,10 +133,10 @@ components tensor_binary(lowering *c, const expr *e, components a, components b)
       v.of[k] = ir_sub(g, left, right);
       break;
     case OP_MUL:
-      v.of[k] = ir_mul(g, left, right);
+      v.of[k] = a.count == 1 ? tensor_scaled(g, left, right) : tensor_scaled(g, right, left);
       break;
     default:
-      v.of[k] = ir_div(g, left, right);
+      v.of[k] = ir_is_number(g, left, 0) ? left : ir_div(g, left, right);
     }
   }
   return v;

@@ -276,13 +276,18 @@ static components lower_user_call(lowering *c, const expr *e) {
   return result;
 }
 
-/* previous(x): the value at the end of the last step, of x[j] and x'[j] the neighbour's. */
+/* previous(x): the value at the end of the last step, of x[j] and x'[j] the neighbour's. Of a flow
+   that is solved for, x itself moves in its guard and previous(x) does not. */
 static components lower_previous(lowering *c, const expr *e) {
   const expr *name = e->arguments[0].value;
   const symbol *s = name->symbol;
   if (!s || (s->kind != SYMBOL_STATE && s->kind != SYMBOL_DAMAGE))
     return lower_failed_value(c, e->where, "`previous` asks for a state or a damage");
-  return of_whom(c, name, lower_field_value(c, s, true));
+  components old = lower_field_value(c, s, true);
+  for (int k = 0; k < old.count && c->mode != LOWER_FROZEN && lower_is_returned(s); k++)
+    if (ir_operation(c->graph, old.of[k]) == IR_INPUT)
+      old.of[k] = lower_kept_field(c->graph, c->law, s->index + k);
+  return of_whom(c, name, old);
 }
 
 /* diff(f, x): x is a parameter, a quantity, a state or a damage, all of them inputs here. */
@@ -345,9 +350,11 @@ static ir_node lower_builtin_call(lowering *c, const expr *e) {
 static components lower_of_family(lowering *c, const expr *e) {
   enum { MOST_ARGUMENTS = TENSOR_COUNT };
   components a[MOST_ARGUMENTS] = {lower_value(c, e->arguments[0].value)};
-  const int count = e->builtin == FUNCTION_PRINCIPAL ? 1 : e->argument_count;
+  const bool which = e->builtin == FUNCTION_PRINCIPAL || e->builtin == FUNCTION_PRINCIPAL_DIRECTION;
+  const int count = which ? 1 : e->argument_count;
   for (int k = 1; k < count && !c->failed; k++)
-    a[k] = scalar(lower_expr(c, e->arguments[k].value));
+    a[k] = e->builtin == FUNCTION_PRODUCT ? lower_value(c, e->arguments[k].value)
+                                          : scalar(lower_expr(c, e->arguments[k].value));
   return c->failed ? a[0] : lower_family_call(c, e, a);
 }
 

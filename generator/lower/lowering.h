@@ -6,7 +6,7 @@
 #include "generator/lower/lowered.h"
 
 /* Expanding functions can grow a law without bound; these limits are far beyond any real one. */
-enum { MOST_NODES = 50000, MOST_VISITS = 2000000, MOST_CALLS_DEEP = 64, CALL_BUCKETS = 256 };
+enum { MOST_NODES = 150000, MOST_VISITS = 2000000, MOST_CALLS_DEEP = 64, CALL_BUCKETS = 256 };
 
 enum { TENSOR_XX, TENSOR_YY, TENSOR_ZZ, TENSOR_XY, TENSOR_YZ, TENSOR_XZ, TENSOR_COUNT };
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "dsl/semantics/law_reads.h"
 #include "generator/ir/derive.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/lower_inputs.h"
@@ -55,25 +56,81 @@ static void settle(planner *p, lowered_law *of, ir_node z, ir_node z_rate) {
   free(all);
 }
 
-/* The root of sigma_zz(z) by Newton's method from 0; z itself counts for nothing where sigma_zz does
-   not depend on it. */
-static ir_node strain_without_stress(planner *p, ir_node sigma_zz, diagnostics *d) {
-  enum { NEWTON_STEPS = 8 };
+/* How sigma_zz depends on z. */
+typedef struct along_z {
+  ir_node stress, slope;
+  bool affine;
+} along_z;
+
+static along_z along_z_of(planner *p, ir_node sigma_zz) {
+  along_z a = {sigma_zz, ir_derivative(p->graph, sigma_zz, p->z), false};
+  a.affine = !rewrite_depends(p->graph, &a.slope, 1, &p->z, 1);
+  return a;
+}
+
+/* That of the states at hand, where it is known; else 1 Pa. */
+static ir_node slope_at_hand(planner *p, const along_z *at_hand) {
   ir *g = p->graph;
-  const ir_node slope = ir_derivative(g, sigma_zz, p->z), zero = ir_constant(g, 0);
-  if (ir_is_number(g, slope, 0)) return zero;
-  const bool affine = !rewrite_depends(g, &slope, 1, &p->z, 1);
-  const ir_node next = ir_sub(g, p->z, ir_div(g, sigma_zz, slope));
-  ir_node found = zero;
-  for (int k = 0; k < (affine ? 1 : NEWTON_STEPS); k++) {
-    ir_substitute(g, &next, 1, &p->z, &found, 1, &found);
+  const ir_node one = ir_constant(g, 1), slope = at_hand->slope;
+  if (!at_hand->affine) return one;
+  if (ir_is_uniform(g, slope)) return slope;
+  return ir_select(g, ir_binary(g, IR_LT, ir_constant(g, 0), slope), slope, one);
+}
+
+/* A slope to divide by in Newton's step k. Where its own is next to nothing or negative (a point that
+   has broken, the apex of a cone) it goes on by that of the states at hand, each time four times
+   as far. What is the same everywhere stays. */
+static ir_node safe_slope(planner *p, const along_z *a, const along_z *at_hand, int k) {
+  static const double NOTHING = 1e-3; /* of the slope of the states at hand */
+  ir *g = p->graph;
+  if (ir_is_uniform(g, a->slope)) return a->slope;
+  const ir_node other = slope_at_hand(p, at_hand),
+                least = ir_mul(g, ir_constant(g, at_hand->affine ? NOTHING : 0), other);
+  return ir_select(g, ir_binary(g, IR_LT, least, a->slope), a->slope,
+                   ir_mul(g, ir_constant(g, 1.0 / (double)(1 << 2 * k)), other));
+}
+
+/* z of Newton's method after so many steps from z = `from`; IR_NONE: too large to compile. */
+static ir_node newton(planner *p, const along_z *a, const along_z *at_hand, ir_node from, int steps,
+                      diagnostics *d) {
+  ir *g = p->graph;
+  for (int k = 0; k < steps; k++) {
+    const ir_node next = ir_sub(g, p->z, ir_div(g, a->stress, safe_slope(p, a, at_hand, k)));
+    ir_substitute(g, &next, 1, &p->z, &from, 1, &from);
     if (ir_count(g) <= MOST_NODES) continue;
     diag_report(d, DIAG_NOT_SUPPORTED, p->plan->law->tree->name_where,
                 "with its strain along z written out the law is too large to compile in plane "
                 "stress");
     return IR_NONE;
   }
-  return found;
+  return from;
+}
+
+/* The root of sigma_zz(z) by Newton's method, from the root with the states at hand where that is
+   found in one step, else from 0; z itself counts for nothing where sigma_zz does not depend on
+   it. */
+static ir_node strain_without_stress(planner *p, ir_node sigma_zz, ir_node sigma_zz_at_hand,
+                                     diagnostics *d) {
+  enum { NEWTON_STEPS = 9 };
+  const along_z a = along_z_of(p, sigma_zz), at_hand = along_z_of(p, sigma_zz_at_hand);
+  const ir_node zero = ir_constant(p->graph, 0);
+  if (ir_is_number(p->graph, a.slope, 0)) return zero;
+  if (a.affine) return newton(p, &a, &a, zero, 1, d);
+  ir_node from = zero;
+  if (at_hand.affine && !ir_is_number(p->graph, at_hand.slope, 0))
+    from = newton(p, &at_hand, &at_hand, zero, 1, d);
+  return newton(p, &a, &at_hand, from, NEWTON_STEPS, d);
+}
+
+/* 0 where sigma_zz is as good as none at the z that is found, else not a number (explain_point.h). */
+static ir_node unless_free(planner *p, ir_node sigma_zz, ir_node z) {
+  static const double FREE = 1e-9; /* of what is added up to it */
+  ir *g = p->graph;
+  ir_node here;
+  ir_substitute(g, &sigma_zz, 1, &p->z, &z, 1, &here);
+  const ir_node most = ir_mul(g, ir_constant(g, FREE), rewrite_size(g, here)),
+                is_free = ir_binary(g, IR_LE, ir_unary(g, IR_ABS, here), most);
+  return ir_unary(g, IR_SQRT, ir_select(g, is_free, ir_constant(g, 0), ir_constant(g, -1)));
 }
 
 /* How z follows a strain of the plane where sigma_zz stays: -D_zb/D_zz. */
@@ -81,7 +138,9 @@ static ir_node follows(planner *p, ir_node sigma_zz, ir_node strain) {
   ir *g = p->graph;
   const ir_node by = ir_derivative(g, sigma_zz, strain), slope = ir_derivative(g, sigma_zz, p->z);
   if (ir_is_number(g, slope, 0) || ir_is_number(g, by, 0)) return ir_constant(g, 0);
-  return ir_neg(g, ir_div(g, by, slope));
+  const ir_node ratio = ir_neg(g, ir_div(g, by, slope)), zero = ir_constant(g, 0);
+  return ir_is_uniform(g, slope) ? ratio
+                                 : ir_select(g, ir_binary(g, IR_EQ, slope, zero), zero, ratio);
 }
 
 static ir_node at_rest(planner *p, ir_node n) {
@@ -117,6 +176,10 @@ static void find_tangent(planner *p, bool z_is_free) {
     }
 }
 
+static bool is_searched(planner *p, ir_node sigma_zz) {
+  return !along_z_of(p, sigma_zz).affine;
+}
+
 static bool settle_plane(planner *p, diagnostics *d) {
   ir *g = p->graph;
   const bool is_free = p->plan->law->setting == SETTING_PLANE_STRESS;
@@ -124,20 +187,22 @@ static bool settle_plane(planner *p, diagnostics *d) {
   lowered_law *both[] = {&p->step, &p->frozen};
   find_tangent(p, is_free);
   for (int k = 0; k < 2; k++) {
-    ir_node z = zero, z_rate = zero;
+    ir_node z = zero, z_rate = zero, doubt = zero;
     if (is_free) {
       ir_node sigma_zz = both[k]->sigma[TENSOR_ZZ];
       z_rate = rate_along_z(p, at_rest(p, sigma_zz));
       ir_substitute(g, &sigma_zz, 1, &p->z_rate, &z_rate, 1, &sigma_zz);
-      z = strain_without_stress(p, sigma_zz, d);
+      z = strain_without_stress(p, sigma_zz, at_rest(p, p->frozen.sigma[TENSOR_ZZ]), d);
       if (z == IR_NONE) return false;
       ir_substitute(g, &z_rate, 1, &p->z, &z, 1, &z_rate);
+      if (k == 0 && is_searched(p, sigma_zz)) doubt = unless_free(p, sigma_zz, z);
     }
     if (k == 0) {
       const ir_node from[] = {p->z, p->z_rate}, to[] = {z, z_rate};
       ir_substitute(g, p->tangent, p->strains * p->strains, from, to, 2, p->tangent);
     }
     settle(p, both[k], z, z_rate);
+    both[k]->sigma[TENSOR_XX] = ir_add(g, both[k]->sigma[TENSOR_XX], doubt);
     if (is_free) both[k]->sigma[TENSOR_ZZ] = zero;
   }
   return true;
@@ -163,6 +228,34 @@ static force_fields stress_fields(planner *p) {
     is_new = is_new && (old == IR_NONE || used == with_new_fields(p, old));
   }
   return is_new ? FORCES_OF_NEW : is_old ? FORCES_OF_OLD : FORCES_OF_BOTH;
+}
+
+/* Where a point has failed nothing acts and nothing is stored, and its outputs are those without
+   stress. */
+static void fail_points(planner *p) {
+  ir *g = p->graph;
+  if (!p->plan->law->failed) return;
+  const int at = p->plan->law->failed->index;
+  const ir_node zero = ir_constant(g, 0), one = ir_constant(g, 1);
+  lowered_law *both[] = {&p->step, &p->frozen};
+  for (int k = 0; k < 2; k++) {
+    const ir_node failed = k == 0 ? p->step.fields[at] : lower_field(g, p->plan->law, at);
+    const ir_node gone = ir_binary(g, IR_LE, one, failed);
+    ir_node from[TENSOR_COUNT], to[TENSOR_COUNT];
+    int count = 0;
+    for (int c = 0; c < TENSOR_COUNT; c++) {
+      const ir_node acts = both[k]->sigma[c];
+      both[k]->sigma[c] = ir_select(g, gone, zero, acts);
+      if (ir_is_uniform(g, acts)) continue;
+      from[count] = acts;
+      to[count++] = both[k]->sigma[c];
+    }
+    ir_substitute(g, both[k]->outputs, p->plan->law->outputs.count, from, to, count,
+                  both[k]->outputs);
+    if (both[k]->W != IR_NONE) both[k]->W = ir_select(g, gone, zero, both[k]->W);
+    for (int c = 0; c < p->strains * p->strains && k == 0; c++)
+      p->tangent[c] = ir_select(g, gone, zero, p->tangent[c]);
+  }
 }
 
 /* --- energies --------------------------------------------------------------------------------- */
@@ -378,14 +471,17 @@ bool plan_points(kernel_plan *plan, diagnostics *d) {
       !lower_law_varying(plan->law, plan->graph, LOWER_FROZEN, v, plan->memory, &p.frozen, d))
     return false;
   point_at_inputs(&p);
-  const force_fields stress = stress_fields(&p);
+  const force_fields alive = stress_fields(&p),
+                     stress = plan->law->failed && alive == FORCES_OF_OLD ? FORCES_OF_BOTH : alive;
   if (plan->dimensions == 3)
     find_tangent(&p, false);
   else if (!settle_plane(&p, d))
     return false;
+  fail_points(&p);
   plan->linear = is_linear(&p);
   plan->stores = plan->law->nonconservative == NULL;
   plan->reads_rates = reads_rates(&p);
+  plan->reads_size = law_reads(plan->law, QUANTITY_CELL_SIZE);
   seen_points seen = {stored_energy(&p), rate_power(&p), still_power(&p), stress};
   improve(&p, &seen);
   static void (*const program[])(planner *, const seen_points *,

@@ -6,11 +6,12 @@
 #include <string.h>
 
 #include "runtime/base/whole_file.h"
+#include "runtime/continuum/point_forces.h"
 
-void bad_bond_path(const char *result, char *path, size_t size) {
+void bad_bond_path(const char *result, const bad_state *b, char *path, size_t size) {
   size_t n = strlen(result);
   if (n > 3 && strcmp(result + n - 3, ".h5") == 0) n -= 3;
-  snprintf(path, size, "%.*s_bad_bond.nml", (int)n, result);
+  snprintf(path, size, "%.*s_bad_%s.nml", (int)n, result, b->point ? "point" : "bond");
 }
 
 /* A text of a namelist: quotes are doubled, line ends become blanks. */
@@ -46,11 +47,11 @@ static void put_material(const model *m, const simulation_law *l, FILE *out) {
   fputs("/\n", out);
 }
 
-static void put_initial(const pl_law *kernel, const bad_state *b, FILE *out) {
-  if (!b->fields || b->field_count == 0) return;
+static void put_initial(const pl_law *kernel, const double *fields, int count, FILE *out) {
+  if (!fields || count == 0) return;
   fputs("&initial\n", out);
-  for (int f = 0; f < b->field_count && f < kernel->field_count; f++)
-    put_value(kernel->fields[f].name, b->fields[f], kernel->fields[f].unit, out);
+  for (int f = 0; f < count && f < kernel->field_count; f++)
+    put_value(kernel->fields[f].name, fields[f], kernel->fields[f].unit, out);
   fputs("/\n", out);
 }
 
@@ -62,20 +63,25 @@ static void put_path(const char *quantity, double value, FILE *out) {
             quantity);
 }
 
-static bool write_all(const char *deck_name, const model *m, const simulation_law *l, const rows *w,
-                      const bad_state *b, FILE *out) {
+static void put_title(const char *deck_name, FILE *out) {
+  fputs("! perilat drive shows what the law answers there.\n&simulation  title = ", out);
+  put_text(deck_name, out);
+  fputs("  end_time = 0  steps = 1  /\n", out);
+}
+
+static bool write_bond(const char *deck_name, const model *m, const simulation_law *l,
+                       const rows *w, const bad_state *b, FILE *out) {
   fprintf(
       out,
       "! The bond between particles %ld and %ld where a run stopped: %s in step %ld, t = %.9g s.\n",
       b->particle, b->bond_particle, b->what, b->step, b->time);
-  fputs("! perilat drive shows what the law answers there.\n&simulation  title = ", out);
-  put_text(deck_name, out);
-  fprintf(out, "  end_time = 0  steps = 1  /\n&bond\n  spacing = %.17g\n  thickness = %.17g\n",
-          w->spacing, w->stiffness_thickness);
+  put_title(deck_name, out);
+  fprintf(out, "&bond\n  spacing = %.17g\n  thickness = %.17g\n", w->spacing,
+          w->stiffness_thickness);
   if (w->mass > 0 && !w->site_mass) fprintf(out, "  mass_i = %.17g\n", w->mass);
   fputs("/\n", out);
   put_material(m, l, out);
-  put_initial(l->law, b, out);
+  put_initial(l->law, b->fields, b->field_count, out);
   put_path("stretch", b->stretch, out);
   put_path("stretch_rate", b->stretch_rate, out);
   if (l->law->dof > 2) {
@@ -85,14 +91,45 @@ static bool write_all(const char *deck_name, const model *m, const simulation_la
   return !ferror(out);
 }
 
+static bool write_point(const char *deck_name, const model *m, const simulation_law *l,
+                        const char *setting, const bad_state *b, FILE *out) {
+  static const char *const strain[] = {"strain_xx", "strain_yy", "strain_xy"};
+  const point_state *p = b->point;
+  fprintf(out,
+          "! The point (%.9g, %.9g) m of cell (%d, %d) where a run stopped: %s in step %ld, t = "
+          "%.9g s.\n",
+          p->at[0], p->at[1], p->cell[0], p->cell[1], b->what, b->step, b->time);
+  put_title(deck_name, out);
+  fprintf(out, "&point  setting = '%s'  size = %.17g  /\n", setting, p->size);
+  put_material(m, l, out);
+  put_initial(l->law, p->field, l->law->field_count, out);
+  for (int k = 0; k < 3; k++)
+    put_path(strain[k], p->strain[k], out);
+  return !ferror(out);
+}
+
+static bool end(whole_file *whole, FILE *out, bool good, const char *path, char *error,
+                size_t size) {
+  good = out && fclose(out) == 0 && good;
+  good = out && whole_file_end(whole, good);
+  if (!good) snprintf(error, size, "cannot write `%s`: %s", path, strerror(errno));
+  return good;
+}
+
 bool bad_bond_write(const char *path, const char *deck_name, const model *m,
                     const simulation_law *l, const rows *w, const bad_state *b, char *error,
                     size_t size) {
   whole_file whole;
   FILE *out = whole_file_open(&whole, path);
-  bool good = out && write_all(deck_name, m, l, w, b, out);
-  good = out && fclose(out) == 0 && good;
-  good = out && whole_file_end(&whole, good);
-  if (!good) snprintf(error, size, "cannot write `%s`: %s", path, strerror(errno));
-  return good;
+  const bool good = out && write_bond(deck_name, m, l, w, b, out);
+  return end(&whole, out, good, path, error, size);
+}
+
+bool bad_point_write(const char *path, const char *deck_name, const model *m,
+                     const simulation_law *l, const char *setting, const bad_state *b, char *error,
+                     size_t size) {
+  whole_file whole;
+  FILE *out = whole_file_open(&whole, path);
+  const bool good = out && write_point(deck_name, m, l, setting, b, out);
+  return end(&whole, out, good, path, error, size);
 }

@@ -1,4 +1,5 @@
-/* When a run stops because a state went bad: the bond at fault as a path for `perilat drive`. */
+/* When a run stops because a state went bad: the bond or point at fault as a path for
+   `perilat drive`. */
 #ifndef PERILAT_GENERATOR_BAD_BOND_H
 #define PERILAT_GENERATOR_BAD_BOND_H
 
@@ -13,7 +14,12 @@ bool bad_bond_write(const char *path, const char *deck_name, const model *m,
                     const simulation_law *l, const rows *w, const bad_state *b, char *error,
                     size_t size);
 
-/* `<result>_bad_bond.nml` for `<result>.h5`. */
-void bad_bond_path(const char *result, char *path, size_t size);
+/* The same of the point of a mesh, of one that is in such a setting; at rest. */
+bool bad_point_write(const char *path, const char *deck_name, const model *m,
+                     const simulation_law *l, const char *setting, const bad_state *b, char *error,
+                     size_t size);
+
+/* `<result>_bad_bond.nml` for `<result>.h5`; where a point is at fault `<result>_bad_point.nml`. */
+void bad_bond_path(const char *result, const bad_state *b, char *path, size_t size);
 
 #endif

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/base/elementary.h"
+#include "generator/run/moment.h"
 #include "generator/run/print_quantity.h"
 #include "runtime/continuum/cells.h"
 
@@ -32,9 +33,30 @@ static void print_cells(const mesh *m) {
            count_set(m->gone, mesh_node_count(m)));
 }
 
+/* "mesh       plate: 858 nodes of plate.msh, 1560 triangles of 3 nodes, sides of at least 1.2 mm; 1560
+   points" */
+static void announce_lists(const cells *c, const deck_mesh *k) {
+  const cell_lists *l = c->mesh.lists;
+  long count[ELEMENT_MOST_NODES + 1] = {0};
+  printf("  mesh       %s: %d nodes of %s", k->name, l->node_count, k->file);
+  for (int n = 0; n < l->count; n++)
+    count[l->nodes[n]]++;
+  for (int n = 3; n <= ELEMENT_MOST_NODES; n++)
+    if (count[n] > 0)
+      printf(", %ld %s", count[n],
+             n == 4   ? "quadrilaterals"
+             : n == 3 ? "triangles of 3 nodes"
+                      : "triangles of 6 nodes");
+  printf(", %.6g mm between neighbours at least; %d points\n", 1e3 * k->spacing, c->points.count);
+}
+
 /* "mesh       beam: 74 x 25 nodes, 3.13151 x 3.175 mm apart, 1752 cells: ...; 24048 points" */
 static void announce_cells(const cells *c, const deck_mesh *k) {
   const mesh *m = &c->mesh;
+  if (m->lists) {
+    announce_lists(c, k);
+    return;
+  }
   printf("  mesh       %s: %d x %d nodes, ", k->name, m->nodes[0], m->nodes[1]);
   if (m->mapped)
     printf("at least %.6g mm apart", 1e3 * k->spacing);
@@ -50,14 +72,25 @@ static const char *path_of(const run *r, int interaction) {
   return path && strncmp(path, "./", 2) == 0 ? path + 2 : path;
 }
 
-/* "law        elastic (elastic.plm): linear; waves of 3690 and 2334 m/s" */
-static void announce_law(const run *r, int interaction, const cells *c) {
+static int cells_of_law(const cells *c, int number) {
+  int count = 0;
+  for (int n = 0; n < mesh_cell_count(&c->mesh); n++)
+    count += c->mesh.cell[n] != CELL_ABSENT && cell_laws_at(&c->where, n) == number;
+  return count;
+}
+
+/* "law        elastic (elastic.plm): linear; waves of 3690 and 2334 m/s"; of several laws also
+   "in 336 cells of `steel`" */
+static void announce_law(const run *r, int interaction, int number, const cells *c) {
   const pl_law *kernel = r->laws[interaction].law;
   const char *path = path_of(r, interaction);
-  const double(*D)[3] = c->stiffness.D,
+  const double(*D)[3] = c->stiffness[number].D,
         rho = material_density(kernel, r->laws[interaction].parameters);
   printf("  law        %s", kernel->name);
+  const char *region = r->deck->interactions[interaction].material->region;
   if (path) printf(" (%s)", path);
+  if (c->where.count > 1)
+    printf(" in %d cells%s%s", cells_of_law(c, number), region ? " of " : "", region ? region : "");
   printf(": %s; waves of %.4g and %.4g m/s%s\n", kernel->linear ? "linear" : "not linear",
          sqrt(D[0][0] / rho), sqrt(D[2][2] / rho), kernel->linear ? "" : " at rest");
 }
@@ -96,10 +129,28 @@ static void announce_crack(const run *r, const tips *t, const deck_crack *k) {
 void announce_mesh(const run *r, int lattice) {
   const cells *c = simulation_cells(r->simulation, lattice);
   const deck *k = r->deck;
+  int number = 0;
   announce_cells(c, &k->lattices[lattice]);
   for (int n = 0; n < k->interaction_count; n++)
-    if (k->interactions[n].lattice == lattice) announce_law(r, n, c);
+    if (k->interactions[n].lattice == lattice) announce_law(r, n, number++, c);
   for (int n = 0; n < k->crack_count && c->tips; n++)
     if (strcmp(k->cracks[n].mesh, k->lattices[lattice].name) == 0)
       announce_crack(r, c->tips, &k->cracks[n]);
+}
+
+/* "cells      plate: 12 of 400 have died, the first at t = 0.31 ms" */
+void conclude_deaths(const run *r) {
+  for (int b = 0; b < simulation_bodies(r->simulation); b++) {
+    const cells *c = simulation_cells(r->simulation, b);
+    double first;
+    char when[MOMENT_TEXT];
+    const long died = c && cells_can_die(c) ? cells_deaths(c, &first) : 0;
+    if (died == 0) continue;
+    long all = 0;
+    for (int cell = 0; cell < mesh_cell_count(&c->mesh); cell++)
+      all += c->mesh.cell[cell] != CELL_ABSENT;
+    printf("  cells      %s: %ld of %ld have died", r->deck->lattices[b].name, died, all);
+    if (isfinite(first)) printf(", the first at %s", moment(r, first, when));
+    putchar('\n');
+  }
 }

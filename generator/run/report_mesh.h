@@ -6,5 +6,7 @@
 
 /* Of the deck's lattice of that number, a &mesh: a line each for the mesh, its law, its cracks. */
 void announce_mesh(const run *r, int lattice);
+/* How many cells died, and when the first one did; nothing where none did. */
+void conclude_deaths(const run *r);
 
 #endif

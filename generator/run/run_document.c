@@ -63,8 +63,8 @@ static void put_files(json *w, const run *r) {
   }
   if (r->is_kept) put_existing(w, r->checkpoint_path);
   const bad_state bad = simulation_bad(r->simulation);
-  if (bad.what && bad.bond_particle >= 0) {
-    bad_bond_path(r->result_path, path, sizeof path);
+  if (bad.what && (bad.bond_particle >= 0 || bad.point)) {
+    bad_bond_path(r->result_path, &bad, path, sizeof path);
     put_existing(w, path);
   }
   json_array_end(w);

@@ -7,6 +7,7 @@
 
 #include "dsl/base/elementary.h"
 #include "generator/drive/explain_bad.h"
+#include "generator/drive/explain_point.h"
 #include "generator/kernel/document.h"
 #include "generator/run/bad_bond.h"
 #include "generator/run/moment.h"
@@ -19,6 +20,7 @@
 #include "runtime/continuum/tips.h"
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/filling/bar_placing.h"
+#include "runtime/geometry/gmsh_mesh.h"
 #include "runtime/geometry/polyline.h"
 #include "runtime/lattice/notch_depth.h"
 #include "runtime/lattice/parameter_planes.h"
@@ -492,13 +494,33 @@ void describe_monitors(const run *r, char *text, size_t size) {
 /* The bond at fault, for `perilat drive`. */
 static void write_bad_bond(const run *r, const bad_state *b) {
   char path[4200], error[ERROR_LENGTH + 4200];
-  bad_bond_path(r->result_path, path, sizeof path);
+  bad_bond_path(r->result_path, b, path, sizeof path);
   if (bad_bond_write(path, r->options->deck_path, r->model_of[b->interaction],
                      &r->laws[b->interaction], simulation_rows(r->simulation, b->body), b, error,
                      sizeof error))
     fprintf(stderr, "  this bond alone: perilat drive %s\n", path);
   else
     fprintf(stderr, "  %s\n", error);
+}
+
+static void write_bad_point(const run *r, const bad_state *b) {
+  char path[4200], error[ERROR_LENGTH + 4200];
+  bad_bond_path(r->result_path, b, path, sizeof path);
+  if (bad_point_write(path, r->options->deck_path, r->model_of[b->interaction],
+                      &r->laws[b->interaction], r->deck->lattices[b->body].setting, b, error,
+                      sizeof error))
+    fprintf(stderr, "  this point alone: perilat drive %s\n", path);
+  else
+    fprintf(stderr, "  %s\n", error);
+}
+
+/* What its law says there, line by line. */
+static void explain_bad_point(const run *r, const bad_state *b) {
+  const simulation_law *l = &r->laws[b->interaction];
+  const point_state *p = b->point;
+  const asked_point at = {p->strain, p->field, p->size, simulation_step_limit(r->simulation)->step};
+  if (r->model_of[b->interaction])
+    explain_point(r->model_of[b->interaction]->plan, l->parameters, &at, stderr);
 }
 
 static void print_fields(const pl_law *kernel, const double *values, bool on_particles) {
@@ -527,11 +549,16 @@ static void print_family(const run *r, const bad_state *b) {
 static void print_point(const run *r, const bad_state *b) {
   const pl_law *kernel = r->laws[b->interaction].law;
   const point_state *p = b->point;
-  fprintf(stderr,
-          "  point (%.6g, %.6g) mm of cell (%d, %d): strain xx %.6g, yy %.6g, xy %.6g; stress xx "
-          "%.6g, yy %.6g, xy %.6g MPa",
-          1e3 * p->at[0], 1e3 * p->at[1], p->cell[0], p->cell[1], p->strain[0], p->strain[1],
-          p->strain[2], 1e-6 * p->stress[0], 1e-6 * p->stress[1], 1e-6 * p->stress[2]);
+  const gmsh_mesh *file =
+      r->deck->lattices[r->deck->interactions[b->interaction].lattice].gmsh; /* has own numbers */
+  fprintf(stderr, "  point (%.6g, %.6g) mm of cell ", 1e3 * p->at[0], 1e3 * p->at[1]);
+  if (file)
+    fprintf(stderr, "%lld", (long long)file->cell_tag[p->cell[0]]);
+  else
+    fprintf(stderr, "(%d, %d)", p->cell[0], p->cell[1]);
+  fprintf(stderr, ": strain xx %.6g, yy %.6g, xy %.6g; stress xx %.6g, yy %.6g, xy %.6g MPa",
+          p->strain[0], p->strain[1], p->strain[2], 1e-6 * p->stress[0], 1e-6 * p->stress[1],
+          1e-6 * p->stress[2]);
   for (int f = 0; f < kernel->field_count; f++)
     fprintf(stderr, ", %s %.6g", kernel->fields[f].name, p->field[f]);
   fputc('\n', stderr);
@@ -631,7 +658,11 @@ void report_bad(const run *r) {
       r->deck->relaxation.increments > 0 ? "after " : "", moment(r, b.time, when), b.particle,
       rows_place_text(simulation_rows(r->simulation, b.body)->dimensions, b.place, place_text));
   if (b.family) print_family(r, &b);
-  if (b.point) print_point(r, &b);
+  if (b.point) {
+    print_point(r, &b);
+    explain_bad_point(r, &b);
+    write_bad_point(r, &b);
+  }
   if (b.bond_particle >= 0) {
     fprintf(stderr,
             "  bond to particle %ld: stretch %.6g, stretch rate %.6g 1/s, end rotations %.6g and "
@@ -879,6 +910,7 @@ void conclude(const run *r, double seconds, long steps) {
     conclude_contact(r, k);
   conclude_energy(r);
   conclude_cracks(r);
+  conclude_deaths(r);
   fflush(stdout);
   warn_of_gain(r);
   warn_of_damping(r);

@@ -320,18 +320,28 @@ static void bond_table(run *r, result_header *h) {
   h->bonds = bonds;
 }
 
-/* The corners of a cell as particles of its mesh, counter-clockwise; false: one is not there. */
-static bool corners_of(const mesh *m, const rows *w, const node_layout *l, int cell,
-                       int32_t around[4]) {
-  static const int order[4] = {0, 1, 3, 2};
-  int corner[4];
+/* The nodes of a cell as particles of its mesh, corners counter-clockwise, behind the last -1; false:
+   one is not there. */
+static bool corners_of(const mesh *m, const rows *w, const node_layout *l, int cell, int columns,
+                       int32_t *around) {
+  int node[ELEMENT_MOST_NODES];
   bool whole = m->cell[cell] != CELL_ABSENT;
-  mesh_corners(m, cell, corner);
-  for (int k = 0; k < 4; k++) {
-    around[k] = w->site_particle[node_layout_at(l, corner[order[k]])];
-    whole = whole && around[k] >= 0;
+  const int count = mesh_cell_nodes(m, cell, node);
+  for (int k = 0; k < columns; k++) {
+    around[k] = k < count ? w->site_particle[node_layout_at(l, node[k])] : -1;
+    whole = whole && (k >= count || around[k] >= 0);
   }
   return whole;
+}
+
+/* 4, or as many as the cell with the most nodes has. */
+static int columns_of(const mesh *m) {
+  int node[ELEMENT_MOST_NODES], most = m->lists ? 3 : 4;
+  for (int c = 0; c < mesh_cell_count(m) && m->lists; c++) {
+    const int count = mesh_cell_nodes(m, c, node);
+    if (count > most) most = count;
+  }
+  return most;
 }
 
 /* Its cells but those that are not there as a whole. */
@@ -339,15 +349,18 @@ static result_mesh mesh_of(run *r, int number, const mesh *m, long first_particl
   const size_t most = (size_t)mesh_cell_count(m);
   const rows *w = simulation_rows(r->simulation, number);
   const node_layout l = node_layout_of(m->nodes, m->support);
-  int32_t *corners = arena_alloc(r->memory, 4 * most * sizeof *corners),
+  const int columns = columns_of(m);
+  int32_t *corners = arena_alloc(r->memory, (size_t)columns * most * sizeof *corners),
           *method = arena_alloc(r->memory, most * sizeof *method);
   long count = 0;
   for (int c = 0; c < mesh_cell_count(m); c++)
-    if (corners_of(m, w, &l, c, corners + 4 * count)) method[count++] = (int32_t)m->cell[c];
+    if (corners_of(m, w, &l, c, columns, corners + columns * count))
+      method[count++] = (int32_t)m->cell[c];
   return (result_mesh){.name = r->deck->lattices[number].name,
                        .first_particle = first_particle,
                        .node_count = w->particle_count,
                        .cell_count = count,
+                       .columns = columns,
                        .cells = corners,
                        .method = method,
                        .thickness = m->thickness};

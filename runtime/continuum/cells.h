@@ -1,6 +1,8 @@
-/* The cells of a mesh at work: an engine (sweep.h) that finds the forces of nodes and moves them. A
-   linear law has its stiffness assembled once (node_stencil.h), f = K u; of any other one, and of
-   laws with states, each point is asked in each step (point_forces.h).
+/* The cells of a mesh at work: an engine (sweep.h) that finds the forces of nodes and moves them.
+   Linear laws have their stiffness assembled once (node_stencil.h), f = K u; of any other one, and of
+   laws with states, each point is asked in each step (point_forces.h). A mesh may have several laws,
+   by cells (cell_laws.h): those that are linear have one stiffness together, and what the others push
+   is added to that in their order.
 
    Steps are those of the time loop, central differences. Newmark's method with beta_2 = 0 and
    beta_1 > 1/2 is the same with the forces
@@ -14,6 +16,8 @@
 
 #include "dsl/base/diagnostics.h"
 #include "runtime/analysis/step_limit.h"
+#include "runtime/continuum/cell_laws.h"
+#include "runtime/continuum/node_matrix.h"
 #include "runtime/continuum/node_stencil.h"
 #include "runtime/continuum/point_forces.h"
 #include "runtime/continuum/tips.h"
@@ -21,22 +25,32 @@
 #include "runtime/interaction/sweep.h"
 
 /* How many times as stiff as at rest the stiffest point is: in the state observed last, and at most so
-   far; 1 of a linear law. */
+   far; 1 of linear laws. */
 typedef struct cells_stiffened {
   double now, most;
   double since; /* s: the step is longer than is safe for that; -1: never so far */
 } cells_stiffened;
 
-typedef struct cells {
+/* A law with its parameters, neither owned. */
+typedef struct cells_law {
   const pl_law *law;
+  const double *parameters;
+} cells_law;
+
+typedef struct cells {
   const rows *nodes; /* the mesh's, not owned */
   double beta_1;
   mesh mesh;
   integration_points points;
-  plane_stiffness stiffness; /* at rest */
-  node_stencil stencil;
-  bool has_stencil;        /* of a linear law */
-  point_forces *by_points; /* of any other law, once the run has begun; else NULL */
+  cell_laws where;            /* each law has its cells */
+  cells_law *laws;            /* [where.count] */
+  plane_stiffness *stiffness; /* [where.count] at rest */
+  node_stencil stencil;       /* of linear laws; in a mesh of lists */
+  node_matrix matrix;
+  bool has_stencil, has_matrix;
+  unsigned char *linear; /* [cells] where.of_cell, NO_LINEAR_LAW where it is not; NULL of one law */
+  point_forces *
+      *by_points; /* [where.count] of the others, once the run has begun; NULL of linear ones */
   cells_stiffened stiffened;
   tips *tips; /* of its cracks; NULL without */
 } cells;
@@ -51,27 +65,47 @@ long cells_site(const cells *c, int node);
 int cells_node(const cells *c, long site);
 int32_t cells_particle(const cells *c, int node);
 
-/* The law with its parameters. */
-void cells_take_law(cells *c, const pl_law *law, const double *parameters);
+/* laws[where.count] */
+void cells_take_laws(cells *c, const cells_law *laws);
+/* density[where.count] kg/m^3; at each site that of its node's mass and volume. */
+void cells_densities(const cells *c, const double *density, double *at_site);
+/* node[nodes] becomes 1 where cells of laws that are not linear push. */
+void cells_mark_pushed(const cells *c, unsigned char *node);
+/* A point's strain as the law sees it, in a cell whose dilatation is the mean (element_modes.h);
+   displacement: planes of the body. */
+void cells_mean_dilatation(const cells *c, int cell, const double *const displacement[2],
+                           double strain[3]);
 /* The longest stable step at rest; held[2 p + d]: freedoms of particles that do not move by
    themselves. */
-void cells_step_limit(const cells *c, const double *parameters, const unsigned char *held,
-                      step_limit *limit);
+void cells_step_limit(const cells *c, const unsigned char *held, step_limit *limit);
 /* At rest; to be freed by sweep_free, before the cells. cracks[k->crack_count]: the laws of the deck's
-   cracks. */
-sweep *cells_sweep(cells *c, const deck *k, const double *parameters, const tip_law *cracks,
-                   double time_step, int threads, body_ledger ledger);
+   cracks. states[where.count]: of each law its fields, outputs and what it stores; the first is what is
+   returned, and moves the body. */
+sweep *cells_sweep(cells *c, const deck *k, const tip_law *cracks, double time_step, int threads,
+                   body_ledger ledger, sweep **states);
 
 /* After a state was observed, at that time: how stiff points are. `part` of the longest step at rest
    is taken. No frequency of the mesh is above the root of `stiffened.now` times the highest at rest. */
 void cells_watch_stiffness(cells *c, double part, double time);
 /* Where a node had a velocity that is no number or too large: of the points that push it the one
-   with the largest stress, with the nodes where they were before the step. False with a linear law. `out`
-   has memory for the law's fields. */
-bool cells_worst_point(const sweep *w, long site, point_state *out);
+   with the largest stress, with the nodes where they were before the step. Number of its law; -1 where
+   all around are linear. `out` has memory for any law's fields. */
+int cells_worst_point(const sweep *w, long site, point_state *out);
 /* Of the state observed last, with a law that is not linear; false with one that is, whose points
-   keep nothing. Stress xx, yy, xy, zz (Pa) at a node: the mean of the points in the cells around. */
-bool cells_mean_stress(const cells *c, int node, double stress[4]);
+   keep nothing. Stress xx, yy, xy, zz (Pa) at a node: the mean of the points in the law's cells around. */
+bool cells_mean_stress(const cells *c, int law, int node, double stress[4]);
+/* Whether points of some law can fail; whether a cell is dead after the last step, as all of its points
+   have failed; how many are, and when the first one died (s; infinite: none did). */
+bool cells_can_die(const cells *c);
+bool cells_dead(const cells *c, int cell);
+long cells_deaths(const cells *c, double *first);
+/* J stored in the cells of a law in the state observed last, where it has others beside it; of one of
+   several linear laws it is not known: NaN. */
+double cells_stored_by(const sweep *law);
+/* The law of a cell. */
+static inline const cells_law *cells_law_at(const cells *c, int cell) {
+  return &c->laws[cell_laws_at(&c->where, cell)];
+}
 /* field[law's fields]: states of the point that is nearest to a place (m) in the mesh. */
 bool cells_states_near(const cells *c, const double at[2], double *field);
 /* B, of what the body does not count. */
@@ -79,14 +113,14 @@ double cells_bytes(const cells *c);
 /* Stress intensities at the tips, where the body stands still. */
 void cells_look_at_tips(const sweep *w);
 
-/* What the engine remembers from step to step, for checkpoints; and after one was read. */
-enum { CELLS_PLANES = 9 };
+/* What the engine remembers from step to step, for checkpoints, to be freed; and after one was read. */
 typedef struct cells_memory {
   int count;
-  void *planes[CELLS_PLANES];
-  size_t bytes[CELLS_PLANES];
+  void **planes;
+  size_t *bytes;
 } cells_memory;
 cells_memory cells_remembered(const sweep *w);
+void cells_memory_free(cells_memory *m);
 void cells_restored(sweep *w);
 
 #endif

@@ -1,8 +1,10 @@
 #include "runtime/continuum/node_fields.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "dsl/base/arena.h"
 #include "runtime/continuum/point_law.h"
 #include "runtime/mesh/mesh_fields.h"
 
@@ -14,7 +16,7 @@ void node_field_values(const cells *c, const double *const planes[2], double *va
   const node_layout l = layout_of(c);
   for (int n = 0; n < mesh_node_count(&c->mesh); n++) {
     const int32_t particle = c->nodes->site_particle[node_layout_at(&l, n)];
-    int around[4];
+    int around[MESH_MOST_AROUND];
     double at[2];
     point_shape s;
     if (particle < 0) continue;
@@ -27,21 +29,33 @@ void node_field_values(const cells *c, const double *const planes[2], double *va
   }
 }
 
+enum { ANY_LAW = -1 };
+
+/* Cells of a law around a node. */
+static int cells_of_law(const cells *c, int law, int node, int around[MESH_MOST_AROUND]) {
+  const int count = mesh_cells_around(&c->mesh, node, around);
+  int of_law = 0;
+  for (int n = 0; n < count; n++)
+    if (law == ANY_LAW || cell_laws_at(&c->where, around[n]) == law) around[of_law++] = around[n];
+  return of_law;
+}
+
 /* Functions of element-free cells are the same in all of them: one speaks for all. */
-static int cells_that_differ(const mesh *m, int node, int around[4]) {
-  const int count = mesh_cells_around(m, node, around);
+static int cells_that_differ(const cells *c, int law, int node, int around[MESH_MOST_AROUND]) {
+  const mesh *m = &c->mesh;
+  const int count = cells_of_law(c, law, node, around);
   bool alike = count > 0;
   for (int n = 0; n < count; n++)
     alike = alike && m->cell[around[n]] == CELL_ELEMENT_FREE;
   return alike ? 1 : count;
 }
 
-/* The mean over the cells around the node; false: there are none. */
+/* The mean over the cells of the law around the node; false: there are none. */
 static bool strain_at(const cells *c, const node_layout *l, const double *const displacement[2],
-                      int node, double strain[3]) {
-  int around[4];
+                      int law, int node, double strain[3]) {
+  int around[MESH_MOST_AROUND];
   double there[2];
-  const int count = cells_that_differ(&c->mesh, node, around);
+  const int count = cells_that_differ(c, law, node, around);
   mesh_place(&c->mesh, node, there);
   for (int k = 0; k < 3; k++)
     strain[k] = 0;
@@ -52,6 +66,7 @@ static bool strain_at(const cells *c, const node_layout *l, const double *const 
     shape_functions(&c->mesh, around[n], at, &s);
     mesh_field(&s, l, displacement, NULL, gradient);
     mesh_strain(gradient, here);
+    cells_mean_dilatation(c, around[n], displacement, here);
     for (int k = 0; k < 3; k++)
       strain[k] += here[k] / count;
   }
@@ -65,26 +80,60 @@ void node_field_strain(const cells *c, const double *const displacement[2],
     const long site = node_layout_at(&l, n);
     double here[3];
     if (c->nodes->site_particle[site] < 0) continue;
-    const bool known = strain_at(c, &l, displacement, n, here);
+    const bool known = strain_at(c, &l, displacement, ANY_LAW, n, here);
     for (int k = 0; k < 3; k++)
       strain[k][site] = known ? here[k] : NAN;
   }
 }
 
-void node_field_stress(const cells *c, const double *parameters,
-                       const double *const displacement[2], double *const stress[3]) {
+/* Stress xx, yy, xy, zz of one law at a node. */
+static void stress_of_law(const cells *c, point_law *const *laws, int law,
+                          const double *const displacement[2], int node, double stress[4]) {
   const node_layout l = layout_of(c);
-  point_law *law = point_law_new(c->law, parameters);
+  double strain[3];
+  int around[MESH_MOST_AROUND];
+  if (!cells_mean_stress(c, law, node, stress) &&
+      strain_at(c, &l, displacement, law, node, strain) && cells_of_law(c, law, node, around) > 0)
+    point_law_stress(laws[law], strain, mesh_cell_size(&c->mesh, around[0]), stress);
+}
+
+static void stress_at(const cells *c, point_law *const *laws, const double *const displacement[2],
+                      int node, double stress[4]) {
+  const long site = cells_site(c, node);
+  const cell_laws *where = &c->where;
+  if (where->count == 1) {
+    stress_of_law(c, laws, 0, displacement, node, stress);
+    return;
+  }
+  double sum[4] = {0};
+  bool any = false;
+  for (int n = 0; n < where->count; n++) {
+    double here[4] = {NAN, NAN, NAN, NAN};
+    if (!(where->share[n][site] > 0)) continue;
+    stress_of_law(c, laws, n, displacement, node, here);
+    any = true;
+    for (int k = 0; k < 4; k++)
+      sum[k] += where->share[n][site] * here[k];
+  }
+  if (any) memcpy(stress, sum, sizeof sum);
+}
+
+void node_field_stress(const cells *c, const double *const displacement[2],
+                       double *const stress[3]) {
+  const node_layout l = layout_of(c);
+  const int count = c->where.count;
+  point_law **laws = must_calloc((size_t)count, sizeof(point_law *));
+  for (int n = 0; n < count; n++)
+    laws[n] = point_law_new(c->laws[n].law, c->laws[n].parameters);
   for (int n = 0; n < mesh_node_count(&c->mesh); n++) {
     const long site = node_layout_at(&l, n);
-    double strain[3], here[4] = {NAN, NAN, NAN, NAN};
-    int around[4];
+    double here[4] = {NAN, NAN, NAN, NAN};
     if (c->nodes->site_particle[site] < 0) continue;
-    if (!cells_mean_stress(c, n, here) && strain_at(c, &l, displacement, n, strain) &&
-        mesh_cells_around(&c->mesh, n, around) > 0)
-      point_law_stress(law, strain, mesh_cell_size(&c->mesh, around[0]), here);
+    stress_at(c, laws, displacement, n, here);
     for (int k = 0; k < 3; k++)
       stress[k][site] = here[k];
   }
-  point_law_free(law);
+  for (int n = 0; n < count; n++)
+    point_law_free(laws[n]);
+  free(laws);
 }

@@ -29,13 +29,16 @@ typedef struct plane_stiffness {
   double D[3][3];
 } plane_stiffness;
 
+/* In law_of_cell: a cell whose law is none of these. */
+enum { NO_LINEAR_LAW = 255 };
+
 typedef struct node_stencil {
   node_layout layout;
   int reach; /* m of the blocks: 1 of bilinear elements alone */
   const mesh *of;
   const integration_points *points;
   const plane_stiffness *laws;      /* not owned */
-  const unsigned char *law_of_cell; /* [cells] which of them; NULL: the first */
+  const unsigned char *law_of_cell; /* [cells] which of them, or NO_LINEAR_LAW; NULL: the first */
   pool *memory;
   double *blocks;
   long block_count; /* doubles */
@@ -46,7 +49,11 @@ typedef struct node_stencil {
 void node_stencil_open(node_stencil *k, const mesh *m, const integration_points *p,
                        const plane_stiffness *laws, const unsigned char *law_of_cell);
 void node_stencil_close(node_stencil *k);
+/* Adds what elements resist their hourglass modes by (element_modes.h). */
+void node_stencil_resist_hourglass(node_stencil *k);
 
+/* That of a cell; NULL: none. */
+const plane_stiffness *node_stencil_law(const node_stencil *k, int cell);
 /* Entry (a, b) of the block from `node` to `other`, N/m; 0 where they are too far apart. */
 double node_stencil_entry(const node_stencil *k, int node, int other, int a, int b);
 

@@ -8,6 +8,7 @@
 #include "dsl/base/elementary.h"
 #include "runtime/base/lane_sum.h"
 #include "runtime/continuum/point_law.h"
+#include "runtime/mesh/element_modes.h"
 
 enum {
   STRAINS = 3,
@@ -74,9 +75,8 @@ static void find_sizes(point_forces *p, const mesh *m) {
     for (int n = p->strips.first_group[row]; n < p->strips.first_group[row + 1]; n++) {
       const cell_group *g = &p->strips.groups[n];
       for (int lane = 0; lane < PL_LANES; lane++) {
-        const int i = g->first + (lane < g->count ? lane : 0); /* what fills up is of the first */
-        const double h = mesh_cell_size(m, mesh_cell_at(m, i, row));
-        for (int k = 0; k < g->table->points; k++)
+        const double h = mesh_cell_size(m, cell_strips_cell(&p->strips, m, row, g, lane));
+        for (int k = 0; k < g->points; k++)
           p->size[g->at + k * PL_LANES + lane] = h;
       }
     }
@@ -103,32 +103,74 @@ static void find_scale(const double rest[STRAINS][STRAINS], double scale[STRAINS
     }
 }
 
-void point_forces_rest(const mesh *m, const pl_law *law, const double *parameters, bool viscous,
-                       double tangent[3][3]) {
+void point_forces_rest(const mesh *m, const unsigned char *own, const pl_law *law,
+                       const double *parameters, bool viscous, double tangent[3][3]) {
   const double rest[STRAINS] = {0};
   point_law *one = point_law_new(law, parameters);
   double most = -INFINITY;
-  for (int cell = 0; cell < mesh_cell_count(m) && (m->mapped || cell == 0); cell++) {
+  for (int cell = 0; cell < mesh_cell_count(m) && (m->mapped || m->lists || cell == 0); cell++) {
     double here[STRAINS][STRAINS];
+    if ((m->mapped || m->lists) && own && !own[cell]) continue;
     if (viscous)
       point_law_viscosity(one, mesh_cell_size(m, cell), here);
     else
       point_law_tangent(one, rest, mesh_cell_size(m, cell), here);
     const double trace = here[0][0] + here[1][1] + here[2][2];
-    if (cell > 0 && !(trace > most)) continue;
+    if (isfinite(most) && !(trace > most)) continue;
     most = trace;
     memcpy(tangent, here, sizeof here);
   }
   point_law_free(one);
 }
 
-static void find_rest(point_forces *p, const double *parameters) {
+static void find_rest(point_forces *p, const unsigned char *own, const double *parameters) {
   double tangent[STRAINS][STRAINS];
-  point_forces_rest(p->of, p->law, parameters, false, tangent);
+  point_forces_rest(p->of, own, p->law, parameters, false, tangent);
+  p->strip = element_strip_stiffness((const double(*)[STRAINS])tangent);
   find_scale(tangent, p->scale);
 }
 
-point_forces *point_forces_new(const mesh *m, const integration_points *points, const pl_law *law,
+typedef void take_cell(point_forces *p, int group, int lane, int cell);
+
+static void for_each_cell(point_forces *p, take_cell *take) {
+  for (int row = 0; row < p->strips.rows; row++)
+    for (int n = p->strips.first_group[row]; n < p->strips.first_group[row + 1]; n++)
+      for (int lane = 0; lane < p->strips.groups[n].count; lane++)
+        take(p, n, lane,
+             cell_strips_cell(&p->strips, p->of, row, &p->strips.groups[n], lane));
+}
+
+static void open_mean(point_forces *p, int group, int lane, int cell) {
+  const cell_group *g = &p->strips.groups[group];
+  const double *volume = p->strips.volume + g->at + lane;
+  double whole = 0;
+  if (!element_takes_mean(p->of, cell)) return;
+  if (!p->mean) {
+    p->mean = doubles(p, (long)p->strips.group_count * PL_LANES);
+    p->part = doubles(p, p->strips.count);
+  }
+  p->mean[group * PL_LANES + lane] = 1;
+  for (int k = 0; k < g->points; k++)
+    whole += volume[k * PL_LANES];
+  for (int k = 0; k < g->points; k++)
+    p->part[g->at + k * PL_LANES + lane] = volume[k * PL_LANES] / whole;
+}
+
+enum { CORNERS = 4, HOURGLASS = CORNERS + 1 };
+
+static void open_hourglass(point_forces *p, int group, int lane, int cell) {
+  double gamma[CORNERS];
+  const double part = element_hourglass(p->of, cell, gamma);
+  if (!(part > 0)) return;
+  if (!p->hourglass) p->hourglass = doubles(p, (long)p->strips.group_count * HOURGLASS * PL_LANES);
+  double *own = p->hourglass + (long)group * HOURGLASS * PL_LANES + lane;
+  for (int q = 0; q < CORNERS; q++)
+    own[q * PL_LANES] = gamma[q];
+  own[CORNERS * PL_LANES] = p->of->thickness * part * p->strip;
+}
+
+point_forces *point_forces_new(const mesh *m, const unsigned char *own,
+                               const integration_points *points, const pl_law *law,
                                const double *parameters, int blocks, bool ledger) {
   const pl_bond_class none = {.size = sizeof none};
   point_forces *p = must_calloc(1, sizeof *p);
@@ -136,17 +178,21 @@ point_forces *point_forces_new(const mesh *m, const integration_points *points, 
   p->memory = pool_new();
   p->uniforms = must_calloc((size_t)law->uniform_count + 1, sizeof(double));
   law->prepare(law, parameters, &none, p->uniforms);
-  cell_strips_open(&p->strips, m, points);
+  cell_strips_open(&p->strips, m, points, own);
   open_states(p, ledger);
-  p->plane = cell_strips_plane(&p->strips);
   for (int d = 0; d < 2; d++)
-    p->pushed[d] = doubles(p, p->plane * p->strips.rows);
+    p->pushed[d] = doubles(p, cell_strips_pushed(&p->strips));
   find_sizes(p, m);
   p->rows = must_calloc((size_t)p->strips.rows + 1, sizeof *p->rows);
   p->scratch = must_calloc((size_t)blocks + 1, sizeof *p->scratch);
   for (int b = 0; b < blocks; b++)
     open_scratch(p, &p->scratch[b]);
-  find_rest(p, parameters);
+  p->failed = point_law_failed(law);
+  p->dead = must_calloc((size_t)p->strips.rows + 1, sizeof *p->dead);
+  p->first_death = -1;
+  find_rest(p, own, parameters);
+  for_each_cell(p, open_mean);
+  for_each_cell(p, open_hourglass);
   return p;
 }
 
@@ -159,6 +205,7 @@ void point_forces_free(point_forces *p) {
   }
   free(p->scratch);
   free(p->rows);
+  free(p->dead);
   free(p->uniforms);
   cell_strips_close(&p->strips);
   pool_free(p->memory);
@@ -180,7 +227,7 @@ static strip next_strip(const point_forces *p, int row, int first) {
   const cell_strips *s = &p->strips;
   strip out = {row, first, first, s->groups[first].at, 0};
   while (out.last < s->first_group[row + 1]) {
-    const long more = (long)s->groups[out.last].table->points * PL_LANES;
+    const long more = (long)s->groups[out.last].points * PL_LANES;
     if (out.count > 0 && out.count + more > STRIP) break;
     out.count += more;
     out.last++;
@@ -220,17 +267,122 @@ static pl_points view_of(const point_forces *p, const strip *s, point_scratch *o
                      .time_step = at->time_step};
 }
 
+/* Takes the cells' mean dilatation in place of the points' own, of strains xx, yy; and of tractions (a
+   stress times the volume) what is due to it: the transpose. */
+static void take_mean(const point_forces *p, const strip *s, double *xx, double *yy,
+                      bool tractions) {
+  for (int g = s->first; g < s->last; g++) {
+    const cell_group *group = &p->strips.groups[g];
+    const double *taken = p->mean + (long)g * PL_LANES, *part = p->part + group->at;
+    double *x = xx + (group->at - s->at), *y = yy + (group->at - s->at), sum[PL_LANES] = {0};
+    for (int k = 0; k < group->points * PL_LANES; k++)
+      sum[k % PL_LANES] += (tractions ? 1 : part[k]) * (x[k] + y[k]);
+    for (int k = 0; k < group->points * PL_LANES; k++) {
+      const int lane = k % PL_LANES;
+      const double shift =
+          taken[lane] * 0.5 * ((tractions ? part[k] : 1) * sum[lane] - (x[k] + y[k]));
+      x[k] += shift;
+      y[k] += shift;
+    }
+  }
+}
+
+/* dead[PL_LANES] 1 in cells of a group all of whose points have failed by these states, a plane that
+   begins with it. */
+static void find_dead(const cell_group *g, const double *failed, double dead[PL_LANES]) {
+  for (int lane = 0; lane < PL_LANES; lane++)
+    dead[lane] = lane < g->count;
+  for (int k = 0; k < g->points; k++)
+    for (int lane = 0; lane < PL_LANES; lane++)
+      dead[lane] = failed[k * PL_LANES + lane] >= 1 ? dead[lane] : 0;
+}
+
+/* Dead cells strain no more. */
+static void leave_dead(const point_forces *p, const strip *s, double *const strain[STRAINS]) {
+  for (int g = s->first; g < s->last; g++) {
+    const cell_group *group = &p->strips.groups[g];
+    const long to = group->at - s->at;
+    double dead[PL_LANES];
+    find_dead(group, p->old_field + p->failed * (long)p->strips.count + group->at, dead);
+    for (int c = 0; c < STRAINS; c++)
+      for (int k = 0; k < group->points; k++)
+        for (int lane = 0; lane < PL_LANES; lane++) {
+          double *at = strain[c] + to + k * PL_LANES + lane;
+          *at = dead[lane] > 0 ? 0 : *at;
+        }
+  }
+}
+
+static long count_dead(const point_forces *p, const strip *s) {
+  double sum = 0;
+  for (int g = s->first; g < s->last; g++) {
+    const cell_group *group = &p->strips.groups[g];
+    double dead[PL_LANES];
+    find_dead(group, p->new_field + p->failed * (long)p->strips.count + group->at, dead);
+    for (int lane = 0; lane < PL_LANES; lane++)
+      sum += dead[lane];
+  }
+  return (long)sum;
+}
+
 static pl_points motion_of(const point_forces *p, const strip *s, point_scratch *own,
                            const point_motion *at) {
+  const bool rates = p->law->reads_rates || p->loses;
   find_strains(p, s, at->displacement, own->strain);
-  if (p->law->reads_rates || p->loses) find_strains(p, s, at->velocity, own->rate);
+  if (rates) find_strains(p, s, at->velocity, own->rate);
+  if (p->mean) take_mean(p, s, own->strain[0], own->strain[1], false);
+  if (p->mean && rates) take_mean(p, s, own->rate[0], own->rate[1], false);
+  if (p->failed >= 0) leave_dead(p, s, own->strain);
+  if (p->failed >= 0 && rates) leave_dead(p, s, own->rate);
   return view_of(p, s, own, at);
 }
 
-static void push(const point_forces *p, const strip *s, const point_scratch *own,
-                 double *const stress[STRAINS]) {
+/* Groups from g on that are side by side, even and alike; 0: g is not even. */
+static int even_from(const cell_group *groups, int g, int last) {
+  const cell_group *first = &groups[g];
+  int count = 0;
+  for (; g + count < last; count++) {
+    const cell_group *next = &first[count];
+    if (!(next->even > 0) || next->even != first->even || next->table != first->table ||
+        next->first != first->first + count * PL_LANES)
+      break;
+  }
+  return count;
+}
+
+static void push_group(const point_forces *p, int row, const cell_group *g,
+                       const point_scratch *own, const double *const stress[STRAINS]) {
+  const double *volume = p->strips.volume + g->at;
+  const long count = (long)g->points * PL_LANES;
+  for (int c = 0; c < STRAINS; c++) {
+    double *traction = own->traction[c];
+    const double *from = stress[c];
+    INDEPENDENT
+    for (long k = 0; k < count; k++)
+      traction[k] = volume[k] * from[k];
+  }
+  cell_strips_push(&p->strips, row, g, (const double *const *)own->traction, p->pushed);
+}
+
+static void push_even(const point_forces *p, const strip *s, const point_scratch *own,
+                      double *const stress[STRAINS]) {
+  const cell_group *groups = p->strips.groups;
+  for (int g = s->first; g < s->last;) {
+    const long to = groups[g].at - s->at;
+    const double *const here[STRAINS] = {stress[0] + to, stress[1] + to, stress[2] + to};
+    const int even = even_from(groups, g, s->last);
+    if (even > 0)
+      cell_strips_push_even(&p->strips, s->row, &groups[g], even, here, p->pushed);
+    else
+      push_group(p, s->row, &groups[g], own, here);
+    g += even > 0 ? even : 1;
+  }
+}
+
+/* Of elements whose dilatation is the mean. */
+static void push_mean(const point_forces *p, const strip *s, const point_scratch *own,
+                      double *const stress[STRAINS]) {
   const double *volume = p->strips.volume + s->at;
-  double *force[2] = {p->pushed[0] + s->row * p->plane, p->pushed[1] + s->row * p->plane};
   for (int c = 0; c < STRAINS; c++) {
     double *traction = own->traction[c];
     const double *from = stress[c];
@@ -238,12 +390,84 @@ static void push(const point_forces *p, const strip *s, const point_scratch *own
     for (long k = 0; k < s->count; k++)
       traction[k] = volume[k] * from[k];
   }
+  take_mean(p, s, own->traction[0], own->traction[1], true);
   for (int g = s->first; g < s->last; g++) {
     const cell_group *group = &p->strips.groups[g];
     const long to = group->at - s->at;
     const double *traction[STRAINS] = {own->traction[0] + to, own->traction[1] + to,
                                        own->traction[2] + to};
-    cell_strips_push(&p->strips, group, traction, force);
+    cell_strips_push(&p->strips, s->row, group, traction, p->pushed);
+  }
+}
+
+static void push(const point_forces *p, const strip *s, const point_scratch *own,
+                 double *const stress[STRAINS]) {
+  (p->mean ? push_mean : push_even)(p, s, own, stress);
+}
+
+/* gamma . u of the cells of a group along an axis. */
+static void find_hourglass(const point_forces *p, const strip *s, int g, const double *nodes,
+                           double q[PL_LANES]) {
+  const node_layout *l = &p->strips.layout;
+  const double *gamma = p->hourglass + (long)g * HOURGLASS * PL_LANES,
+               *at = nodes + l->origin + s->row * l->stride + p->strips.groups[g].first;
+  for (int lane = 0; lane < PL_LANES; lane++)
+    q[lane] = gamma[lane] * at[lane] + gamma[PL_LANES + lane] * at[1 + lane] +
+              gamma[2 * PL_LANES + lane] * at[l->stride + lane] +
+              gamma[3 * PL_LANES + lane] * at[l->stride + 1 + lane];
+}
+
+/* alive[PL_LANES] 0 in cells of a group that are dead by these states, else 1. */
+static void find_alive(const point_forces *p, int g, const double *fields, double alive[PL_LANES]) {
+  const cell_group *group = &p->strips.groups[g];
+  double dead[PL_LANES] = {0};
+  if (p->failed >= 0)
+    find_dead(group, fields + p->failed * (long)p->strips.count + group->at, dead);
+  for (int lane = 0; lane < PL_LANES; lane++)
+    alive[lane] = 1 - dead[lane];
+}
+
+static void push_hourglass(const point_forces *p, const strip *s, int g, int axis,
+                           const double q[PL_LANES], const double alive[PL_LANES]) {
+  const long stride = p->strips.layout.stride;
+  const double *gamma = p->hourglass + (long)g * HOURGLASS * PL_LANES,
+               *C = gamma + CORNERS * PL_LANES;
+  double *force =
+      cell_strips_row(&p->strips, s->row, p->pushed[axis]) + p->strips.groups[g].first;
+  for (int corner = 0; corner < CORNERS; corner++) {
+    double *to = force + corner / 2 * stride + corner % 2;
+    for (int lane = 0; lane < PL_LANES; lane++)
+      to[lane] += gamma[corner * PL_LANES + lane] * (alive[lane] * C[lane] * q[lane]);
+  }
+}
+
+/* What elements resist their hourglass modes by. Of the point that each of them has, J/m^3: `stored` is
+   added to; and what cells that die in this step had stored so is `lost`, with the term that is due to
+   forces halfway (ledger.h). Either may be NULL. */
+static void resist_hourglass(const point_forces *p, const strip *s, const point_motion *at,
+                             double *lost, double *stored) {
+  for (int g = s->first; g < s->last && p->hourglass; g++) {
+    const double *C = p->hourglass + ((long)g * HOURGLASS + CORNERS) * PL_LANES;
+    const double *volume = p->strips.volume + p->strips.groups[g].at;
+    const long point = p->strips.groups[g].at - s->at;
+    double before[PL_LANES], after[PL_LANES];
+    if (p->strips.groups[g].points > 1) continue;
+    find_alive(p, g, p->old_field, before);
+    find_alive(p, g, p->new_field, after);
+    for (int axis = 0; axis < 2; axis++) {
+      double q[PL_LANES], rate[PL_LANES] = {0};
+      find_hourglass(p, s, g, at->displacement[axis], q);
+      if (lost) find_hourglass(p, s, g, at->velocity[axis], rate);
+      push_hourglass(p, s, g, axis, q, after);
+      for (int lane = 0; lane < PL_LANES && (stored || lost); lane++) {
+        if (!(C[lane] > 0)) continue;
+        const double half = 0.5 * C[lane] * q[lane] / volume[lane];
+        if (stored) stored[point + lane] += after[lane] * half * q[lane];
+        if (lost)
+          lost[point + lane] +=
+              (before[lane] - after[lane]) * half * (q[lane] - at->time_step * rate[lane]);
+      }
+    }
   }
 }
 
@@ -264,7 +488,9 @@ static void step_strip(const point_forces *p, const strip *s, point_scratch *own
   } else {
     p->law->point_step(p->law, p->uniforms, &points);
   }
+  if (p->failed >= 0) p->dead[s->row] += count_dead(p, s);
   push(p, s, own, own->stress);
+  resist_hourglass(p, s, at, p->loses && p->failed >= 0 ? lost[PL_LOST_TO_STATES] : NULL, NULL);
 }
 
 /* --- looking at a state ----------------------------------------------------------------------- */
@@ -354,7 +580,6 @@ static void see_strip(const point_forces *p, const strip *s, point_scratch *own,
       memset(lost[k], 0, (size_t)s->count * sizeof(double));
     points.lost = lost;
     p->law->point_ledger(p->law, p->uniforms, &points);
-    add_losses(p, s, lost, row);
   } else {
     p->law->point_step(p->law, p->uniforms, &points);
   }
@@ -363,6 +588,9 @@ static void see_strip(const point_forces *p, const strip *s, point_scratch *own,
   aim(p, s, p->observed, 1 + p->law->output_count, own->observed);
   points.observed = own->observed;
   p->law->point_observe(p->law, p->uniforms, &points);
+  resist_hourglass(p, s, at, p->loses && p->failed >= 0 ? lost[PL_LOST_TO_STATES] : NULL,
+                   own->observed[0]);
+  if (p->loses) add_losses(p, s, lost, row);
   row->stored += lane_dot(s->count, NULL, own->observed[0], p->strips.volume + s->at);
   p->law->point_tangent(p->law, p->uniforms, &points);
   row->stiffness = stiffest_of(p, s, own, row->stiffness);
@@ -374,9 +602,9 @@ void point_forces_find(point_forces *p, int block, int from, int to, const point
                        bool seen) {
   const int last = to < p->strips.rows ? to : p->strips.rows;
   for (int row = from; row < last; row++) {
-    for (int d = 0; d < 2; d++)
-      memset(p->pushed[d] + row * p->plane, 0, (size_t)p->plane * sizeof(double));
+    cell_strips_clear(&p->strips, row, p->pushed);
     if (seen) p->rows[row] = (point_row){0};
+    if (!seen) p->dead[row] = 0;
     strip s = {.last = p->strips.first_group[row]};
     while (s.last < p->strips.first_group[row + 1]) {
       s = next_strip(p, row, s.last);
@@ -388,29 +616,34 @@ void point_forces_find(point_forces *p, int block, int from, int to, const point
   }
 }
 
-void point_forces_take(const point_forces *p, int row, double *const force[2]) {
-  const cell_strips *s = &p->strips;
-  const node_layout *l = &s->layout;
-  const int from = row - s->high < 0 ? 0 : row - s->high,
-            to = row - s->low > s->rows - 1 ? s->rows - 1 : row - s->low;
-  for (int d = 0; d < 2; d++) {
-    double *out = force[d] + l->origin + row * l->stride;
-    memset(out, 0, (size_t)l->padded * sizeof *out);
-    for (int c = from; c <= to; c++) {
-      const double *in = p->pushed[d] + c * p->plane + (row - c - s->low) * l->stride;
-      INDEPENDENT
-      for (long k = 0; k < l->padded; k++)
-        out[k] += in[k];
-    }
-    for (long k = l->nodes[0]; k < l->padded; k++)
-      out[k] = 0;
-  }
+void point_forces_take(const point_forces *p, int row, bool more, double *const force[2]) {
+  cell_strips_take(&p->strips, row, p->pushed, more, force);
 }
 
-void point_forces_turn(point_forces *p) {
+void point_forces_turn(point_forces *p, double time) {
   double *kept = p->old_field;
   p->old_field = p->new_field;
   p->new_field = kept;
+  for (int row = 0; row < p->strips.rows && p->failed >= 0 && p->first_death < 0; row++)
+    if (p->dead[row] > 0) p->first_death = time;
+}
+
+bool point_forces_dead(const point_forces *p, int cell) {
+  if (p->failed < 0 || !point_forces_has(p, cell)) return false;
+  const long plane = p->failed * (long)p->strips.count;
+  const int count = p->points->first[cell + 1] - p->points->first[cell];
+  for (int k = 0; k < count; k++) {
+    const long at = plane + p->strips.of_cell[cell] + k * PL_LANES;
+    if (!(p->old_field[at] >= 1 || p->new_field[at] >= 1)) return false;
+  }
+  return true;
+}
+
+long point_forces_deaths(const point_forces *p) {
+  long count = 0;
+  for (int cell = 0; cell < mesh_cell_count(p->of) && p->failed >= 0; cell++)
+    count += point_forces_dead(p, cell);
+  return count;
 }
 
 /* --- nodes ------------------------------------------------------------------------------------ */
@@ -418,7 +651,8 @@ void point_forces_turn(point_forces *p) {
 /* Volume of a cell's points, and the integral of a plane over them. */
 static void add_cell(const point_forces *p, const double *plane, int cell, double *volume,
                      double *sum) {
-  const int count = p->points->first[cell + 1] - p->points->first[cell];
+  const int count =
+      point_forces_has(p, cell) ? p->points->first[cell + 1] - p->points->first[cell] : 0;
   for (int k = 0; k < count; k++) {
     const int at = p->strips.of_cell[cell] + k * PL_LANES;
     *volume += p->strips.volume[at];
@@ -427,7 +661,7 @@ static void add_cell(const point_forces *p, const double *plane, int cell, doubl
 }
 
 double point_forces_mean(const point_forces *p, const double *plane, int node) {
-  int cell[4];
+  int cell[MESH_MOST_AROUND];
   const int count = mesh_cells_around(p->of, node, cell);
   double sum = 0, volume = 0;
   for (int n = 0; n < count; n++)
@@ -436,15 +670,15 @@ double point_forces_mean(const point_forces *p, const double *plane, int node) {
 }
 
 static int corners_there(const mesh *m, int cell) {
-  int corner[4], count = 0;
-  mesh_corners(m, cell, corner);
-  for (int k = 0; k < 4; k++)
+  int corner[ELEMENT_MOST_NODES], count = 0;
+  const int nodes = mesh_cell_nodes(m, cell, corner);
+  for (int k = 0; k < nodes; k++)
     count += !m->gone[corner[k]];
   return count;
 }
 
 double point_forces_share(const point_forces *p, const double *plane, int node) {
-  int cell[4];
+  int cell[MESH_MOST_AROUND];
   const int count = mesh_cells_around(p->of, node, cell);
   double share = 0;
   for (int n = 0; n < count; n++) {
@@ -467,38 +701,35 @@ static double size_of(double *const stress[STRESSES], long k) {
 static void take_point(const point_forces *p, const strip *s, const point_scratch *own, long k,
                        point_state *out) {
   const cell_group *g = &p->strips.groups[s->first];
-  cell_group_place(p->of, p->points, s->row, g, (int)(s->at + k), out->at, out->cell);
+  cell_strips_place(&p->strips, p->of, p->points, s->row, g, (int)(s->at + k), out->at, out->cell);
   for (int c = 0; c < STRAINS; c++)
     out->strain[c] = own->strain[c][k];
   for (int c = 0; c < STRESSES; c++)
     out->stress[c] = own->stress[c][k];
+  out->size = p->size[s->at + k];
   for (int f = 0; f < p->law->field_count; f++)
     out->field[f] = own->old_field[f][k];
 }
 
-/* Whether a point may push the node. */
-static bool reaches(const point_forces *p, const cell_group *g, long at, const int node[2]) {
-  const int away = node[0] - g->first - (int)(at % PL_LANES);
-  return at % PL_LANES < g->count && away >= p->strips.low && away <= p->strips.high;
-}
-
-void point_forces_worst(point_forces *p, int node, const point_motion *at, point_state *out) {
-  const int place[2] = {node % p->of->nodes[0], node / p->of->nodes[0]};
+double point_forces_worst(point_forces *p, int node, const point_motion *at, point_state *out) {
+  const int at_row = node / p->of->nodes[0];
   point_scratch *own = &p->scratch[0];
   double most = -1;
-  for (int row = place[1] - p->strips.high; row <= place[1] - p->strips.low; row++) {
+  for (int row = at_row - p->strips.high; row <= at_row - p->strips.low; row++) {
     if (row < 0 || row >= p->strips.rows) continue;
     for (int g = p->strips.first_group[row]; g < p->strips.first_group[row + 1]; g++) {
       const cell_group *group = &p->strips.groups[g];
-      const strip s = {row, g, g + 1, group->at, (long)group->table->points * PL_LANES};
+      const strip s = {row, g, g + 1, group->at, (long)group->points * PL_LANES};
       const pl_points points = motion_of(p, &s, own, at);
       p->law->point_step(p->law, p->uniforms, &points);
       for (long k = 0; k < s.count && isfinite(most); k++) {
         const double here = size_of(own->stress, k);
-        if (!reaches(p, group, k, place) || here <= most) continue;
+        if (!cell_strips_reach(&p->strips, p->of, group, (int)(k % PL_LANES), node) || here <= most)
+          continue;
         most = here;
         take_point(p, &s, own, k, out);
       }
     }
   }
+  return isfinite(most) ? most : NAN;
 }

@@ -5,7 +5,10 @@
    of the law, forces. Rows of cells push nodes of several rows; each has planes of its own for
    that, and these are added in one order. So results do not depend on threads.
 
-   States stand at points, old ones and new ones, and change places after a step. */
+   States stand at points, old ones and new ones, and change places after a step.
+
+   A cell all of whose points have failed is dead: it pushes nothing and strains no more, so that nodes
+   that fly away from it do no harm. Which cells these are the states tell at any time. */
 #ifndef PERILAT_RUNTIME_POINT_FORCES_H
 #define PERILAT_RUNTIME_POINT_FORCES_H
 
@@ -33,24 +36,33 @@ typedef struct point_forces {
   double *lost_now;   /* [PL_LOSSES][strips.count] by the state observed */
   double *observed;   /* [1 + outputs][strips.count] in the state observed: J/m^3, then outputs */
   double *stress;     /* [PL_STRESSES(2)][strips.count] Pa, in the state observed */
-  double *pushed[2];  /* [rows][plane] N */
-  long plane;         /* doubles */
+  double *pushed[2];  /* [cell_strips_pushed] N */
   double *size;       /* [strips.count] m: of the points' cells */
   double scale[3][3]; /* Pa^(-1/2): L^-1 of the tangent at rest, L L^T */
-  point_row *rows;    /* [strips.rows] */
+  double strip;       /* Pa: element_strip_stiffness of that tangent */
+  /* Of element_modes.h; NULL without. Mean dilatation: [groups][PL_LANES] 1 where a cell takes it, and
+     [strips.count] the point's part of its cell. Hourglass modes: [groups][5][PL_LANES] gamma of the
+     corners, and C, N/m. */
+  double *mean, *part, *hourglass;
+  point_row *rows;               /* [strips.rows] */
+  int failed;                    /* the law's field that tells so; -1: points do not fail */
+  long *dead;                    /* [strips.rows] dead cells after the step */
+  double first_death;            /* s: of the first one; negative: all are alive */
   struct point_scratch *scratch; /* [blocks] */
   int blocks;
   long doubles; /* of arrays */
 } point_forces;
 
 /* Tangent at rest (Pa), or how the stress there follows the strain rate (Pa s), xx, yy, xy by xx, yy,
-   xy; of a law that reads the size of a cell that of the cell where its trace is largest. */
-void point_forces_rest(const mesh *m, const pl_law *law, const double *parameters, bool viscous,
-                       double tangent[3][3]);
+   xy; of a law that reads the size of a cell that of the cell where its trace is largest. own[cells]
+   marks cells of the law; NULL: all are. */
+void point_forces_rest(const mesh *m, const unsigned char *own, const pl_law *law,
+                       const double *parameters, bool viscous, double tangent[3][3]);
 
 /* `blocks` threads at most; `ledger`: energies are kept. What is pointed to must outlive it. */
-point_forces *point_forces_new(const mesh *m, const integration_points *p, const pl_law *law,
-                               const double *parameters, int blocks, bool ledger);
+point_forces *point_forces_new(const mesh *m, const unsigned char *own, const integration_points *p,
+                               const pl_law *law, const double *parameters, int blocks,
+                               bool ledger);
 void point_forces_free(point_forces *p);
 
 /* The motion that points see: displacements of the present state and velocities half a step before,
@@ -65,11 +77,20 @@ typedef struct point_motion {
    is how stiff the rows are. */
 void point_forces_find(point_forces *p, int block, int from, int to, const point_motion *at,
                        bool seen);
-/* N: adds up what pushes a row of nodes; force[2]: planes of the layout. */
-void point_forces_take(const point_forces *p, int row, double *const force[2]);
-/* After a step: new states are old ones. */
-void point_forces_turn(point_forces *p);
+/* N: adds up what pushes a row of nodes; force[2]: planes of the layout. `more`: to what is there. */
+void point_forces_take(const point_forces *p, int row, bool more, double *const force[2]);
+/* After a step to that time: new states are old ones. */
+void point_forces_turn(point_forces *p, double time);
 
+/* Whether a cell of the law is dead, by the states after the last step or by those observed since; and
+   how many are. */
+bool point_forces_dead(const point_forces *p, int cell);
+long point_forces_deaths(const point_forces *p);
+
+/* Whether a cell is of this law and has points. */
+static inline bool point_forces_has(const point_forces *p, int cell) {
+  return p->strips.of_cell[cell] >= 0;
+}
 /* Mean of a plane [strips.count] over the points around a node, by their areas; NaN without. */
 double point_forces_mean(const point_forces *p, const double *plane, int node);
 /* The node's part of what the cells around it hold, a plane [strips.count] per m^3: their corners that
@@ -78,13 +99,15 @@ double point_forces_share(const point_forces *p, const double *plane, int node);
 
 /* How a point is. */
 typedef struct point_state {
-  int cell[2];                 /* i, j */
+  int cell[2];                 /* i, j; of a mesh of lists its number and -1 */
   double at[2];                /* m */
   double strain[3], stress[4]; /* Pa */
+  double size;                 /* m: of its cell */
   double *field;               /* [fields] of before the step; the caller's memory */
 } point_state;
-/* Of the points that push a node that with the largest stress, or without a finite one. */
-void point_forces_worst(point_forces *p, int node, const point_motion *at, point_state *out);
+/* Of the points that push a node that with the largest stress, or without a finite one: its square,
+   Pa^2; -1: there is none. */
+double point_forces_worst(point_forces *p, int node, const point_motion *at, point_state *out);
 
 /* B held, shape tables included. */
 long point_forces_bytes(const point_forces *p);

@@ -7,6 +7,13 @@
 
 enum { STRAINS = 3, STRESSES = 4, TANGENTS = STRAINS * STRAINS };
 
+int point_law_failed(const pl_law *law) {
+  const int field = PL_HAS(law, failed_field) ? law->failed_field : -1;
+  return field >= 0 && field < law->field_count && law->fields[field].kind == PL_FIELD_DAMAGE
+             ? field
+             : -1;
+}
+
 struct point_law {
   const pl_law *law;
   double *uniforms;

@@ -5,6 +5,9 @@
 
 #include "runtime/kernel.h"
 
+/* Which of the law's fields is 1 where a point has failed; -1: points do not fail. */
+int point_law_failed(const pl_law *law);
+
 typedef struct point_law point_law;
 
 /* parameters[law->parameter_count], SI. Both must outlive it. */

@@ -6,6 +6,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/continuum/sparse_cholesky.h"
 
 /* LAPACK: factors of a symmetric positive band matrix, and a solution by them. The last argument is
    the hidden text length. */
@@ -63,30 +64,46 @@ static void fill(band *b, int node, int other, void *context) {
     }
 }
 
-static void multiply(const node_stencil *k, const double *const u[2], double *const product[2]) {
-  const node_layout *l = &k->layout;
+/* What is solved: the stiffness of a grid, or of lists. */
+typedef struct stiffness {
+  const node_stencil *stencil; /* or NULL, and */
+  const node_matrix *matrix;
+} stiffness;
+
+static const node_layout *layout_of(const stiffness *k) {
+  return k->matrix ? &k->matrix->layout : &k->stencil->layout;
+}
+
+static int node_count(const stiffness *k) {
+  return layout_of(k)->nodes[0] * layout_of(k)->nodes[1];
+}
+
+static void multiply(const stiffness *k, const double *const u[2], double *const product[2]) {
+  const node_layout *l = layout_of(k);
   pool *memory = pool_new();
   double *in[2], *out[2];
   for (int d = 0; d < 2; d++) {
     in[d] = pool_doubles(memory, l->size);
     out[d] = pool_doubles(memory, l->size);
-    for (int n = 0; n < l->nodes[0] * l->nodes[1]; n++)
+    for (int n = 0; n < node_count(k); n++)
       in[d][node_layout_at(l, n)] = u[d][n];
   }
-  node_stencil_multiply(k, (const double *const *)in, out, 0, l->nodes[1]);
+  if (k->matrix)
+    node_matrix_multiply(k->matrix, (const double *const *)in, out, 0, l->nodes[1]);
+  else
+    node_stencil_multiply(k->stencil, (const double *const *)in, out, 0, l->nodes[1]);
   for (int d = 0; d < 2; d++)
-    for (int n = 0; n < l->nodes[0] * l->nodes[1]; n++)
+    for (int n = 0; n < node_count(k); n++)
       product[d][n] = out[d][node_layout_at(l, n)];
   pool_free(memory);
 }
 
-static void judge(const node_stencil *k, const unsigned char *fixed, const double *const force[2],
+static void judge(const stiffness *k, const unsigned char *fixed, const double *const force[2],
                   double *const u[2], double *const reaction[2], static_result *r) {
-  const int nodes = k->layout.nodes[0] * k->layout.nodes[1];
   double most = 0, off = 0;
   multiply(k, (const double *const *)u, reaction);
   for (int d = 0; d < 2; d++)
-    for (int n = 0; n < nodes; n++) {
+    for (int n = 0; n < node_count(k); n++) {
       r->energy += 0.5 * u[d][n] * reaction[d][n];
       most = pl_max(most, pl_max(fabs(force[d][n]), fabs(reaction[d][n])));
       reaction[d][n] -= force[d][n];
@@ -117,18 +134,16 @@ static bool stays_positive(const band *b, const double *diagonal, static_result 
 }
 
 struct static_factors {
+  stiffness of;
   band b;
+  sparse_cholesky *sparse;     /* in its place, of a matrix */
   unsigned char *held, *fixed; /* [2 nodes]; fixed: held, or alone */
 };
-
-static int node_count(const node_stencil *k) {
-  return k->layout.nodes[0] * k->layout.nodes[1];
-}
 
 static band band_of(const node_stencil *k) {
   const node_layout *l = &k->layout;
   const int narrow = l->nodes[0] < l->nodes[1] ? 0 : 1;
-  band b = {.k = k, .by_columns = narrow == 1, .n = 2 * node_count(k)};
+  band b = {.k = k, .by_columns = narrow == 1, .n = 2 * l->nodes[0] * l->nodes[1]};
   b.bands = 2 * (k->reach * l->nodes[narrow] + k->reach) + 1;
   if (b.bands > b.n - 1) b.bands = b.n - 1;
   b.rows = b.bands + 1;
@@ -136,14 +151,30 @@ static band band_of(const node_stencil *k) {
   return b;
 }
 
+/* None is factorised yet. */
+static static_factors *begin_factors(const stiffness *k, const unsigned char *held) {
+  const size_t freedoms = 2 * (size_t)node_count(k);
+  static_factors *f = must_calloc(1, sizeof *f);
+  f->of = *k;
+  f->held = must_alloc(freedoms);
+  f->fixed = must_alloc(freedoms);
+  memcpy(f->held, held, freedoms);
+  memcpy(f->fixed, held, freedoms);
+  return f;
+}
+
+static static_factors *kept_if(bool good, static_factors *f) {
+  if (good) return f;
+  static_factors_free(f);
+  return NULL;
+}
+
 static_factors *static_factors_new(const node_stencil *k, const unsigned char *held,
                                    static_result *r) {
-  const int nodes = node_count(k);
-  static_factors *f = must_calloc(1, sizeof *f);
+  const stiffness of = {.stencil = k};
+  const int nodes = node_count(&of);
+  static_factors *f = begin_factors(&of, held);
   f->b = band_of(k);
-  f->held = must_alloc(2 * (size_t)nodes);
-  f->fixed = must_alloc(2 * (size_t)nodes);
-  memcpy(f->held, held, 2 * (size_t)nodes);
   double *diagonal = must_calloc((size_t)f->b.n, sizeof *diagonal);
   for (int n = 0; n < 2 * nodes; n++)
     f->fixed[n] = held[n] || is_alone(k, n / 2);
@@ -157,37 +188,62 @@ static_factors *static_factors_new(const node_stencil *k, const unsigned char *h
   *r = (static_result){.solved = false};
   r->solved = factor(&f->b, r) && stays_positive(&f->b, diagonal, r);
   free(diagonal);
-  if (r->solved) return f;
-  static_factors_free(f);
-  return NULL;
+  return kept_if(r->solved, f);
+}
+
+static_factors *static_factors_of_matrix(const node_matrix *k, const unsigned char *held,
+                                         static_result *r) {
+  const stiffness of = {.matrix = k};
+  static_factors *f = begin_factors(&of, held);
+  long loose = -1;
+  for (int n = 2 * k->nodes; n < 2 * node_count(&of); n++)
+    f->fixed[n] = 1;
+  f->sparse = sparse_cholesky_new(k, f->fixed, &loose);
+  *r = (static_result){.solved = f->sparse != NULL};
+  if (loose >= 0) {
+    r->loose = (int)(loose / 2);
+    r->loose_axis = (int)(loose % 2);
+  }
+  return kept_if(r->solved, f);
 }
 
 void static_factors_free(static_factors *f) {
   if (!f) return;
+  sparse_cholesky_free(f->sparse);
   free(f->b.matrix);
   free(f->held);
   free(f->fixed);
   free(f);
 }
 
+/* Where a freedom stands among the unknowns. */
+static int unknown(const static_factors *f, int n) {
+  return f->sparse ? n : freedom(&f->b, n / 2, n % 2);
+}
+
+static bool solve(const static_factors *f, double *right) {
+  const band *b = &f->b;
+  const int one = 1;
+  int info = 0;
+  if (f->sparse) return sparse_cholesky_solve(f->sparse, right);
+  dpbtrs_("L", &b->n, &b->bands, &one, b->matrix, &b->rows, right, &b->n, &info, 1);
+  return info == 0;
+}
+
 static_result static_factors_solve(const static_factors *f, const double *const force[2],
                                    double *const u[2], double *const reaction[2]) {
-  const band *b = &f->b;
-  const int nodes = node_count(b->k), one = 1;
+  const int freedoms = 2 * node_count(&f->of);
   static_result r = {.solved = false};
-  int info = 0;
-  double *right = must_calloc((size_t)b->n, sizeof *right);
-  for (int n = 0; n < 2 * nodes; n++)
+  double *right = must_calloc((size_t)freedoms, sizeof *right);
+  for (int n = 0; n < freedoms; n++)
     if (!f->held[n]) u[n % 2][n / 2] = 0;
-  multiply(b->k, (const double *const *)u, reaction); /* by what is prescribed */
-  for (int n = 0; n < 2 * nodes; n++)
-    if (!f->fixed[n])
-      right[freedom(b, n / 2, n % 2)] = force[n % 2][n / 2] - reaction[n % 2][n / 2];
-  dpbtrs_("L", &b->n, &b->bands, &one, b->matrix, &b->rows, right, &b->n, &info, 1);
-  r.solved = info == 0;
-  for (int n = 0; n < 2 * nodes; n++)
-    if (!f->fixed[n]) u[n % 2][n / 2] = right[freedom(b, n / 2, n % 2)];
-  judge(b->k, f->fixed, force, u, reaction, &r);
+  multiply(&f->of, (const double *const *)u, reaction); /* by what is prescribed */
+  for (int n = 0; n < freedoms; n++)
+    if (!f->fixed[n]) right[unknown(f, n)] = force[n % 2][n / 2] - reaction[n % 2][n / 2];
+  r.solved = solve(f, right);
+  for (int n = 0; n < freedoms; n++)
+    if (!f->fixed[n]) u[n % 2][n / 2] = right[unknown(f, n)];
+  judge(&f->of, f->fixed, force, u, reaction, &r);
   free(right);
   return r;
 }

@@ -1,9 +1,9 @@
 /* Displacements at rest under given forces: K u = F with some of them prescribed, by Cholesky's
-   factors of the banded matrix (LAPACK). */
+   factors of the banded matrix (LAPACK), or of a sparse one (CHOLMOD). */
 #ifndef PERILAT_RUNTIME_STATIC_SOLUTION_H
 #define PERILAT_RUNTIME_STATIC_SOLUTION_H
 
-#include "runtime/continuum/node_stencil.h"
+#include "runtime/continuum/node_matrix.h"
 
 typedef struct static_result {
   bool solved;     /* false: the matrix is not positive: something can move without force */
@@ -18,6 +18,8 @@ typedef struct static_result {
 typedef struct static_factors static_factors;
 static_factors *static_factors_new(const node_stencil *k, const unsigned char *held,
                                    static_result *r);
+static_factors *static_factors_of_matrix(const node_matrix *k, const unsigned char *held,
+                                         static_result *r);
 void static_factors_free(static_factors *f);
 /* As static_solution. */
 static_result static_factors_solve(const static_factors *f, const double *const force[2],

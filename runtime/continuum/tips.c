@@ -136,7 +136,7 @@ static void warn_of_nodes(const deck_crack *c, const mesh *m, diagnostics *d) {
     }
 }
 
-static tip_box box_of(const tips *t, const mesh_tip *p) {
+tip_box tips_box(const tips *t, const mesh_tip *p) {
   const box_weight weight = t->options->integral == TIPS_PYRAMID ? WEIGHT_PYRAMID : WEIGHT_PLATEAU;
   return tip_box_of(p->now.at, p->now.angle, t->half_size, p->now.last, !p->now.grown, weight);
 }
@@ -184,7 +184,7 @@ static void warn_of_short_leg(const mesh_tip *p, const tip_box *b, const mesh *m
 
 /* Beyond the edge of the mesh and in holes there is nothing to integrate. */
 static void warn_of_box(const tips *t, const mesh_tip *p, const mesh *m, diagnostics *d) {
-  const tip_box b = box_of(t, p);
+  const tip_box b = tips_box(t, p);
   if (t->options->points == 0) warn_of_short_leg(p, &b, m, d);
   const bool leaves = leaves_mesh(&b, p, m);
   if (!leaves && !meets_hole(&b, m)) return;
@@ -418,7 +418,7 @@ static tip_point fields_at(const tips *t, const body *w, const node_stencil *k, 
       p.acceleration[d] += s.n[q] * t->acceleration[d][s.node[q]];
     }
   const double e[3] = {p.gradient[0][0], p.gradient[1][1], p.gradient[0][1] + p.gradient[1][0]};
-  const plane_stiffness *law = &k->laws[k->law_of_cell ? k->law_of_cell[cell] : 0];
+  const plane_stiffness *law = node_stencil_law(k, cell);
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++)
       p.stress[a] += law->D[a][b] * e[b];
@@ -448,6 +448,7 @@ static int points_of_mesh(tips *t, const body *w, const node_stencil *k, const t
   for (int j = first[1]; j <= last[1]; j++)
     for (int i = first[0]; i <= last[0]; i++) {
       const int cell = mesh_cell_at(m, i, j);
+      if (!node_stencil_law(k, cell)) continue;
       for (int n = k->points->first[cell]; n < k->points->first[cell + 1]; n++) {
         const double *at = k->points->at[n];
         if (tip_box_weight(b, at, slope) == 0) continue;
@@ -457,7 +458,8 @@ static int points_of_mesh(tips *t, const body *w, const node_stencil *k, const t
   return count;
 }
 
-/* Own points of the box: cells of 2 x 2 in each quadrant. Those outside the mesh are left out. */
+/* Own points of the box: cells of 2 x 2 in each quadrant. Those outside the mesh are left out, and so
+   are those in cells of laws that are not linear. */
 static int points_of_box(tips *t, const body *w, const node_stencil *k, const tip_box *b) {
   const int cells = t->options->points;
   const double c = pl_cos(b->angle), s = pl_sin(b->angle), gauss = 1 / sqrt(3.0);
@@ -471,7 +473,9 @@ static int points_of_box(tips *t, const body *w, const node_stencil *k, const ti
                    y = side[1] * (j / 2 + 0.5 * (1 + (j % 2 ? gauss : -gauss))) / cells;
       const double at[2] = {b->at[0] + c * x - s * y, b->at[1] + s * x + c * y};
       const int cell = mesh_cell_of(k->of, at);
-      if (cell < 0 || k->of->cell[cell] == CELL_ABSENT || holes_hold(&k->of->holes, at)) continue;
+      if (cell < 0 || k->of->cell[cell] == CELL_ABSENT || !node_stencil_law(k, cell) ||
+          holes_hold(&k->of->holes, at))
+        continue;
       const double area = fabs(side[0] * side[1]) / (4.0 * cells * cells);
       note(t, count++, fields_at(t, w, k, at, area, cell));
     }
@@ -479,7 +483,7 @@ static int points_of_box(tips *t, const body *w, const node_stencil *k, const ti
 }
 
 static void look_at(tips *t, mesh_tip *p, const body *w, const node_stencil *k) {
-  const tip_box b = box_of(t, p);
+  const tip_box b = tips_box(t, p);
   const int count =
       t->options->points > 0 ? points_of_box(t, w, k, &b) : points_of_mesh(t, w, k, &b);
   tip_intensity(&t->medium, &b, t->points, count, p->now.speed, p->now.K);
@@ -544,9 +548,29 @@ static void ask_law(const tips *t, mesh_tip *p, double *said) {
   free(field);
 }
 
-/* A grown tip near the edge of the mesh or a hole keeps its direction: the box around it is cut. */
-static bool is_near_edge(const tips *t, const mesh_tip *p, const mesh *m) {
-  bool near = holes_near(&m->holes, p->now.at, t->half_size);
+/* The square around a tip holds a cell of another law. */
+static bool is_near_law(const tips *t, const mesh_tip *p, const node_stencil *k) {
+  const mesh *m = k->of;
+  int first[2], last[2];
+  for (int a = 0; a < 2 && k->law_of_cell; a++) {
+    first[a] = (int)floor((p->now.at[a] - t->half_size - m->corner[a]) / m->spacing[a]);
+    last[a] = (int)floor((p->now.at[a] + t->half_size - m->corner[a]) / m->spacing[a]);
+    if (first[a] < 0) first[a] = 0;
+    if (last[a] > m->nodes[a] - 2) last[a] = m->nodes[a] - 2;
+  }
+  for (int j = first[1]; k->law_of_cell && j <= last[1]; j++)
+    for (int i = first[0]; i <= last[0]; i++)
+      if (m->cell[mesh_cell_at(m, i, j)] != CELL_ABSENT &&
+          k->law_of_cell[mesh_cell_at(m, i, j)] != t->law)
+        return true;
+  return false;
+}
+
+/* A grown tip near the edge of the mesh, a hole or another law keeps its direction: the box around it
+   is cut. */
+static bool is_near_edge(const tips *t, const mesh_tip *p, const node_stencil *k) {
+  const mesh *m = k->of;
+  bool near = holes_near(&m->holes, p->now.at, t->half_size) || is_near_law(t, p, k);
   for (int a = 0; a < 2; a++)
     near = near || p->now.at[a] - m->corner[a] < t->half_size ||
            mesh_at(m, a, m->nodes[a] - 1) - p->now.at[a] < t->half_size;
@@ -554,7 +578,7 @@ static bool is_near_edge(const tips *t, const mesh_tip *p, const mesh *m) {
 }
 
 /* Arrest, or growth at the law's speed; a new leg where the crack may turn. */
-static void decide(tips *t, mesh_tip *p, const mesh *m) {
+static void decide(tips *t, mesh_tip *p, const node_stencil *k) {
   double said[PL_TIP_RESULTS];
   ask_law(t, p, said);
   if (!(said[PL_TIP_GROW] > 0)) {
@@ -563,7 +587,7 @@ static void decide(tips *t, mesh_tip *p, const mesh *m) {
   }
   const bool may_turn = p->now.segments == 0 || p->now.last >= t->segment;
   p->now.speed = said[PL_TIP_RUN];
-  if (!may_turn || is_near_edge(t, p, m)) return;
+  if (!may_turn || is_near_edge(t, p, k)) return;
   p->now.angle += said[PL_TIP_TOWARD];
   p->now.last = 0;
   p->now.segments++;
@@ -612,6 +636,7 @@ const char *const tip_end_words[TIP_ENDS] = {
     [TIP_HAS_MET] = "has met another crack",
     [TIP_AT_HOLE] = "has run into a hole",
     [TIP_AT_ELEMENTS] = "has come to finite elements, which do not see it",
+    [TIP_AT_LAW] = "has come to another material",
     [TIP_HAS_TOO_MANY] = "has grown by more pieces than can be kept",
 };
 
@@ -667,6 +692,10 @@ static void advance(tips *t, mesh_tip *p, const body *w, mesh *m, node_stencil *
     finish(t, p, w, TIP_AT_ELEMENTS);
     return;
   }
+  if (cell >= 0 && k->law_of_cell && k->law_of_cell[cell] != t->law) {
+    finish(t, p, w, TIP_AT_LAW);
+    return;
+  }
   if (t->pieces.count == TIPS_MOST_PIECES) {
     finish(t, p, w, TIP_HAS_TOO_MANY);
     return;
@@ -714,15 +743,14 @@ static void grow(tips *t, const body *w, mesh *m, node_stencil *k) {
   pool_free(memory);
 }
 
-static void look(tips *t, const body *w, double *const last_resistance[2], const mesh *m,
-                 const node_stencil *k) {
+static void look(tips *t, const body *w, double *const last_resistance[2], const node_stencil *k) {
   find_motion(t, w, last_resistance, k);
   for (int n = 0; n < t->count; n++) {
     mesh_tip *p = &t->items[n];
     if (p->now.done) continue;
     look_at(t, p, w, k);
     note_overlap(t, p, w);
-    if (p->law) decide(t, p, m);
+    if (p->law) decide(t, p, k);
     if (p->now.speed > 0 && p->now.begun_time == 0)
       p->now.begun_time = (double)t->step * w->time_step;
   }
@@ -732,7 +760,7 @@ void tips_after(tips *t, const body *w, double *const last_resistance[2], mesh *
                 node_stencil *k) {
   if (t->step > 0 && t->step % t->update_steps == 0 && some_grows(t)) grow(t, w, m, k);
   t->step++;
-  if (is_time(t, t->step)) look(t, w, last_resistance, m, k);
+  if (is_time(t, t->step)) look(t, w, last_resistance, k);
 }
 
 void tips_at_rest(tips *t, const body *w, const node_stencil *k) {

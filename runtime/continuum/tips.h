@@ -38,6 +38,7 @@ typedef enum tip_end {
   TIP_HAS_MET,
   TIP_AT_HOLE,
   TIP_AT_ELEMENTS,
+  TIP_AT_LAW,
   TIP_HAS_TOO_MANY,
   TIP_ENDS
 } tip_end;
@@ -90,6 +91,7 @@ typedef struct tips {
   mesh_tip *items;
   int count;
   crack_medium medium;
+  int law; /* of the mesh's: that of the cells around the tips (tip_laws.h) */
   const deck_tips *options;
   double half_size;                        /* m */
   int64_t check_steps, update_steps, step; /* between looks and advances; done */
@@ -112,6 +114,8 @@ typedef struct tips {
    cracks; none without tips. False after a diagnostic. */
 bool tips_new(const deck *k, const char *name, mesh *m, tips **out, diagnostics *d);
 void tips_free(tips *t);
+/* What the interaction integral of a tip is over. */
+tip_box tips_box(const tips *t, const mesh_tip *p);
 /* The law around the tips, once it is known, those of the deck's cracks, and the step. */
 void tips_take(tips *t, const deck *k, const plane_stiffness *law, double density,
                const tip_law *cracks, double time_step);

@@ -61,6 +61,17 @@ bool deck_mesh_known(deck_reader *r, const deck_item *item, const char *name) {
   return mesh_is_known(r, deck_where(item, "mesh"), name);
 }
 
+void deck_refuse_of_file(deck_reader *r, const deck_item *item, const char *mesh,
+                         const char *what) {
+  const int lattice = mesh ? deck_find_lattice(r->k, mesh) : -1;
+  if (lattice < 0 || !r->k->lattices[lattice].gmsh) return;
+  diag_report(r->d, DIAG_CONFLICT, deck_where(item, "mesh"),
+              "`%s` is the mesh of a file, in which there are no %s", deck_shown(r->memory, mesh),
+              what);
+  diag_hint(r->d, "what the body has is drawn in Gmsh; zones, holes and cracks are those of a "
+                  "rectangle (`corner`, `size`)");
+}
+
 bool deck_region_known(deck_reader *r, span where, const char *name) {
   return region_is_known(r, where, name);
 }

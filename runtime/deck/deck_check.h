@@ -27,6 +27,8 @@ bool deck_lattice_known_at(deck_reader *r, span where, const char *name);
 bool deck_bar_known(deck_reader *r, const deck_item *item, const char *name);
 bool deck_link_known(deck_reader *r, const deck_item *item, const char *name);
 bool deck_mesh_known(deck_reader *r, const deck_item *item, const char *name);
+/* Zones, holes, cracks: what the mesh of a file does not have. */
+void deck_refuse_of_file(deck_reader *r, const deck_item *item, const char *mesh, const char *what);
 bool deck_region_known(deck_reader *r, span where, const char *name);
 bool deck_item_region_known(deck_reader *r, const deck_item *item, const char *name);
 bool deck_monitor_known(deck_reader *r, span where, const char *name);

@@ -392,7 +392,7 @@ static void check_regional_materials(deck_reader *r) {
   }
 }
 
-/* The material of the lattice whose region `m` is for; -1: nothing fits. */
+/* The material of the lattice or mesh whose region `m` is for, with its law; -1: nothing fits. */
 static int lattice_material(const deck *k, const deck_material *m) {
   const int region = m->region ? deck_find_region(k, m->region) : -1;
   const int whole = region < 0 || !m->lattice ? -1 : deck_find_material(k, m->lattice);
@@ -425,9 +425,10 @@ static void link_regional(arena *a, deck *k) {
     const int whole = lattice_material(k, &k->materials[i]);
     if (whole < 0) continue;
     deck_material *of = material_read(k, whole);
+    inherit_density(material_read(k, i), of);
+    if (of->mesh) continue; /* there it is a law beside, with values of its own */
     of->regional = arena_room(a, of->regional, of->regional_count, sizeof *of->regional);
     of->regional[of->regional_count++] = &k->materials[i];
-    inherit_density(material_read(k, i), of);
   }
 }
 
@@ -436,11 +437,13 @@ static bool is_region_of(const deck *k, const char *name, const char *lattice) {
   return region >= 0 && deck_same_name(k->regions[region].lattice, lattice);
 }
 
-/* A law of its own in a part of the lattice; what is wrong has been said. */
+/* A law of its own in a part of the lattice, of a mesh also its law with other values; what is wrong
+   has been said. */
 static bool is_law_beside(const deck *k, int material, const char *lattice) {
   const deck_material *m = &k->materials[material];
   if (!deck_same_name(m->lattice, lattice) || !m->model) return false;
-  if (m->region) return is_region_of(k, m->region, lattice) && lattice_material(k, m) < 0;
+  if (m->region)
+    return is_region_of(k, m->region, lattice) && (m->mesh || lattice_material(k, m) < 0);
   return is_region_of(k, m->between[0], lattice) && is_region_of(k, m->between[1], lattice);
 }
 

@@ -299,8 +299,9 @@ static const deck_key_info material_keys[] = {
      .type = DECK_NAME,
      .fallback = "= the whole lattice",
      DECK_AT(material, region),
-     .doc = "other values of parameters, or another law, in a part of the lattice, which has a "
-            "material without `region`, too"},
+     .doc =
+         "other values of parameters, or another law, in a part of the lattice or the mesh, which "
+         "has a material without `region`, too"},
     {.name = "between",
      .type = DECK_NAMES,
      DECK_AT(material, between),
@@ -387,8 +388,9 @@ static bool take_lattice(deck_reader *r, const namelist_group *from, deck_materi
   if (item->lattice) return deck_lattice_known(r, &item->item, item->lattice);
   if (!of) {
     diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&material` has no `lattice`");
-    diag_hint(r->d, "lattice: name of the lattice; of a bar's material `bar`, of a link's `link`, of a "
-                   "mesh's `mesh`");
+    diag_hint(r->d,
+              "lattice: name of the lattice; of a bar's material `bar`, of a link's `link`, of a "
+              "mesh's `mesh`");
     return false;
   }
   item->lattice = of;
@@ -413,10 +415,11 @@ static void check_material(deck_reader *r, const namelist_group *from, void *int
 }
 
 DECK_LIST(
-    material, .identity = "lattice", .parts = {"bar", "link", "mesh", "region", "between"}, .open = true,
-    .check = check_material,
+    material, .identity = "lattice", .parts = {"bar", "link", "mesh", "region", "between"},
+    .open = true, .check = check_material,
     .doc =
-        "The law of a lattice's, a bar's or a link's bonds or of a mesh, or its parameters in a region. Every "
+        "The law of a lattice's, a bar's or a link's bonds or of a mesh, or its parameters in a "
+        "region. Every "
         "other key "
         "sets a "
         "parameter or an option of the law, e.g. `E = '30 GPa'`, or by place `E = '30 [GPa]*(1 + "

@@ -9,12 +9,27 @@
 #include "runtime/deck/group_lattice.h"
 #include "runtime/deck/group_monitor.h"
 #include "runtime/deck/lattice_kind.h"
+#include "runtime/geometry/gmsh_mesh.h"
 #include "runtime/geometry/quadrilateral.h"
+#include "runtime/kernel.h"
 
 /* --- the mesh --------------------------------------------------------------------------------- */
 
 static const deck_key_info mesh_keys[] = {
     {.name = "name", .type = DECK_NAME, .required = true, DECK_AT(mesh, name), .doc = "its name"},
+    {.name = "file",
+     .type = DECK_NAME,
+     .fallback = "= a rectangle",
+     DECK_AT(mesh, file),
+     .doc =
+         "in place of `size` or `corners`: a mesh of Gmsh (`.msh`, version 4, ASCII), beside the "
+         "deck; its physical groups are regions"},
+    {.name = "unit",
+     .type = DECK_WORD,
+     .choices = "m|cm|mm|um|km|in|ft",
+     .fallback = "'m'",
+     DECK_AT(mesh, unit),
+     .doc = "of places in the `file`"},
     {.name = "corner",
      .type = DECK_PLACE,
      .unit = "m",
@@ -25,7 +40,7 @@ static const deck_key_info mesh_keys[] = {
      .type = DECK_PLACE,
      .unit = "m",
      .bound = BOUND_POSITIVE,
-     .fallback = "= required, or `corners`",
+     .fallback = "= required, or `corners` or `file`",
      DECK_AT(mesh, size),
      .doc = "extent of the rectangle along x and y"},
     {.name = "corners",
@@ -42,7 +57,7 @@ static const deck_key_info mesh_keys[] = {
      .type = DECK_PAIR,
      .unit = "1",
      .bound = BOUND_POSITIVE,
-     .required = true,
+     .fallback = "= required without a `file`",
      DECK_AT(mesh, nodes),
      .doc = "how many nodes there are along x and along y, those at the ends included"},
     {.name = "thickness",
@@ -61,7 +76,7 @@ static const deck_key_info mesh_keys[] = {
     {.name = "method",
      .type = DECK_CHOICE,
      .choices = "element_free|finite_elements",
-     .required = true,
+     .fallback = "= required; with a `file` finite elements",
      DECK_AT(mesh, method),
      .doc = "element-free Galerkin (moving least squares), or bilinear finite elements; a `&zone` "
             "has the other one"},
@@ -84,6 +99,23 @@ static const deck_key_info mesh_keys[] = {
      .most = 8,
      DECK_AT(mesh, parts),
      .doc = "element-free: equal parts of a cell along either axis, each with its own points"},
+    {.name = "dilatation",
+     .type = DECK_CHOICE,
+     .choices = "point|mean",
+     .fallback = "'point'",
+     DECK_AT(mesh, dilatation),
+     .doc =
+         "of finite elements with 2 x 2 points in plane strain: each point has its own change of "
+         "volume, or all that of the cell in the mean, so that nothing locks where volumes hardly "
+         "change"},
+    {.name = "hourglass",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_NOT_NEGATIVE,
+     .fallback = "0",
+     DECK_AT(mesh, hourglass),
+     .doc = "of finite elements with one point: how stiffly they resist motions that do not strain "
+            "it, in parts of their largest stiffness, such as 0.05"},
     {.name = "basis",
      .type = DECK_WORD,
      .choices = "linear|enriched",
@@ -208,6 +240,156 @@ static bool has_extent(deck_reader *r, const namelist_group *from, deck_mesh *it
   return false;
 }
 
+/* --- elements --------------------------------------------------------------------------------- */
+
+/* What is wrong with a choice of elements, and how to mend it; NULL: nothing. */
+static const char *wrong_dilatation(const deck_elements *e, const char **mend) {
+  *mend = "leave it out here, and give it in a `&zone` of finite elements";
+  if (e->method != MESH_FINITE_ELEMENTS) return "`dilatation` is of finite elements";
+  *mend = "leave it out, or gauss = 2";
+  if (e->gauss != 2) return "an element with one point has one dilatation anyhow";
+  *mend = "leave it out, or setting = 'plane_strain' of the mesh";
+  if (!e->setting || strcmp(e->setting, "plane_strain") != 0)
+    return "in plane stress the thickness gives way, so that nothing locks: `dilatation = 'mean'` "
+           "is "
+           "for plane strain";
+  return NULL;
+}
+
+static const char *wrong_hourglass(const deck_elements *e, const char **mend) {
+  *mend = "leave it out here, and give it in a `&zone` of finite elements with gauss = 1";
+  if (e->method != MESH_FINITE_ELEMENTS) return "`hourglass` is of finite elements";
+  *mend = "leave it out, or gauss = 1";
+  if (e->gauss != 1) return "elements with 2 x 2 points have no hourglass modes";
+  *mend = "0.05 is usual, and 0 leaves these motions alone";
+  if (e->hourglass > 1) return "`hourglass` is a part of the element's stiffness, 0 to 1";
+  return NULL;
+}
+
+void deck_check_elements(deck_reader *r, const namelist_group *from, const deck_item *item,
+                         const deck_elements *e) {
+  const char *mend, *why = NULL;
+  if (e->dilatation == DILATATION_MEAN) why = wrong_dilatation(e, &mend);
+  if (why) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(item, "dilatation"), "%s", why);
+    diag_hint(r->d, "%s", mend);
+  }
+  why = namelist_find(from, "hourglass") && e->hourglass > 0 ? wrong_hourglass(e, &mend) : NULL;
+  if (!why) return;
+  diag_report(r->d, DIAG_CONFLICT, deck_where(item, "hourglass"), "%s", why);
+  diag_hint(r->d, "%s", mend);
+}
+
+static void check_elements_of(deck_reader *r, const namelist_group *from, const deck_mesh *item) {
+  deck_check_elements(r, from, &item->item,
+                      &(deck_elements){item->method, item->gauss, item->dilatation, item->hourglass,
+                                       item->setting});
+}
+
+/* --- of a file -------------------------------------------------------------------------------- */
+
+/* A mesh of a file has what stands there, and finite elements. */
+static void refuse_keys_of_grids(deck_reader *r, const namelist_group *from,
+                                 const deck_mesh *item) {
+  static const char *const others[] = {"corner",          "size",     "corners", "nodes",
+                                       "support",         "parts",    "basis",   "ramp",
+                                       "enriched_radius", "hourglass"};
+  for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+    deck_refuse_both(r, from, "file", others[k]);
+  if (!namelist_find(from, "method") || item->method == MESH_FINITE_ELEMENTS) return;
+  diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "method"),
+              "element-free nodes stand on a rectangle: the mesh of a `file` is one of finite "
+              "elements");
+  diag_hint(r->d, "leave `method` away");
+}
+
+static double unit_of(const char *name) {
+  static const struct {
+    const char *name;
+    double size; /* m */
+  } units[] = {{"m", 1},    {"cm", 1e-2},   {"mm", 1e-3},  {"um", 1e-6},
+               {"km", 1e3}, {"in", 0.0254}, {"ft", 0.3048}};
+  size_t k = 0;
+  while (strcmp(units[k].name, name) != 0)
+    k++;
+  return units[k].size;
+}
+
+/* The smallest rectangle around nodes; all of them where `list` is NULL. */
+static void find_box(const gmsh_mesh *m, const int32_t *list, int count, double corner[3],
+                     double size[3]) {
+  double upper[2] = {-INFINITY, -INFINITY};
+  corner[0] = corner[1] = INFINITY;
+  for (int k = 0; k < count; k++)
+    for (int a = 0; a < 2; a++) {
+      const double x = m->at[list ? list[k] : k][a];
+      corner[a] = pl_min(corner[a], x);
+      upper[a] = pl_max(upper[a], x);
+    }
+  for (int a = 0; a < 2; a++)
+    size[a] = upper[a] - corner[a];
+}
+
+/* A group that holds nodes is a region. */
+static void add_region(deck_reader *r, const deck_mesh *of, const gmsh_group *g) {
+  deck *k = r->k;
+  const int first = deck_find_region(k, g->name);
+  deck_region region = {
+      .item = {.where = g->where},
+      .name = g->name,
+      .lattice = of->name,
+      .shape = {.kind = SHAPE_RECTANGLE, .members = g->nodes, .member_count = g->node_count},
+      .group = g};
+  deck_check_name(r, "region", g->name, &region.item, first < 0 ? NULL : &k->regions[first].item);
+  find_box(of->gmsh, g->nodes, g->node_count, region.shape.corner, region.shape.size);
+  deck_region *all = arena_alloc(r->memory, ((size_t)k->region_count + 1) * sizeof *all);
+  if (k->region_count > 0) memcpy(all, k->regions, (size_t)k->region_count * sizeof *all);
+  all[k->region_count] = region;
+  k->regions = all;
+  k->region_count++;
+}
+
+/* Nodes in rows about as long as there are rows, of whole vectors. */
+static void lay_out(deck_mesh *item) {
+  const int count = item->gmsh->node_count;
+  const double lanes = PL_LANES;
+  item->nodes[0] = lanes * ceil(sqrt(count) / lanes);
+  item->nodes[1] = pl_max(2, ceil(count / item->nodes[0]));
+}
+
+static void take_file(deck_reader *r, const namelist_group *from, deck_mesh *item) {
+  const int errors = r->d->errors;
+  refuse_keys_of_grids(r, from, item);
+  item->method = MESH_FINITE_ELEMENTS;
+  item->support = 1;
+  check_gauss(r, from, item);
+  check_elements_of(r, from, item);
+  if (r->d->errors > errors) return;
+  item->gmsh = gmsh_mesh_read(r->memory, deck_file_path(r->k->name, item->file),
+                              unit_of(item->unit), deck_where(&item->item, "file"), r->d);
+  if (!item->gmsh) return;
+  find_box(item->gmsh, NULL, item->gmsh->node_count, item->corner, item->size);
+  item->spacing = item->gmsh->least;
+  item->origin[0] = item->corner[0];
+  item->origin[1] = item->corner[1];
+  lay_out(item);
+  for (int k = 0; k < item->gmsh->group_count; k++)
+    if (item->gmsh->groups[k].node_count > 0) add_region(r, item, &item->gmsh->groups[k]);
+}
+
+/* What a rectangle needs. */
+static void check_required(deck_reader *r, const namelist_group *from) {
+  static const char *const needed[] = {"nodes", "method"};
+  for (int k = 0; k < 2; k++) {
+    if (namelist_find(from, needed[k])) continue;
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&mesh` has no `%s`", needed[k]);
+    diag_hint(r->d,
+              k ? "method = 'finite_elements', or 'element_free'"
+                : "nodes: how many there are along x and along y, those at the ends included; "
+                  "or a `file`");
+  }
+}
+
 /* Without tips nothing is enriched: a radius alone would do nothing. */
 static void check_basis(deck_reader *r, const namelist_group *from, deck_mesh *item) {
   const namelist_key *basis = namelist_find(from, "basis");
@@ -232,8 +414,21 @@ static void check_mesh(deck_reader *r, const namelist_group *from, void *into) {
   item->smooth = ramp && ramp->values[0].text && ramp->values[0].text[0] == 's';
   deck_check_lattice_name(r, item);
   deck_check_places(r, from, &deck_group_mesh, 2);
+  if (item->file) {
+    item->rich = 0;
+    take_file(r, from, item);
+    return;
+  }
+  if (namelist_find(from, "unit")) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "unit"),
+                "`unit` is that of places in a `file`, which is not given");
+    diag_hint(r->d, "other values of a deck have their own units: size = '100 mm', '20 mm'");
+  }
+  check_required(r, from);
+  if (!namelist_find(from, "nodes")) return;
   check_gauss(r, from, item);
   check_basis(r, from, item);
+  check_elements_of(r, from, item);
   if (!has_extent(r, from, item) || !has_nodes(r, item) || !has_support(r, item)) return;
   item->spacing = spacing_of(item);
   item->origin[0] = item->corner[0];
@@ -241,7 +436,8 @@ static void check_mesh(deck_reader *r, const namelist_group *from, void *into) {
 }
 
 DECK_MORE(mesh, lattice, .identity = "name", .begin = begin_mesh, .check = check_mesh,
-          .doc = "A rectangle of nodes and cells, whose law is one of a continuum. It needs no "
+          .doc = "Nodes and cells of a rectangle, or of a file, whose law is one of a continuum. "
+                 "It needs no "
                  "`&body`; everywhere else it is named as a lattice is, and its nodes are the "
                  "particles.");
 
@@ -318,6 +514,7 @@ static void check_crack(deck_reader *r, const namelist_group *from, void *into) 
   deck_crack *item = into;
   check_crack_name(r, item);
   deck_mesh_known(r, &item->item, item->mesh);
+  deck_refuse_of_file(r, &item->item, item->mesh, "cracks");
   if (item->point_count > 0) has_points(r, item);
   item->material = (deck_material){
       .item = item->item, .lattice = item->mesh, .mesh = item->mesh, .model = item->model};

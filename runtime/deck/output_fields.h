@@ -18,7 +18,9 @@
   X(damage, "1", SCALAR, with_damage, "damage",                                                    \
     "mean damage of the bonds that the particle began with")                                       \
   X(dissipated, "J", SCALAR, with_losses, "other",                                                 \
-    "energy lost in the bonds to the right of the particle and above it")
+    "energy lost in the bonds to the right of the particle and above it")                          \
+  X(dead_cells, "1", SCALAR, with_failing, "other",                                                \
+    "of the cells that begin with the node those that have died: a bit for each")
 
 /* Symmetric tensors of any law, which frames hold component by component, stress_xx and so on; a
    deck asks for all of one or for a component.

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/geometry/gmsh_mesh.h"
 #include "runtime/geometry/quadrilateral.h"
 #include "runtime/lattice/rows_select.h"
 #include "runtime/mesh/cut_cells.h"
@@ -67,11 +68,20 @@ static unsigned char *nodes_of_quadrilateral(const deck *k, const deck_mesh *l, 
   return must_calloc((size_t)nodes[0] * (size_t)nodes[1], 1);
 }
 
+/* The last places of a file's, which fill the last row. */
+static unsigned char *nodes_of_file(const deck_mesh *l, const int nodes[2]) {
+  const size_t all = (size_t)nodes[0] * (size_t)nodes[1], there = (size_t)l->gmsh->node_count;
+  unsigned char *gone = must_calloc(all, 1);
+  memset(gone + there, 1, all - there);
+  return gone;
+}
+
 /* [nodes] 1: no node, as a hole has taken it. NULL after a message. */
 static unsigned char *nodes_gone(const deck *k, const deck_mesh *l, const int nodes[2],
                                  diagnostics *d) {
   mesh m;
   bool good = true;
+  if (l->gmsh) return nodes_of_file(l, nodes);
   if (l->corners) return nodes_of_quadrilateral(k, l, nodes, d);
   mesh_open(&m, nodes, l->corner, l->size, l->thickness, l->support);
   const int left = mesh_rows_cut(k, l, &m);
@@ -108,6 +118,7 @@ static void place_mapped(rows *w, const deck_mesh *m, const node_layout *l, int 
 
 /* m^2 */
 static double area_of(const deck_mesh *m) {
+  if (m->gmsh) return m->gmsh->area;
   return m->corners ? quadrilateral_area((const double(*)[2])m->corners) : m->size[0] * m->size[1];
 }
 
@@ -126,6 +137,12 @@ static void place_nodes(rows *w, const deck_mesh *m, const node_layout *l,
       w->site_particle[site] = (int32_t)count;
       w->particle_site[count++] = (int32_t)site;
     }
+    if (m->gmsh) {
+      const double *at = m->gmsh->at[gone[n] ? m->gmsh->node_count - 1 : n];
+      w->x[site] = at[0];
+      w->y[site] = at[1];
+      continue;
+    }
     if (m->corners) {
       place_mapped(w, m, l, n);
       continue;
@@ -141,7 +158,8 @@ rows *mesh_rows(const deck *k, int lattice, diagnostics *d) {
   const node_layout l = node_layout_of(nodes, m->support);
   unsigned char *gone = nodes_gone(k, m, nodes, d);
   if (!gone) return NULL;
-  const double area = area_of(m) / ((nodes[0] - 1.0) * (nodes[1] - 1.0));
+  const double parts = m->gmsh ? m->gmsh->node_count : (nodes[0] - 1.0) * (nodes[1] - 1.0),
+               area = area_of(m) / parts;
   rows *w = must_calloc(1, sizeof *w);
   *w = (rows){.infinite = {.dimensions = 2, .spacing = m->spacing},
               .dimensions = 2,

@@ -5,6 +5,7 @@
 #define PERILAT_RUNTIME_SHAPE_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "dsl/base/c_linkage.h"
 
@@ -41,6 +42,10 @@ typedef struct deck_shape { /* m */
      points counter-clockwise; NULL: straight edges */
   const double *bulge;
   int bulge_count;
+  /* What a file lists instead: particles by their numbers, ascending; the rectangle is the box around
+     them. NULL: none */
+  const int32_t *members;
+  int member_count;
 } deck_shape;
 
 /* Smallest box with sides along the axes that holds the shape; not a number where the shape's

@@ -6,6 +6,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/geometry/gmsh_mesh.h"
 #include "runtime/lattice/rows_select.h"
 
 /* A point says how far away the nearest particle is, other shapes where the body is. */
@@ -79,6 +80,15 @@ static bool *find_used_regions(const deck *k) {
   return used;
 }
 
+/* Of a file's groups those of cells, unless it is the only one: without it Gmsh would save none. */
+static bool is_told(const deck *k, const deck_region *region) {
+  int surfaces = 0;
+  for (int r = 0; r < k->region_count; r++)
+    surfaces += k->regions[r].group && k->regions[r].group->dimension == 2 &&
+                strcmp(k->regions[r].lattice, region->lattice) == 0;
+  return !region->group || (region->group->dimension == 2 && surfaces > 1);
+}
+
 region_sites *regions_select(const deck *k, const char *lattice, const rows *w, diagnostics *d) {
   bool *used = find_used_regions(k);
   region_sites *regions = must_calloc((size_t)k->region_count + 1, sizeof *regions);
@@ -89,8 +99,10 @@ region_sites *regions_select(const deck *k, const char *lattice, const rows *w, 
     regions[r].count = rows_select(w, &region->shape, &regions[r].particles);
     if (regions[r].count == 0)
       report_empty(lattice, region, w, d);
-    else if (!deck_lacks(k, NULL) && !used[r])
-      diag_report(d, DIAG_DECK_WARNING, region->item.where, "region `%s` is never used",
+    else if (!deck_lacks(k, NULL) && !used[r] && is_told(k, region))
+      diag_report(d, DIAG_DECK_WARNING, region->item.where,
+                  region->group ? "the deck never names the physical group `%s`"
+                                : "region `%s` is never used",
                   region->name);
   }
   free(used);

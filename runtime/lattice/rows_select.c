@@ -26,6 +26,9 @@ long rows_select(const rows *w, const deck_shape *shape, int32_t **list) {
   int32_t *chosen = must_alloc((size_t)w->particle_count * sizeof *chosen);
   long count = 0;
   *list = chosen;
+  for (; shape->members && count < shape->member_count; count++)
+    chosen[count] = shape->members[count];
+  if (shape->members) return count;
   if (shape->kind == SHAPE_POINT) return select_nearest(w, shape, chosen);
   for (long p = 0; p < w->particle_count; p++) {
     double at[3];

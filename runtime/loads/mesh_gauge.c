@@ -42,10 +42,11 @@ static bool has_place(mesh_gauge *g, diagnostics *d) {
   return false;
 }
 
-static void take_law(mesh_gauge *g, const double *parameters) {
+static void take_law(mesh_gauge *g) {
   if (g->deck->kind != MONITOR_STRESS) return;
-  g->law = point_law_new(g->of->law, parameters);
-  g->states = must_calloc((size_t)g->of->law->field_count + 1, sizeof *g->states);
+  const cells_law *l = cells_law_at(g->of, mesh_cell_of(&g->of->mesh, g->places[0]));
+  g->law = point_law_new(l->law, l->parameters);
+  g->states = must_calloc((size_t)l->law->field_count + 1, sizeof *g->states);
 }
 
 static bool is_tensor(const deck_monitor *m) {
@@ -61,8 +62,7 @@ static bool names_a_place(const mesh_gauge *g, diagnostics *d) {
 }
 
 mesh_gauge *mesh_gauge_new(const deck_monitor *m, const int32_t *sites, long count, const cells *c,
-                           const double *parameters, const loads *l, const body *w,
-                           diagnostics *d) {
+                           const loads *l, const body *w, diagnostics *d) {
   mesh_gauge *g = must_calloc(1, sizeof *g);
   *g = (mesh_gauge){.deck = m, .of = c, .loads = l, .w = w, .pieces = -1};
   g->place_count = m->placed ? 1 : count;
@@ -75,8 +75,10 @@ mesh_gauge *mesh_gauge_new(const deck_monitor *m, const int32_t *sites, long cou
     else
       mesh_place(&c->mesh, g->nodes[k], g->places[k]);
   }
-  take_law(g, parameters);
-  if (names_a_place(g, d) && (!m->placed || has_place(g, d))) return g;
+  if (names_a_place(g, d) && (!m->placed || has_place(g, d))) {
+    take_law(g);
+    return g;
+  }
   mesh_gauge_free(g);
   return NULL;
 }
@@ -169,6 +171,8 @@ static double tensor(const mesh_gauge *g) {
       gradient[i][1] += of->ny * g->w->displacement[i][of->site];
     }
   mesh_strain(gradient, strain);
+  cells_mean_dilatation(g->of, mesh_cell_of(m, g->places[0]),
+                        (const double *const *)g->w->displacement, strain);
   if (!g->law) return strain[g->deck->component];
   if (cells_states_near(g->of, g->places[0], g->states)) point_law_states(g->law, g->states);
   point_law_stress(g->law, strain, mesh_cell_size(m, mesh_cell_of(m, g->places[0])), stress);

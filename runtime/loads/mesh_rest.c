@@ -79,7 +79,8 @@ static bool has_factors(mesh_rest *r, static_result *found) {
   const size_t size = 2 * (size_t)node_count(r);
   if (r->factors && memcmp(r->held, r->factored, size) == 0) return true;
   static_factors_free(r->factors);
-  r->factors = static_factors_new(&r->c->stencil, r->held, found);
+  r->factors = r->c->has_matrix ? static_factors_of_matrix(&r->c->matrix, r->held, found)
+                                : static_factors_new(&r->c->stencil, r->held, found);
   memcpy(r->factored, r->held, size);
   return r->factors != NULL;
 }
@@ -181,7 +182,7 @@ static bool is_stiff(mesh_rest *r, const char *name, span where, diagnostics *d)
               name, 1e3 * at[0], 1e3 * at[1], found.loose_axis ? "y" : "x");
   diag_hint(d, has_single_points(&r->c->mesh)
                    ? "elements with one point of integration have motions without stiffness: give "
-                     "`gauss = 2`; and hold the mesh so that it can neither slide nor turn"
+                     "`gauss = 2`, or `hourglass = 0.05`; and hold the mesh so that it can neither slide nor turn"
                    : "hold it by a `&support` so that it can neither slide nor turn: both "
                      "directions of one node, and one of another");
   return false;

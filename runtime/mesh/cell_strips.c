@@ -6,6 +6,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/base/lane_sum.h"
 #include "runtime/kernel.h"
 #include "runtime/mesh/shape_functions.h"
 
@@ -131,6 +132,13 @@ static cell_table *table_of(const draft *d, int lanes, long stride) {
   return t;
 }
 
+/* Entries stand point by point and node row by node row, as in a rectangle. */
+static void find_rectangle(cell_table *t, double least) {
+  if (t->lanes == 1 && t->points == 4 && t->nodes == 4 && t->entries == 16)
+    t->rectangle =
+        rectangle_slopes_find(&t->slopes, (const double(*)[4][2])(const void *)t->slope, least);
+}
+
 static void table_free(cell_table *t) {
   free(t->offset);
   free(t->first);
@@ -169,41 +177,77 @@ static const cell_table *keep(cell_strips *s, cell_table *t, double least) {
     s->table_room = s->table_room ? 2 * s->table_room : 64;
     s->tables = must_realloc(s->tables, (size_t)s->table_room * sizeof(cell_table *));
   }
+  find_rectangle(t, least);
   s->bytes += bytes_of(t);
   return s->tables[s->table_count++] = t;
 }
 
 /* --- groups ----------------------------------------------------------------------------------- */
 
+int cell_strips_cell(const cell_strips *s, const mesh *m, int row, const cell_group *g, int lane) {
+  if (s->elements) return s->elements->groups[g->first].cell[lane];
+  return mesh_cell_at(m, g->first + (lane < g->count ? lane : 0), row);
+}
+
+bool cell_strips_reach(const cell_strips *s, const mesh *m, const cell_group *g, int lane,
+                       int node) {
+  if (lane >= g->count) return false;
+  if (!s->elements) {
+    const int away = node % m->nodes[0] - g->first - lane;
+    return away >= s->low && away <= s->high;
+  }
+  int in[ELEMENT_MOST_NODES], k = 0;
+  const int count = mesh_cell_nodes(m, s->elements->groups[g->first].cell[lane], in);
+  while (k < count && in[k] != node)
+    k++;
+  return k < count;
+}
+
 /* Where it stands among cells, and its volumes; memory has room for every cell. */
 static void place_group(cell_strips *s, const mesh *m, const integration_points *p, int row,
                         cell_group *g) {
-  const int points = points_of(p, mesh_cell_at(m, g->first, row));
   g->at = s->count;
-  s->count += points * PL_LANES;
-  s->most = points * PL_LANES > s->most ? points * PL_LANES : s->most;
+  s->count += g->points * PL_LANES;
+  s->most = g->points * PL_LANES > s->most ? g->points * PL_LANES : s->most;
   for (int lane = 0; lane < g->count; lane++) {
-    const int cell = mesh_cell_at(m, g->first + lane, row);
+    const int cell = cell_strips_cell(s, m, row, g, lane);
     s->of_cell[cell] = g->at + lane;
-    for (int k = 0; k < points; k++)
+    for (int k = 0; k < g->points; k++)
       s->volume[g->at + k * PL_LANES + lane] = m->thickness * p->area[p->first[cell] + k];
   }
 }
 
-static void add_group(cell_strips *s, const mesh *m, const integration_points *p, int row, int i,
-                      draft *d) {
+/* The volume of each of its points, where that is one. */
+static double even_volume(const cell_strips *s, const cell_group *g) {
+  const double *volume = s->volume + g->at;
+  if (!g->table->rectangle) return 0;
+  for (int k = 0; k < g->table->points; k++)
+    for (int lane = 0; lane < g->count; lane++)
+      if (volume[k * PL_LANES + lane] != volume[0]) return 0;
+  return volume[0];
+}
+
+/* Points of a cell that is among those asked for. */
+static int points_here(const integration_points *p, const unsigned char *own, int cell) {
+  return own && !own[cell] ? 0 : points_of(p, cell);
+}
+
+static void add_group(cell_strips *s, const mesh *m, const integration_points *p,
+                      const unsigned char *own, int row, int i, draft *d) {
   const int points = points_of(p, mesh_cell_at(m, i, row));
   cell_group *g = &s->groups[s->group_count++];
   *g = (cell_group){.first = i};
   draft_clear(d, points);
   while (g->count < PL_LANES && i + g->count < m->nodes[0] - 1 &&
-         points_of(p, mesh_cell_at(m, i + g->count, row)) == points) {
+         points_here(p, own, mesh_cell_at(m, i + g->count, row)) == points) {
     draft_cell(d, m, p, i + g->count, row, g->count);
     g->count++;
   }
+  g->points = points;
   place_group(s, m, p, row, g);
   g->table =
       keep(s, table_of(d, is_uniform(d, g->count) ? 1 : PL_LANES, s->layout.stride), d->least);
+  g->even = even_volume(s, g);
 }
 
 static void find_reach(cell_strips *s) {
@@ -217,7 +261,43 @@ static void find_reach(cell_strips *s) {
     }
 }
 
-void cell_strips_open(cell_strips *s, const mesh *m, const integration_points *p) {
+/* Those of a mesh of lists. */
+static void open_elements(cell_strips *s, const mesh *m, const integration_points *p,
+                          const unsigned char *own) {
+  element_strips *e = element_strips_new(m, p, own);
+  *s = (cell_strips){
+      .layout = e->layout, .rows = e->rows, .low = -e->rows, .high = e->rows, .elements = e};
+  s->first_group = must_calloc((size_t)e->rows + 1, sizeof(int));
+  s->first_point = must_calloc((size_t)e->rows + 1, sizeof(int));
+  s->groups = must_calloc((size_t)e->group_count + 1, sizeof *s->groups);
+  s->of_cell = must_alloc(((size_t)mesh_cell_count(m) + 1) * sizeof(int));
+  long points = 0;
+  for (int g = 0; g < e->group_count; g++)
+    points += (long)e->groups[g].points * PL_LANES;
+  s->volume = must_calloc((size_t)points + 1, sizeof(double));
+  for (int c = 0; c < mesh_cell_count(m); c++)
+    s->of_cell[c] = -1;
+  for (int row = 0; row < e->rows; row++) {
+    s->first_group[row] = s->group_count;
+    s->first_point[row] = s->count;
+    for (int g = e->first_group[row]; g < e->first_group[row + 1]; g++) {
+      cell_group *to = &s->groups[s->group_count++];
+      *to = (cell_group){.first = g, .count = e->groups[g].count, .points = e->groups[g].points};
+      place_group(s, m, p, row, to);
+    }
+  }
+  s->first_group[e->rows] = s->group_count;
+  s->first_point[e->rows] = s->count;
+  s->bytes = element_strips_bytes(e) + (long)sizeof(int) * (2 * e->rows + mesh_cell_count(m)) +
+             (long)sizeof(double) * s->count + (long)sizeof(cell_group) * s->group_count;
+}
+
+void cell_strips_open(cell_strips *s, const mesh *m, const integration_points *p,
+                      const unsigned char *own) {
+  if (m->lists) {
+    open_elements(s, m, p, own);
+    return;
+  }
   const int rows = m->nodes[1] - 1, wide = m->nodes[0] - 1;
   const size_t room = (size_t)(p->count + 1) * PL_LANES;
   draft d = draft_new(m, p);
@@ -233,8 +313,8 @@ void cell_strips_open(cell_strips *s, const mesh *m, const integration_points *p
     s->first_group[row] = s->group_count;
     s->first_point[row] = s->count;
     for (int i = 0; i < wide; i++) {
-      if (points_of(p, mesh_cell_at(m, i, row)) == 0) continue;
-      add_group(s, m, p, row, i, &d);
+      if (points_here(p, own, mesh_cell_at(m, i, row)) == 0) continue;
+      add_group(s, m, p, own, row, i, &d);
       i += s->groups[s->group_count - 1].count - 1;
     }
   }
@@ -249,6 +329,7 @@ void cell_strips_open(cell_strips *s, const mesh *m, const integration_points *p
 }
 
 void cell_strips_close(cell_strips *s) {
+  element_strips_free(s->elements);
   for (int k = 0; k < s->table_count; k++)
     table_free(s->tables[k]);
   free(s->tables);
@@ -259,12 +340,13 @@ void cell_strips_close(cell_strips *s) {
   free(s->volume);
 }
 
-void cell_group_place(const mesh *m, const integration_points *p, int row, const cell_group *g,
-                      int at, double place[2], int cell[2]) {
-  const int lane = (at - g->at) % PL_LANES, k = (at - g->at) / PL_LANES;
-  cell[0] = g->first + lane;
-  cell[1] = row;
-  memcpy(place, p->at[p->first[mesh_cell_at(m, cell[0], row)] + k], 2 * sizeof *place);
+void cell_strips_place(const cell_strips *s, const mesh *m, const integration_points *p, int row,
+                       const cell_group *g, int at, double place[2], int cell[2]) {
+  const int lane = (at - g->at) % PL_LANES, k = (at - g->at) / PL_LANES,
+            number = cell_strips_cell(s, m, row, g, lane);
+  cell[0] = s->elements ? number : g->first + lane;
+  cell[1] = s->elements ? -1 : row;
+  memcpy(place, p->at[p->first[number] + k], 2 * sizeof *place);
 }
 
 /* --- strains ---------------------------------------------------------------------------------- */
@@ -319,8 +401,15 @@ static inline __attribute__((always_inline)) void strain_of_group(const cell_tab
 
 void cell_strips_strain(const cell_strips *s, int row, const cell_group *g,
                         const double *const u[2], double *const strain[3]) {
+  if (s->elements) {
+    element_strips_strain(s->elements, g->first, u, strain);
+    return;
+  }
   const long at = s->layout.origin + row * s->layout.stride + g->first;
-  if (g->table->lanes == 1)
+  if (g->table->rectangle)
+    rectangle_cells_strain(&g->table->slopes, (const double *const[]){u[0] + at, u[1] + at},
+                           s->layout.stride, strain);
+  else if (g->table->lanes == 1)
     strain_of_group(g->table, 1, u[0] + at, u[1] + at, strain);
   else
     strain_of_group(g->table, PL_LANES, u[0] + at, u[1] + at, strain);
@@ -348,15 +437,70 @@ static inline __attribute__((always_inline)) void push_group(const cell_table *t
   }
 }
 
-void cell_strips_push(const cell_strips *s, const cell_group *g, const double *const traction[3],
-                      double *const force[2]) {
-  const long at = -s->low * s->layout.stride + g->first;
-  if (g->table->lanes == 1)
-    push_group(g->table, 1, traction, force[0] + at, force[1] + at);
-  else
-    push_group(g->table, PL_LANES, traction, force[0] + at, force[1] + at);
+/* Doubles that a row of cells has: rows of nodes from `row + low` on, from node 0. */
+static long plane_of(const cell_strips *s) {
+  return (s->high - s->low + 2) * s->layout.stride;
 }
 
-long cell_strips_plane(const cell_strips *s) {
-  return (s->high - s->low + 2) * s->layout.stride;
+void cell_strips_push(const cell_strips *s, int row, const cell_group *g,
+                      const double *const traction[3], double *const pushed[2]) {
+  if (s->elements) {
+    element_strips_push(s->elements, g->first, traction, pushed);
+    return;
+  }
+  const long at = row * plane_of(s) - s->low * s->layout.stride + g->first;
+  if (g->table->lanes == 1)
+    push_group(g->table, 1, traction, pushed[0] + at, pushed[1] + at);
+  else
+    push_group(g->table, PL_LANES, traction, pushed[0] + at, pushed[1] + at);
+}
+
+double *cell_strips_row(const cell_strips *s, int row, double *pushed) {
+  return pushed + row * plane_of(s) - s->low * s->layout.stride;
+}
+
+void cell_strips_push_even(const cell_strips *s, int row, const cell_group *g, int count,
+                           const double *const stress[3], double *const pushed[2]) {
+  const long at = row * plane_of(s) - s->low * s->layout.stride + g->first;
+  const int cells = (count - 1) * PL_LANES + g[count - 1].count;
+  rectangle_cells_push(&g->table->slopes, cells, stress, g->even,
+                       (double *const[]){pushed[0] + at, pushed[1] + at}, s->layout.stride);
+}
+
+long cell_strips_pushed(const cell_strips *s) {
+  return s->elements ? s->elements->slots : plane_of(s) * s->rows;
+}
+
+/* A loop: to begin a memset of this size takes longer. What is behind the last row is not read. */
+void cell_strips_clear(const cell_strips *s, int row, double *const pushed[2]) {
+  const long count = (s->high - s->low + 1) * s->layout.stride;
+  for (int d = 0; d < 2 && !s->elements; d++) { /* slots are written, not added to */
+    double *plane = pushed[d] + row * plane_of(s);
+    INDEPENDENT
+    for (long k = 0; k < count; k++)
+      plane[k] = 0;
+  }
+}
+
+void cell_strips_take(const cell_strips *s, int row, double *const pushed[2], bool more,
+                      double *const force[2]) {
+  const node_layout *l = &s->layout;
+  if (s->elements) {
+    element_strips_take(s->elements, row, pushed, more, force);
+    return;
+  }
+  const int from = row - s->high < 0 ? 0 : row - s->high,
+            to = row - s->low > s->rows - 1 ? s->rows - 1 : row - s->low;
+  for (int d = 0; d < 2; d++) {
+    double *out = force[d] + l->origin + row * l->stride;
+    if (!more) memset(out, 0, (size_t)l->padded * sizeof *out);
+    for (int c = from; c <= to; c++) {
+      const double *in = pushed[d] + c * plane_of(s) + (row - c - s->low) * l->stride;
+      INDEPENDENT
+      for (long k = 0; k < l->padded; k++)
+        out[k] += in[k];
+    }
+    for (long k = l->nodes[0]; k < l->padded; k++)
+      out[k] = 0;
+  }
 }

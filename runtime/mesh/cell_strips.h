@@ -1,7 +1,7 @@
 /* Points of integration side by side: PL_LANES cells of a row that have as many points each are a
    group, and a vector holds the same point of all of them. What acts at a point stands on a regular
    grid, so the nodes of neighbouring cells are neighbours in memory, and strains and forces are
-   found by loops of unit stride without lists of nodes:
+   found by loops of unit stride without lists of nodes (a mesh of lists: element_strips.h):
 
        cells  c0  c1  c2 ...                 node at `offset` from the lower left corner of c0:
        point   0   0   0     lanes 0, 1, 2   displacement u[offset], u[offset + 1], u[offset + 2]
@@ -9,8 +9,10 @@
 #ifndef PERILAT_RUNTIME_CELL_STRIPS_H
 #define PERILAT_RUNTIME_CELL_STRIPS_H
 
+#include "runtime/mesh/element_strips.h"
 #include "runtime/mesh/integration_points.h"
 #include "runtime/mesh/node_layout.h"
+#include "runtime/mesh/rectangle_cells.h"
 
 /* What acts at the points of a group. Away from edges, zones and cracks it is the same in all cells
    (to rounding, 1e-11 of a slope) and stored once for all groups like it. */
@@ -24,12 +26,17 @@ typedef struct cell_table {
   double *slope;      /* [entries][2][lanes] N_,x and N_,y, 1/m */
   int *first_of_node; /* [nodes + 1] of the two below */
   int *entry, *point; /* [entries] node by node */
+  bool rectangle;     /* the same in all cells, bilinear rectangles with 2 x 2 points, of these */
+  rectangle_slopes slopes;
 } cell_table;
 
 typedef struct cell_group {
-  int first, count; /* cells of its row: i of the first; at most PL_LANES */
+  int first, count; /* cells of its row: i of the first (of lists: number of the group); at most
+                       PL_LANES */
+  int points;       /* of each */
   int at;           /* place of its first point; PL_LANES for each point of a cell follow */
-  const cell_table *table;
+  const cell_table *table; /* NULL in a mesh of lists */
+  double even;             /* m^3: of each point, where they are rectangles with the same; else 0 */
 } cell_group;
 
 typedef struct cell_strips {
@@ -39,18 +46,20 @@ typedef struct cell_strips {
   int *first_point;   /* [rows + 1] places of points */
   cell_group *groups; /* [group_count] row by row */
   int group_count;
-  int count;           /* places of points, those that fill vectors up included */
-  int most;            /* of a group */
-  int low, high;       /* rows of nodes that a row of cells acts on: from j + low to j + high */
-  double *volume;      /* [count] m^3; 0 of those that fill up */
+  int count;     /* places of points, those that fill vectors up included */
+  int most;      /* of a group */
+  int low, high; /* rows of nodes that a row of cells acts on: from j + low to j + high */
+  element_strips *elements; /* of a mesh of lists; else NULL */
+  double *volume;           /* [count] m^3; 0 of those that fill up */
   int *of_cell;        /* [cells] place of its first point, -1 without; the next is PL_LANES on */
   cell_table **tables; /* [table_count] */
   int table_count, table_room;
   long bytes; /* of it all */
 } cell_strips;
 
-/* The mesh's cracks are those of now. */
-void cell_strips_open(cell_strips *s, const mesh *m, const integration_points *p);
+/* Of the cells that own[cells] marks; NULL: of all. The mesh's cracks are those of now. */
+void cell_strips_open(cell_strips *s, const mesh *m, const integration_points *p,
+                      const unsigned char *own);
 void cell_strips_close(cell_strips *s);
 
 /* strain xx, yy, xy (of tensors) of the points of a group; u: planes laid out as `layout`;
@@ -58,15 +67,32 @@ void cell_strips_close(cell_strips *s);
 void cell_strips_strain(const cell_strips *s, int row, const cell_group *g,
                         const double *const u[2], double *const strain[3]);
 /* Adds sum B^T t over the points of the group to the nodes' forces: traction[3][points of the
-   group], stress xx, yy, xy times volume, N m; force[2]: planes with the layout's stride that begin
-   with node row `row + low`, at node 0. */
-void cell_strips_push(const cell_strips *s, const cell_group *g, const double *const traction[3],
+   group], stress xx, yy, xy times volume, N m; pushed[2]: what all groups push, cell_strips_pushed
+   doubles, of which each row of cells has its own, 0 before. */
+void cell_strips_push(const cell_strips *s, int row, const cell_group *g,
+                      const double *const traction[3], double *const pushed[2]);
+long cell_strips_pushed(const cell_strips *s);
+/* Where what a row of cells pushes at its lower left node stands in a plane of `pushed`, the other
+   nodes as in the layout; of a grid. */
+double *cell_strips_row(const cell_strips *s, int row, double *pushed);
+/* Before a row of cells pushes. */
+void cell_strips_clear(const cell_strips *s, int row, double *const pushed[2]);
+/* N: the forces of a row of nodes, in planes of the layout; `more`: beside those that are there. */
+void cell_strips_take(const cell_strips *s, int row, double *const pushed[2], bool more,
                       double *const force[2]);
-/* Doubles of such a plane. */
-long cell_strips_plane(const cell_strips *s);
+/* The same of `count` groups side by side that are alike and even, from their stress; all but the
+   last are full. */
+void cell_strips_push_even(const cell_strips *s, int row, const cell_group *g, int count,
+                           const double *const stress[3], double *const pushed[2]);
 
-/* Where the point at that place stands, m, and the lower left node of its cell. */
-void cell_group_place(const mesh *m, const integration_points *p, int row, const cell_group *g,
-                      int at, double place[2], int cell[2]);
+/* Number of a lane's cell; of what fills up the first one's. */
+int cell_strips_cell(const cell_strips *s, const mesh *m, int row, const cell_group *g, int lane);
+/* Whether the points of a lane's cell may push a node. */
+bool cell_strips_reach(const cell_strips *s, const mesh *m, const cell_group *g, int lane,
+                       int node);
+/* Where the point at that place stands, m, and the lower left node of its cell; of lists the cell's number
+   and -1. */
+void cell_strips_place(const cell_strips *s, const mesh *m, const integration_points *p, int row,
+                       const cell_group *g, int at, double place[2], int cell[2]);
 
 #endif

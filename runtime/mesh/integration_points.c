@@ -14,7 +14,9 @@ static void rule_of(const mesh *m, int cell, int *order, int *parts) {
 
 static int points_of(const mesh *m, int cell) {
   int order, parts;
+  double u[ELEMENT_MOST_POINTS][2], weight[ELEMENT_MOST_POINTS];
   if (m->cell[cell] == CELL_ABSENT) return 0;
+  if (m->lists) return element_rule(m->lists->nodes[cell], m->element_gauss[cell], u, weight);
   if (m->cut[cell]) {
     cut_points p = {.count = 0};
     cut_cell_points(m, cell, &p);
@@ -73,6 +75,19 @@ static void place_mapped(integration_points *p, const mesh *m, int cell, int fir
   }
 }
 
+static void place_listed(integration_points *p, const mesh *m, int cell, int first) {
+  const int nodes = m->lists->nodes[cell];
+  double u[ELEMENT_MOST_POINTS][2], weight[ELEMENT_MOST_POINTS], corner[ELEMENT_MOST_NODES][2];
+  cell_lists_places(m->lists, cell, corner);
+  const int count = element_rule(nodes, m->element_gauss[cell], u, weight);
+  for (int n = 0; n < count; n++) {
+    const double turn =
+        element_map(nodes, (const double(*)[2])corner, u[n], p->at[first + n], NULL);
+    p->area[first + n] = weight[n] * turn;
+    p->cell[first + n] = cell;
+  }
+}
+
 void integration_points_open(integration_points *p, const mesh *m) {
   const int cells = mesh_cell_count(m);
   *p = (integration_points){.first = must_alloc(((size_t)cells + 1) * sizeof *p->first)};
@@ -87,7 +102,8 @@ void integration_points_open(integration_points *p, const mesh *m) {
   p->cell = must_alloc(count * sizeof *p->cell);
   for (int c = 0; c < cells; c++)
     if (p->first[c + 1] > p->first[c])
-      (m->mapped   ? place_mapped
+      (m->lists    ? place_listed
+       : m->mapped ? place_mapped
        : m->cut[c] ? place_cut_points
                    : place_points)(p, m, c, p->first[c]);
 }

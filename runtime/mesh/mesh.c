@@ -6,6 +6,23 @@
 
 #include "dsl/base/arena.h"
 
+static void open_flags(mesh *m) {
+  const size_t count = (size_t)mesh_node_count(m), cells = (size_t)mesh_cell_count(m);
+  m->element_free = must_alloc(count);
+  m->moving = must_calloc(count, 1);
+  m->gone = must_calloc(count, 1);
+  m->cut = must_calloc(cells, 1);
+  m->cell = must_alloc(cells);
+  m->element_gauss = must_alloc(cells);
+  m->mean_dilatation = must_calloc(cells, 1);
+  m->hourglass = must_calloc(cells, sizeof *m->hourglass);
+  memset(m->element_free, 1, count);
+  memset(m->cell, CELL_ELEMENT_FREE, cells);
+  memset(m->element_gauss, 2, cells);
+  crack_lines_open(&m->cracks);
+  holes_open(&m->holes);
+}
+
 void mesh_open(mesh *m, const int nodes[2], const double corner[2], const double size[2],
                double thickness, double support) {
   *m = (mesh){.thickness = thickness, .support = support, .gauss = 4, .gauss_parts = 1};
@@ -14,28 +31,37 @@ void mesh_open(mesh *m, const int nodes[2], const double corner[2], const double
     m->corner[a] = corner[a];
     m->spacing[a] = size[a] / (nodes[a] - 1);
   }
-  const size_t count = (size_t)mesh_node_count(m), cells = (size_t)mesh_cell_count(m);
-  m->element_free = must_alloc(count);
-  m->moving = must_calloc(count, 1);
-  m->gone = must_calloc(count, 1);
-  m->cut = must_calloc(cells, 1);
-  m->cell = must_alloc(cells);
-  m->element_gauss = must_alloc(cells);
-  memset(m->element_free, 1, count);
-  memset(m->cell, CELL_ELEMENT_FREE, cells);
-  memset(m->element_gauss, 2, cells);
-  crack_lines_open(&m->cracks);
-  holes_open(&m->holes);
+  open_flags(m);
+  mesh_settle(m);
+}
+
+void mesh_open_lists(mesh *m, const int nodes[2], cell_lists *l, double least, double thickness,
+                     double support) {
+  *m = (mesh){.nodes = {nodes[0], nodes[1]},
+              .corner = {l->low[0], l->low[1]},
+              .spacing = {least, least},
+              .thickness = thickness,
+              .support = support,
+              .gauss = 4,
+              .gauss_parts = 1,
+              .lists = l};
+  open_flags(m);
+  memset(m->element_free, 0, (size_t)mesh_node_count(m));
+  for (int n = l->node_count; n < mesh_node_count(m); n++)
+    m->gone[n] = 1;
   mesh_settle(m);
 }
 
 void mesh_close(mesh *m) {
+  cell_lists_free(m->lists);
   free(m->element_free);
   free(m->moving);
   free(m->gone);
   free(m->cut);
   free(m->cell);
   free(m->element_gauss);
+  free(m->mean_dilatation);
+  free(m->hourglass);
   crack_lines_close(&m->cracks);
   holes_close(&m->holes);
 }
@@ -43,6 +69,10 @@ void mesh_close(mesh *m) {
 void mesh_settle(mesh *m) {
   int corner[4];
   memset(m->moving, 0, (size_t)mesh_node_count(m));
+  if (m->lists) {
+    memset(m->cell, CELL_ELEMENT, (size_t)mesh_cell_count(m));
+    return;
+  }
   for (int c = 0; c < mesh_cell_count(m); c++) {
     if (m->cell[c] == CELL_ABSENT) continue;
     mesh_corners(m, c, corner);
@@ -69,7 +99,28 @@ void mesh_open_mapped(mesh *m, const int nodes[2], const double corners[4][2], d
   mesh_settle(m);
 }
 
-int mesh_cells_around(const mesh *m, int node, int around[4]) {
+int mesh_cell_nodes(const mesh *m, int cell, int node[ELEMENT_MOST_NODES]) {
+  int corner[4];
+  if (m->lists) {
+    for (int q = 0; q < m->lists->nodes[cell]; q++)
+      node[q] = m->lists->cell[cell][q];
+    return m->lists->nodes[cell];
+  }
+  mesh_corners(m, cell, corner);
+  for (int k = 0; k < 4; k++)
+    node[k] = corner[k < 2 ? k : 5 - k];
+  return 4;
+}
+
+static int listed_around(const cell_lists *l, int node, int around[MESH_MOST_AROUND]) {
+  const int count = node < l->node_count ? l->first[node + 1] - l->first[node] : 0;
+  for (int k = 0; k < count; k++)
+    around[k] = l->around[l->first[node] + k];
+  return count;
+}
+
+int mesh_cells_around(const mesh *m, int node, int around[MESH_MOST_AROUND]) {
+  if (m->lists) return listed_around(m->lists, node, around);
   const int i = node % m->nodes[0], j = node / m->nodes[0];
   int count = 0;
   for (int k = 0; k < 4; k++) {
@@ -81,21 +132,21 @@ int mesh_cells_around(const mesh *m, int node, int around[4]) {
 }
 
 double mesh_cell_size(const mesh *m, int cell) {
-  int corner[4];
-  double at[4][2];
-  if (!m->mapped) return sqrt(m->spacing[0] * m->spacing[1]);
-  mesh_corners(m, cell, corner);
-  for (int k = 0; k < 4; k++) /* counter-clockwise */
-    mesh_place(m, corner[k < 2 ? k : 5 - k], at[k]);
-  return sqrt(quadrilateral_area(at));
+  int node[ELEMENT_MOST_NODES];
+  double at[ELEMENT_MOST_NODES][2];
+  if (!m->mapped && !m->lists) return sqrt(m->spacing[0] * m->spacing[1]);
+  const int count = mesh_cell_nodes(m, cell, node);
+  for (int k = 0; k < count; k++)
+    mesh_place(m, node[k], at[k]);
+  return sqrt(element_area(count, (const double(*)[2])at));
 }
 
 void mesh_strain_place(const mesh *m, int cell, const double place[2], double at[2]) {
-  int corner[4];
+  int corner[ELEMENT_MOST_NODES];
   double here[2];
   memcpy(at, place, 2 * sizeof *at);
   if (m->cell[cell] != CELL_ELEMENT || m->element_gauss[cell] > 1) return;
-  mesh_corners(m, cell, corner);
+  if (mesh_cell_nodes(m, cell, corner) != 4) return; /* of a triangle: the same, or two */
   at[0] = at[1] = 0;
   for (int k = 0; k < 4; k++) {
     mesh_place(m, corner[k], here);
@@ -121,6 +172,7 @@ static int cell_across(const mesh *m, const int place[2], const double u[2]) {
 int mesh_cell_of(const mesh *m, const double at[2]) {
   double unit[2], u[2];
   int place[2];
+  if (m->lists) return cell_lists_find(m->lists, at, u);
   if (m->mapped) quadrilateral_unmap(m->corners, at, unit);
   for (int a = 0; a < 2; a++) {
     const double cells = m->nodes[a] - 1;

@@ -13,7 +13,11 @@
 
    A mesh of elements alone may fill a quadrilateral: its nodes stand where the bilinear map
    (quadrilateral.h) takes those of equal spacings of the unit square. Within each cell the map is
-   bilinear, too: the cells are isoparametric elements.                                           */
+   bilinear, too: the cells are isoparametric elements.
+
+   A mesh of lists (cell_lists.h) has elements of any places: triangles, quadrilaterals, quadratic
+   triangles. Its nodes are laid out in a grid of nodes[0] x nodes[1] as they come, so that all that
+   goes by rows of nodes does; the last places are no nodes: `gone`.                              */
 #ifndef PERILAT_RUNTIME_MESH_H
 #define PERILAT_RUNTIME_MESH_H
 
@@ -21,6 +25,7 @@
 
 #include "dsl/base/c_linkage.h"
 #include "runtime/geometry/quadrilateral.h"
+#include "runtime/mesh/cell_lists.h"
 #include "runtime/mesh/crack_lines.h"
 #include "runtime/mesh/holes.h"
 
@@ -33,6 +38,7 @@ typedef struct mesh {
   double corner[2], spacing[2]; /* m; mapped: of the box around it, and its size over the cells */
   bool mapped;                  /* it is a quadrilateral with */
   double corners[4][2];         /* m, counter-clockwise, the first that of node (0, 0) */
+  cell_lists *lists;            /* nodes and cells of any places; NULL: a grid */
   double thickness;             /* m */
   double support;               /* d_max: half width of a node's support, in spacings; 1.5 to 5.5 */
   int gauss;        /* background rule of element-free and interface cells: gauss x gauss points */
@@ -48,6 +54,10 @@ typedef struct mesh {
   unsigned char *moving;        /* [nodes] 1: has a moving least squares function */
   unsigned char *cell;          /* [cells] mesh_cell */
   unsigned char *element_gauss; /* [cells] rule of a bilinear element: 1 or 2 */
+  /* [cells] of elements (element_modes.h): 1: with 2 x 2 points their dilatation is the mean; with one
+     point they resist hourglass modes by that part of their stiffness */
+  unsigned char *mean_dilatation;
+  double *hourglass;
 } mesh;
 
 /* A mesh all of whose nodes are element-free, with 4 x 4 points a cell, without cracks. Memory is
@@ -59,6 +69,10 @@ void mesh_close(mesh *m);
    values stand in memory. */
 void mesh_open_mapped(mesh *m, const int nodes[2], const double corners[4][2], double thickness,
                       double support);
+/* The mesh of these lists, which it takes over; nodes[0] nodes[1] >= l->node_count. `least`: m, the
+   shortest side of a cell. */
+void mesh_open_lists(mesh *m, const int nodes[2], cell_lists *l, double least, double thickness,
+                     double support);
 /* Once nodes are flagged: which cells are what, and which nodes have moving least squares. Absent
    cells stay so. */
 void mesh_settle(mesh *m);
@@ -67,7 +81,7 @@ static inline int mesh_node_count(const mesh *m) {
   return m->nodes[0] * m->nodes[1];
 }
 static inline int mesh_cell_count(const mesh *m) {
-  return (m->nodes[0] - 1) * (m->nodes[1] - 1);
+  return m->lists ? m->lists->count : (m->nodes[0] - 1) * (m->nodes[1] - 1);
 }
 static inline int mesh_node(const mesh *m, int i, int j) {
   return j * m->nodes[0] + i;
@@ -78,6 +92,12 @@ static inline double mesh_at(const mesh *m, int axis, int k) {
 /* Where node n stands. */
 static inline void mesh_place(const mesh *m, int n, double at[2]) {
   const int i = n % m->nodes[0], j = n / m->nodes[0];
+  if (m->lists) {
+    const double *there = m->lists->at[n < m->lists->node_count ? n : m->lists->node_count - 1];
+    at[0] = there[0];
+    at[1] = there[1];
+    return;
+  }
   if (m->mapped) {
     const double u[2] = {(double)i / (m->nodes[0] - 1), (double)j / (m->nodes[1] - 1)};
     double slope[2][2];
@@ -87,8 +107,8 @@ static inline void mesh_place(const mesh *m, int n, double at[2]) {
   at[0] = mesh_at(m, 0, i);
   at[1] = mesh_at(m, 1, j);
 }
-/* Number of the cell at place (i, j), and its corners: lower left and right, upper left and right.
-   */
+/* Of a grid: number of the cell at place (i, j), and its corners: lower left and right, upper left and
+   right. */
 static inline int mesh_cell_at(const mesh *m, int i, int j) {
   return j * (m->nodes[0] - 1) + i;
 }
@@ -99,8 +119,11 @@ static inline void mesh_corners(const mesh *m, int cell, int corner[4]) {
   corner[2] = corner[0] + m->nodes[0];
   corner[3] = corner[2] + 1;
 }
-/* The cells around a node that are not absent, row by row: how many, 4 at most, and their numbers. */
-int mesh_cells_around(const mesh *m, int node, int around[4]);
+/* Of any mesh: a cell's nodes, corners counter-clockwise, then those between. How many. */
+int mesh_cell_nodes(const mesh *m, int cell, int node[ELEMENT_MOST_NODES]);
+/* The cells around a node that are not absent, by their numbers: how many, of a grid 4 at most. */
+enum { MESH_MOST_AROUND = 64 };
+int mesh_cells_around(const mesh *m, int node, int around[MESH_MOST_AROUND]);
 /* h, m: the root of the cell's area, holes included. */
 double mesh_cell_size(const mesh *m, int cell);
 /* Where an element with one point knows the strain: its middle, whatever the place in it; what its

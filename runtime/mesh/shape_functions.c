@@ -1,5 +1,20 @@
 #include "runtime/mesh/shape_functions.h"
 
+/* Of an element in lists; the place that a point has in it is sought. */
+static bool of_lists(const mesh *m, int cell, const double at[2], point_shape *out) {
+  const int count = mesh_cell_nodes(m, cell, out->node);
+  double corner[ELEMENT_MOST_NODES][2], u[2], gradient[ELEMENT_MOST_NODES][2];
+  cell_lists_places(m->lists, cell, corner);
+  const bool found = element_unmap(count, (const double(*)[2])corner, at, u);
+  element_gradients(count, (const double(*)[2])corner, u, out->n, gradient);
+  out->count = count;
+  for (int k = 0; k < count; k++) {
+    out->nx[k] = gradient[k][0];
+    out->ny[k] = gradient[k][1];
+  }
+  return found;
+}
+
 /* The same where the mesh is mapped, whose map is the cell's own. */
 static void isoparametric(const mesh *m, int cell, const double at[2], point_shape *out) {
   const int place[2] = {cell % (m->nodes[0] - 1), cell / (m->nodes[0] - 1)};
@@ -81,6 +96,7 @@ static void blend(const mesh *m, const point_shape *corners, point_shape *s) {
 }
 
 bool shape_functions(const mesh *m, int cell, const double at[2], point_shape *out) {
+  if (m->lists) return of_lists(m, cell, at, out);
   if (m->cell[cell] == CELL_ELEMENT) {
     if (m->mapped)
       isoparametric(m, cell, at, out);

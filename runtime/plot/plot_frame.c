@@ -419,7 +419,7 @@ static double frequency_of(result_file *f, long frame) {
 static void find_nodes(plot_frame *m) {
   if (m->meshes.count > 0) m->nodes = must_calloc((size_t)m->particles + 1, 1);
   for (int n = 0; n < m->meshes.count; n++)
-    for (long k = 0; k < 4 * m->meshes.items[n].cell_count; k++)
+    for (long k = 0; k < 4 * m->meshes.items[n].all_count; k++)
       m->nodes[m->meshes.items[n].cells[k]] = 1;
 }
 

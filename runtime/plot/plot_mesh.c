@@ -7,15 +7,18 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/result/mesh_views.h"
+#include "runtime/result/result_fields.h"
 #include "runtime/result/result_find.h"
 #include "runtime/result/result_read.h"
 #include "runtime/result/result_sets.h"
 
-enum { CORNERS = 4, MOST_NEAR = 256 };
+enum { CORNERS = 4, MOST_NODES = 6, MOST_NEAR = 256 };
 
 void plot_meshes_free(plot_meshes *m) {
   for (int k = 0; k < m->count; k++) {
     free(m->items[k].cells);
+    free(m->items[k].first);
     crack_lines_close(&m->items[k].lines);
   }
   for (int k = 0; k < m->crack_count; k++)
@@ -45,6 +48,50 @@ static bool read_first(result_file *f, const char *group, int64_t *first) {
   return good;
 }
 
+/* Cells of a file as cells of four corners: how many, at `to`. */
+static int split(const int32_t *cell, int columns, int32_t (*to)[CORNERS]) {
+  static const int parts[4][CORNERS] = {{0, 3, 5, 5}, {3, 1, 4, 4}, {5, 4, 2, 2}, {3, 4, 5, 5}};
+  int nodes = 0;
+  while (nodes < columns && cell[nodes] >= 0)
+    nodes++;
+  if (nodes == MOST_NODES) {
+    for (int k = 0; k < CORNERS * CORNERS; k++)
+      to[k / CORNERS][k % CORNERS] = cell[parts[k / CORNERS][k % CORNERS]];
+    return CORNERS;
+  }
+  for (int k = 0; k < CORNERS; k++)
+    to[0][k] = k < nodes ? cell[k] : nodes > 0 ? cell[nodes - 1] : -1;
+  return 1;
+}
+
+/* m: the root of the mean area. */
+static double mean_size(const plot_mesh *m, const double *reference) {
+  double sum = 0;
+  for (long c = 0; c < m->cell_count; c++)
+    for (int k = 0; k < CORNERS; k++) {
+      const double *a = reference + 2 * m->cells[CORNERS * c + k],
+                   *b = reference + 2 * m->cells[CORNERS * c + (k + 1) % CORNERS];
+      sum += 0.5 * (a[0] * b[1] - b[0] * a[1]);
+    }
+  return m->cell_count > 0 ? sqrt(fabs(sum) / (double)m->cell_count) : 0;
+}
+
+/* Of a mesh of a file. */
+static void take_lists(plot_mesh *m, int columns) {
+  int32_t *given = m->cells;
+  long count = 0;
+  const size_t most = CORNERS * (size_t)m->cell_count + 1; /* parts */
+  m->cells = must_calloc(CORNERS * most, sizeof *m->cells);
+  m->first = must_alloc(most * sizeof *m->first);
+  for (long c = 0; c < m->cell_count; c++) {
+    const int parts = split(given + columns * c, columns, (int32_t(*)[CORNERS])m->cells + count);
+    for (int k = 0; k < parts; k++)
+      m->first[count++] = k == 0 ? given[columns * c] : -1;
+  }
+  m->cell_count = count;
+  free(given);
+}
+
 /* Its cells as particles of the result. */
 static bool read_mesh(plot_mesh *m, result_file *f, const char *name, const double *reference,
                       long particles) {
@@ -54,12 +101,18 @@ static bool read_mesh(plot_mesh *m, result_file *f, const char *name, const doub
   snprintf(m->name, sizeof m->name, "%.79s", name);
   snprintf(group, sizeof group, "/meshes/%.400s", name);
   snprintf(path, sizeof path, "%s/cells", group);
-  m->cells = result_read_table(f, path, true, CORNERS, CORNERS, &m->cell_count, &columns);
+  m->cells = result_read_table(f, path, true, 3, MOST_NODES, &m->cell_count, &columns);
   if (!m->cells || !read_first(f, group, &first) || first < 0 || first > particles) return false;
+  if (columns != CORNERS) take_lists(m, columns);
   if (!names_particles(m->cells, m->cell_count, particles - (long)first)) return false;
   for (long k = 0; k < CORNERS * m->cell_count; k++)
     m->cells[k] += (int32_t)first;
-  if (m->cell_count > 0) {
+  for (long k = 0; m->first && k < m->cell_count; k++)
+    if (m->first[k] >= 0) m->first[k] += (int32_t)first;
+  m->all_count = m->cell_count;
+  if (columns != CORNERS) {
+    m->size = mean_size(m, reference);
+  } else if (m->cell_count > 0) {
     const double *low = reference + 2 * m->cells[0], *high = reference + 2 * m->cells[2];
     m->size = sqrt(fabs((high[0] - low[0]) * (high[1] - low[1])));
   }
@@ -134,6 +187,35 @@ static void give_lines(plot_meshes *m) {
                         m->cracks[c].points + 2 * k);
 }
 
+/* Cells that have died stand behind those that are left. */
+static void bury(plot_mesh *m, const double *dead, long particles) {
+  unsigned char *begun = must_calloc((size_t)particles + 1, 1);
+  int32_t *gone = must_calloc(CORNERS * (size_t)m->cell_count + 1, sizeof *gone);
+  long left = 0, died = 0;
+  bool dies = false;
+  for (long c = 0; c < m->cell_count; c++) {
+    const int32_t *cell = m->cells + CORNERS * c, first = m->first ? m->first[c] : cell[0];
+    if (first >= 0) dies = mesh_cell_died(dead[first], begun[first]++);
+    int32_t *to = dies ? gone + CORNERS * died++ : m->cells + CORNERS * left++;
+    memmove(to, cell, CORNERS * sizeof *cell);
+  }
+  memcpy(m->cells + CORNERS * left, gone, CORNERS * (size_t)died * sizeof *gone);
+  m->cell_count = left;
+  free(begun);
+  free(gone);
+}
+
+static void bury_all(plot_meshes *m, result_file *f, long frame, long particles) {
+  char unit[64], error[512];
+  long count = 0;
+  int components = 0;
+  double *dead = result_read_frame(f, MESH_DEAD_CELLS, frame, &count, &components, unit,
+                                   sizeof unit, error, sizeof error);
+  for (int k = 0; k < m->count && dead && count == particles; k++)
+    bury(&m->items[k], dead, particles);
+  free(dead);
+}
+
 bool plot_meshes_read(plot_meshes *m, result_file *f, long frame, char *error, size_t size) {
   *m = (plot_meshes){.count = 0};
   result_names names = result_list(f, "/meshes");
@@ -147,6 +229,7 @@ bool plot_meshes_read(plot_meshes *m, result_file *f, long frame, char *error, s
   if (!good) snprintf(error, size, "`/meshes` of `%s` is damaged", f->path);
   good = good && (names.count == 0 || read_cracks(m, f, frame, error, size));
   if (good) give_lines(m);
+  if (good && m->count > 0) bury_all(m, f, frame, particles);
   result_names_free(&names);
   free(reference);
   return good;
@@ -296,16 +379,18 @@ int32_t *plot_mesh_outline(const plot_mesh *m, long *count) {
   const long all = CORNERS * m->cell_count;
   cell_side *sides = must_calloc((size_t)all + 1, sizeof *sides);
   int32_t *outline = must_calloc(2 * (size_t)all + 1, sizeof *outline);
+  long there = 0;
   for (long k = 0; k < all; k++) {
     const int32_t i = m->cells[k],
                   j = m->cells[k / CORNERS * CORNERS + (k % CORNERS + 1) % CORNERS];
-    sides[k] = (cell_side){i < j ? i : j, i < j ? j : i, i, j};
+    if (i == j) continue; /* of a triangle */
+    sides[there++] = (cell_side){i < j ? i : j, i < j ? j : i, i, j};
   }
-  qsort(sides, (size_t)all, sizeof *sides, compare_sides);
+  qsort(sides, (size_t)there, sizeof *sides, compare_sides);
   *count = 0;
-  for (long k = 0; k < all;) {
+  for (long k = 0; k < there;) {
     long next = k + 1;
-    while (next < all && compare_sides(&sides[k], &sides[next]) == 0)
+    while (next < there && compare_sides(&sides[k], &sides[next]) == 0)
       next++;
     if (next == k + 1) {
       outline[2 * *count] = sides[k].from;

@@ -8,16 +8,22 @@
 #include "dsl/base/elementary.h"
 #include "runtime/result/hdf5_tools.h"
 
-enum { NAME = 512, CORNERS = 4 };
+enum { NAME = 512 };
+
+static void cells_free(mesh_cells *c) {
+  free(c->corners);
+  free(c->nodes);
+}
 
 void mesh_views_free(mesh_views *v) {
   for (int k = 0; k < v->path_count; k++)
     free(v->paths[k].points);
   for (int k = 0; k < v->set_count; k++)
-    free(v->sets[k].corners);
+    cells_free(&v->sets[k]);
   free(v->paths);
   free(v->sets);
   free(v->set_of_frame);
+  free(v->dead);
 }
 
 long mesh_path_count(const mesh_path *p, long frame) {
@@ -58,6 +64,7 @@ static bool is_crossed(const mesh_path *p, long frame, const double low[2], cons
 
 static bool is_whole(const mesh_views *v, const result_header *h, const result_mesh *m,
                      const int32_t *cell, long frame) {
+  if (v->path_count == 0) return true;
   const double *low = h->reference + 2 * (m->first_particle + cell[0]),
                *high = h->reference + 2 * (m->first_particle + cell[2]);
   for (int k = 0; k < v->path_count; k++)
@@ -66,27 +73,47 @@ static bool is_whole(const mesh_views *v, const result_header *h, const result_m
   return true;
 }
 
+static void add_cell(mesh_cells *c, long first_particle, const int32_t *cell, int columns) {
+  int nodes = 0;
+  for (; nodes < columns && cell[nodes] >= 0; nodes++)
+    c->corners[c->corner_count++] = (int32_t)first_particle + cell[nodes];
+  c->alike = c->count == 0 || c->alike == nodes ? nodes : 0;
+  c->nodes[c->count++] = (unsigned char)nodes;
+}
+
+static bool has_died(const mesh_views *v, unsigned char *begun, long corner, long frame) {
+  return mesh_cell_died(v->dead[frame * v->particles + corner], begun[corner]++);
+}
+
 /* Without frames nothing is known of cracks. */
 static mesh_cells cells_of(const mesh_views *v, const result_header *h, long frame, bool all) {
   mesh_cells shown = {.count = 0};
-  long most = 0;
-  for (int n = 0; n < h->mesh_count; n++)
-    most += h->meshes[n].cell_count;
-  shown.corners = must_alloc((CORNERS * (size_t)most + 1) * sizeof *shown.corners);
+  size_t most = 0, corners = 0;
+  for (int n = 0; n < h->mesh_count; n++) {
+    most += (size_t)h->meshes[n].cell_count;
+    corners += (size_t)h->meshes[n].cell_count * (size_t)h->meshes[n].columns;
+  }
+  shown.corners = must_alloc((corners + 1) * sizeof *shown.corners);
+  shown.nodes = must_alloc(most + 1);
+  unsigned char *begun = must_calloc((size_t)v->particles + 1, 1); /* cells so far at a corner */
   for (int n = 0; n < h->mesh_count; n++)
     for (long c = 0; c < h->meshes[n].cell_count; c++) {
-      const int32_t *cell = h->meshes[n].cells + CORNERS * c;
-      if (!all && !is_whole(v, h, &h->meshes[n], cell, frame)) continue;
-      for (int k = 0; k < CORNERS; k++)
-        shown.corners[CORNERS * shown.count + k] = (int32_t)h->meshes[n].first_particle + cell[k];
-      shown.count++;
+      const result_mesh *m = &h->meshes[n];
+      const int32_t *cell = m->cells + m->columns * c;
+      const bool died = !all && v->dead && has_died(v, begun, m->first_particle + cell[0], frame);
+      if (!died && (all || is_whole(v, h, m, cell, frame)))
+        add_cell(&shown, m->first_particle, cell, m->columns);
     }
+  free(begun);
   return shown;
 }
 
-/* All cracks are as they were a frame before. */
+/* All cracks and dead cells are as they were a frame before. */
 static bool is_unchanged(const mesh_views *v, long frame) {
   bool same = frame > 0;
+  if (v->dead && same)
+    same = memcmp(v->dead + frame * v->particles, v->dead + (frame - 1) * v->particles,
+                  (size_t)v->particles * sizeof *v->dead) == 0;
   for (int k = 0; k < v->path_count && same; k++) {
     const mesh_path *p = &v->paths[k];
     const size_t numbers = 2 * (size_t)p->most;
@@ -98,13 +125,14 @@ static bool is_unchanged(const mesh_views *v, long frame) {
 }
 
 static bool are_same(const mesh_cells *a, const mesh_cells *b) {
-  return a->count == b->count &&
-         memcmp(a->corners, b->corners, CORNERS * (size_t)a->count * sizeof *a->corners) == 0;
+  return a->count == b->count && a->corner_count == b->corner_count &&
+         memcmp(a->nodes, b->nodes, (size_t)a->count) == 0 &&
+         memcmp(a->corners, b->corners, (size_t)a->corner_count * sizeof *a->corners) == 0;
 }
 
 static void add_set(mesh_views *v, mesh_cells shown) {
   if (v->set_count > 0 && are_same(&shown, &v->sets[v->set_count - 1])) {
-    free(shown.corners);
+    cells_free(&shown);
     return;
   }
   v->sets = must_realloc(v->sets, ((size_t)v->set_count + 1) * sizeof *v->sets);
@@ -144,15 +172,20 @@ static bool tell_of_mesh(hid_t file, const char *name, const result_mesh *m) {
 static bool write_mesh(hid_t file, const result_header *h, const result_mesh *m) {
   char group[NAME], name[NAME + 16];
   const hsize_t nodes[2] = {(hsize_t)m->node_count, 2},
-                cells[2] = {(hsize_t)m->cell_count, CORNERS};
+                cells[2] = {(hsize_t)m->cell_count, (hsize_t)m->columns};
   snprintf(group, sizeof group, "/meshes/%s", m->name);
   if (!h5_make_group(file, group) || !tell_of_mesh(file, group, m)) return false;
   snprintf(name, sizeof name, "%s/nodes", group);
   bool good = h5_write_doubles(file, name, h->reference + 2 * m->first_particle, 2, nodes, "m") &&
               describe(file, name, "places of the nodes at the beginning", NULL);
   snprintf(name, sizeof name, "%s/cells", group);
-  good = good && h5_write_integers(file, name, m->cells, 2, cells) &&
-         describe(file, name, "nodes of each cell, counter-clockwise, numbered from 0", "1");
+  good =
+      good && h5_write_integers(file, name, m->cells, 2, cells) &&
+      describe(file, name,
+               m->columns == 4 ? "nodes of each cell, counter-clockwise, numbered from 0"
+                               : "nodes of each cell, corners counter-clockwise, then those of the "
+                                 "sides, numbered from 0; -1 behind the last",
+               "1");
   snprintf(name, sizeof name, "%s/method", group);
   return good && h5_write_integers(file, name, m->method, 1, cells) &&
          describe(file, name, "of each cell: 1 a finite element, 2 blended, 3 element-free", "1");
@@ -225,13 +258,34 @@ static bool write_nothings(hid_t file, const mesh_views *v, long frames) {
   return good;
 }
 
+/* Numbers of XDMF for kinds of cells. */
+static int32_t kind_of(int nodes) {
+  enum { TRIANGLE = 4, QUADRILATERAL = 5, QUADRATIC_TRIANGLE = 36 };
+  return nodes == 3 ? TRIANGLE : nodes == 4 ? QUADRILATERAL : QUADRATIC_TRIANGLE;
+}
+
+static bool write_set(hid_t file, const char *name, const mesh_cells *c) {
+  const hsize_t table[2] = {(hsize_t)c->count, (hsize_t)c->alike},
+                row[1] = {(hsize_t)(c->count + c->corner_count)};
+  if (c->alike || c->count == 0) return h5_write_integers(file, name, c->corners, 2, table);
+  int32_t *all = must_alloc((size_t)row[0] * sizeof *all), *at = all;
+  const int32_t *from = c->corners;
+  for (long n = 0; n < c->count; from += c->nodes[n++]) {
+    *at++ = kind_of(c->nodes[n]);
+    memcpy(at, from, c->nodes[n] * sizeof *at);
+    at += c->nodes[n];
+  }
+  const bool good = h5_write_integers(file, name, all, 1, row);
+  free(all);
+  return good;
+}
+
 bool mesh_views_write(hid_t file, const mesh_views *v, long frames) {
   char name[NAME];
   bool good = v->set_count == 0 || h5_make_group(file, "/xdmf/cells");
   for (int k = 0; good && k < v->set_count; k++) {
-    const hsize_t shape[2] = {(hsize_t)v->sets[k].count, CORNERS};
     mesh_views_set_name(k, name, sizeof name);
-    good = h5_write_integers(file, name, v->sets[k].corners, 2, shape);
+    good = write_set(file, name, &v->sets[k]);
   }
   for (int k = 0; good && k < v->path_count; k++)
     good = show_paths(file, &v->paths[k], frames);

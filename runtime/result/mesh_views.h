@@ -3,19 +3,32 @@
 
      /meshes/<mesh>/{nodes,cells,method}   result.h
      /xdmf/cells/<k>                       [C, 4] particles: cells of all meshes that no crack
-                                           crosses, for the frames of set k
+                                           crosses, for the frames of set k; [C, 3] or [C, 6] of
+                                           triangles; where kinds differ all in one row, each with
+                                           its number of XDMF before it
      /xdmf/cracks/<crack>/<frame>          [P, 3] points of the crack
      /xdmf/nothing/<columns>/<P>           [P] NaN, [P, 3] 0: fields of the nodes on a crack, which
                                            has none; a reader of ParaView's colours a grid only
                                            with arrays that all grids have
 
-   A crack that has come further leaves out more cells: frames in between share a set. */
+   A crack that has come further leaves out more cells, and so do cells that died: frames in between
+   share a set. Which cells have died a field of nodes tells, dead_cells: a node has a bit for each
+   cell that begins with it, in their order, 1, 2, 4, ...: 1 where the first has died. */
 #ifndef PERILAT_RUNTIME_MESH_VIEWS_H
 #define PERILAT_RUNTIME_MESH_VIEWS_H
 
 #include <hdf5.h>
+#include <math.h>
+#include <string.h>
 
 #include "runtime/result/result.h"
+
+#define MESH_DEAD_CELLS "dead_cells"
+
+/* Whether a cell has died: what its first corner has, and how many cells before it begin there. */
+static inline bool mesh_cell_died(double value, int before) {
+  return fmod(floor(ldexp(value, -before)), 2) >= 1;
+}
 
 typedef struct mesh_path { /* a crack, frame by frame */
   const result_field *field;
@@ -24,9 +37,11 @@ typedef struct mesh_path { /* a crack, frame by frame */
   double *points;   /* [frames][most][2] m, NaN beyond the last */
 } mesh_path;
 
-typedef struct mesh_cells { /* that no crack crosses */
-  int32_t *corners;         /* [count][4] particles */
-  long count;
+typedef struct mesh_cells { /* that are there and no crack crosses */
+  int32_t *corners;         /* [corner_count] particles, cell by cell */
+  unsigned char *nodes;     /* [count] of each: 3, 4, 6 */
+  long count, corner_count;
+  int alike; /* nodes of all; 0: they differ */
 } mesh_cells;
 
 typedef struct mesh_views {
@@ -35,6 +50,8 @@ typedef struct mesh_views {
   mesh_cells *sets; /* [set_count] one at least where there are meshes */
   int set_count;
   int *set_of_frame; /* [frames] */
+  double *dead;      /* [frames][particles] values of dead_cells; NULL: none can die */
+  long particles;
 } mesh_views;
 
 /* Whose points are known already, with room for `most` of each frame. */

@@ -221,7 +221,11 @@ static const char *mesh_of(const result_header *h, const result_field *f) {
   return "";
 }
 
-/* Room for the paths. A damaged frame leaves a sentence. */
+static bool is_of_dead_cells(const result_field *f) {
+  return !f->interaction && strcmp(f->name, MESH_DEAD_CELLS) == 0;
+}
+
+/* Room for the paths, and for which cells have died. A damaged frame leaves a sentence. */
 static bool open_paths(const result *r, frame_sets *s, char *error, size_t size) {
   const result_header *h = s->header;
   mesh_views *v = &s->meshes;
@@ -230,6 +234,11 @@ static bool open_paths(const result *r, frame_sets *s, char *error, size_t size)
     if (result_field_is_path(&h->fields[k]))
       v->paths[v->path_count++] =
           (mesh_path){.field = &h->fields[k], .mesh = mesh_of(h, &h->fields[k]), .most = 1};
+  for (int k = 0; k < h->field_count; k++)
+    if (is_of_dead_cells(&h->fields[k])) {
+      v->particles = h->fields[k].count;
+      v->dead = must_calloc((size_t)(v->particles * s->count) + 1, sizeof *v->dead);
+    }
   if (v->path_count > 0 && !frame_file_each(r->frames, measure_frame, s, error, size)) return false;
   for (int k = 0; k < v->path_count; k++)
     v->paths[k].points =
@@ -283,6 +292,9 @@ static bool put_frame(void *context, int64_t frame, const double *record) {
     const int rank = shape_of(s, f, shape);
     const mesh_path *p = path_of(s, f);
     if (p) memcpy(p->points + 2 * p->most * frame, values, 2 * (size_t)p->most * sizeof *values);
+    if (is_of_dead_cells(f))
+      memcpy(s->meshes.dead + s->meshes.particles * frame, values,
+             (size_t)s->meshes.particles * sizeof *values);
     good = s->sets[k] >= 0 && h5_write_frame(s->sets[k], (long)frame, rank, shape, values);
     values += numbers_of(f);
   }

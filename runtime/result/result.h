@@ -91,7 +91,9 @@ typedef struct result_mesh {
   const char *name;
   long first_particle, node_count; /* its nodes are particles of the result */
   long cell_count;
-  const int32_t *cells;  /* [cell_count][4] its nodes, counter-clockwise */
+  int columns;          /* 4; 3, 4 or 6 where cells come from a file */
+  const int32_t *cells; /* [cell_count][columns] its nodes: corners counter-clockwise, then those of
+                            the sides; -1 behind the last */
   const int32_t *method; /* [cell_count] 1, 2, 3 as /meshes says */
   double thickness;      /* m */
 } result_mesh;

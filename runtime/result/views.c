@@ -5,7 +5,8 @@
 
 #include "runtime/result/hdf5_tools.h"
 
-enum { NAME = 512, LINE = 3, QUAD = 9 }; /* VTK's numbers of cells that are lines, quadrilaterals */
+enum { NAME = 512 };
+enum { LINE = 3, TRIANGLE = 5, QUAD = 9, QUADRATIC_TRIANGLE = 22 }; /* of VTK */
 
 int views_components(const result_field *f) {
   return f->components == 1 ? 1 : 3;
@@ -135,32 +136,50 @@ static bool write_counts(hid_t file, const char *name, const int64_t *values, in
 }
 
 typedef struct grid_parts { /* of the grid, which frames choose from */
-  int count, corners;       /* of a cell: 2 or 4 */
-  int64_t *cells;           /* [count] */
+  int count;
+  const mesh_cells *sets; /* [count]; NULL: bonds */
+  int64_t *cells, *ids;   /* [count] how many, and points of all of them */
 } grid_parts;
 
 /* Bonds, or where there are none the cells of meshes. */
 static grid_parts parts_of(const result_header *h, const mesh_views *m) {
   const bool bonds = views_bonds(h) > 0 || m->set_count == 0;
-  grid_parts p = {bonds ? 1 : m->set_count, bonds ? 2 : 4, NULL};
-  p.cells = must_calloc((size_t)p.count, sizeof *p.cells);
-  for (int k = 0; k < p.count; k++)
+  grid_parts p = {.count = bonds ? 1 : m->set_count, .sets = bonds ? NULL : m->sets};
+  p.cells = must_calloc(2 * (size_t)p.count, sizeof *p.cells);
+  p.ids = p.cells + p.count;
+  for (int k = 0; k < p.count; k++) {
     p.cells[k] = bonds ? views_bonds(h) : m->sets[k].count;
+    p.ids[k] = bonds ? 2 * views_bonds(h) : m->sets[k].corner_count;
+  }
   return p;
 }
 
-/* Cells of one kind have their points at 0, 2, 4, ... of each part. */
+static int nodes_of(const grid_parts *p, int part, int64_t cell) {
+  return p->sets ? p->sets[part].nodes[cell] : 2;
+}
+
+static unsigned char kind_of(int nodes) {
+  return nodes == 2 ? LINE : nodes == 3 ? TRIANGLE : nodes == 4 ? QUAD : QUADRATIC_TRIANGLE;
+}
+
+/* In each part the points of cells begin at 0. */
 static bool write_kinds(hid_t file, const grid_parts *p) {
-  int64_t all = 0, at = 0;
+  int64_t all = 0, at = 0, cell = 0;
   for (int k = 0; k < p->count; k++)
     all += p->cells[k];
   const hsize_t cells[1] = {(hsize_t)all}, ends[1] = {(hsize_t)(all + p->count)};
   int32_t *offsets = must_alloc((size_t)ends[0] * sizeof *offsets);
   unsigned char *types = must_alloc((size_t)all + 1);
-  memset(types, p->corners == 2 ? LINE : QUAD, (size_t)all + 1);
-  for (int k = 0; k < p->count; k++)
-    for (int64_t c = 0; c <= p->cells[k]; c++)
-      offsets[at++] = (int32_t)(p->corners * c);
+  for (int k = 0; k < p->count; k++) {
+    int32_t offset = 0;
+    for (int64_t c = 0; c < p->cells[k]; c++) {
+      const int nodes = nodes_of(p, k, c);
+      types[cell++] = kind_of(nodes);
+      offsets[at++] = offset;
+      offset += nodes;
+    }
+    offsets[at++] = offset;
+  }
   const bool good = h5_write_integers(file, "/VTKHDF/Offsets", offsets, 1, ends) &&
                     h5_write_bytes(file, "/VTKHDF/Types", types, 1, cells);
   free(types);
@@ -193,10 +212,10 @@ static bool show_bonds(hid_t file, const result_header *h) {
 static bool write_cells(hid_t file, const mesh_views *m) {
   hsize_t ends[1] = {0}, at = 0;
   for (int k = 0; k < m->set_count; k++)
-    ends[0] += 4 * (hsize_t)m->sets[k].count;
+    ends[0] += (hsize_t)m->sets[k].corner_count;
   int32_t *corners = must_alloc(((size_t)ends[0] + 1) * sizeof *corners);
   for (int k = 0; k < m->set_count; k++) {
-    const size_t numbers = 4 * (size_t)m->sets[k].count;
+    const size_t numbers = (size_t)m->sets[k].corner_count;
     if (numbers) memcpy(corners + at, m->sets[k].corners, numbers * sizeof *corners);
     at += numbers;
   }
@@ -210,17 +229,14 @@ static bool write_grid(hid_t file, const result_header *h, const mesh_views *m,
   const hsize_t points[2] = {(hsize_t)h->particle_count, 3};
   const h5_block places = {.set = "/particles/reference",
                            .count = {points[0], (hsize_t)h->dimensions}};
-  int64_t *numbers = must_calloc(2 * (size_t)p->count, sizeof *numbers), *ids = numbers + p->count;
-  for (int k = 0; k < p->count; k++) {
+  int64_t *numbers = must_calloc((size_t)p->count, sizeof *numbers);
+  for (int k = 0; k < p->count; k++)
     numbers[k] = h->particle_count;
-    ids[k] = p->corners * p->cells[k];
-  }
   const bool good = write_counts(file, "/VTKHDF/NumberOfPoints", numbers, p->count) &&
                     write_counts(file, "/VTKHDF/NumberOfCells", p->cells, p->count) &&
-                    write_counts(file, "/VTKHDF/NumberOfConnectivityIds", ids, p->count) &&
+                    write_counts(file, "/VTKHDF/NumberOfConnectivityIds", p->ids, p->count) &&
                     h5_make_view(file, VIEWS_POINTS, 2, points, &places, 1, false) &&
-                    (p->corners == 2 ? show_bonds(file, h) : write_cells(file, m)) &&
-                    write_kinds(file, p);
+                    (p->sets ? write_cells(file, m) : show_bonds(file, h)) && write_kinds(file, p);
   free(numbers);
   return good;
 }
@@ -244,9 +260,10 @@ static bool write_parts(hid_t file, const mesh_views *m, const grid_parts *p, lo
           *id = cell + frames;
   for (long k = 0; k < frames; k++) {
     part[k] = p->count > 1 ? m->set_of_frame[k] : 0;
-    for (int64_t n = 0; n < part[k]; n++)
+    for (int64_t n = 0; n < part[k]; n++) {
       cell[k] += p->cells[n];
-    id[k] = p->corners * cell[k];
+      id[k] += p->ids[n];
+    }
   }
   const bool good = h5_write_list(file, "/VTKHDF/Steps/PartOffsets", part, 1, shape) &&
                     h5_write_list(file, "/VTKHDF/Steps/CellOffsets", cell, 2, shape) &&

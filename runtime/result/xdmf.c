@@ -121,6 +121,18 @@ static void print_bonds(const sidecar *s, const char *name) {
   fputs("</Grid>", s->out);
 }
 
+/* A set of cells that are alike or not. */
+static void print_set(const sidecar *s, const char *name, const mesh_cells *c) {
+  static const char *const words[] = {[3] = "Triangle\"", [4] = "Quadrilateral\"", [6] = "Tri_6\""};
+  if (c->alike)
+    print_topology(s->out, s->file, words[c->alike], name, c->count, c->alike);
+  else {
+    fprintf(s->out, "<Topology TopologyType=\"Mixed\" NumberOfElements=\"%ld\">", c->count);
+    print_item(s->out, s->file, name, "Int", 4, c->count + c->corner_count, 1);
+    fputs("</Topology>\n", s->out);
+  }
+}
+
 static void print_cells(const sidecar *s) {
   begin_series(s, "cells", (int)strlen("cells"));
   for (long frame = 0; frame < s->frames; frame++) {
@@ -128,7 +140,7 @@ static void print_cells(const sidecar *s) {
     char name[512];
     mesh_views_set_name(set, name, sizeof name);
     begin_grid(s->out, "frame", s->times[frame]);
-    print_topology(s->out, s->file, "Quadrilateral\"", name, s->meshes->sets[set].count, 4);
+    print_set(s, name, &s->meshes->sets[set]);
     print_geometry(s->out, s->file, VIEWS_POINTS, s->header->particle_count);
     print_attributes(s, frame, false);
     fputs("</Grid>\n", s->out);

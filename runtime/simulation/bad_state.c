@@ -169,7 +169,11 @@ static void look_at_bonds(bad_search *s, int32_t particle) {
 /* Of a mesh the point around the node that is worst. */
 static void look_at_points(bad_search *s, int64_t site) {
   s->point.field = s->fields;
-  if (cells_worst_point(s->state, site, &s->point)) s->found.point = &s->point;
+  const int law = cells_worst_point(s->of->state, site, &s->point);
+  if (law < 0) return;
+  s->law = &s->of->laws[law];
+  s->found.interaction = (int)(s->law - s->bodies[0].laws);
+  s->found.point = &s->point;
 }
 
 static int first_bad(const bad_search *s) {

@@ -10,6 +10,7 @@
 #include "runtime/analysis/particle_tensors.h"
 #include "runtime/continuum/crack_paths.h"
 #include "runtime/continuum/node_fields.h"
+#include "runtime/continuum/point_law.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/output_fields.h"
 #include "runtime/interaction/damage.h"
@@ -215,13 +216,31 @@ static void values_of_dissipated(const frames_of *of, const frame_source *from, 
   }
 }
 
+/* Kept without being asked for: pictures leave out dead cells. */
+static void values_of_dead_cells(const frames_of *of, const frame_source *from, double *values) {
+  const cells *c = of->body->cells;
+  const long count = of->body->lattice_rows->particle_count;
+  int *begun = must_calloc((size_t)count + 1, sizeof *begun);
+  (void)from;
+  memset(values, 0, (size_t)count * sizeof *values);
+  for (int cell = 0; c && cell < mesh_cell_count(&c->mesh); cell++) {
+    int corner[ELEMENT_MOST_NODES];
+    mesh_cell_nodes(&c->mesh, cell, corner);
+    const int32_t first = cells_particle(c, corner[0]);
+    if (c->mesh.cell[cell] == CELL_ABSENT || first < 0) continue;
+    values[first] += cells_dead(c, cell) ? ldexp(1, begun[first]) : 0;
+    begun[first]++;
+  }
+  free(begun);
+}
+
 /* --- tensors ---------------------------------------------------------------------------------- */
 
 static void find_stress(const frames_of *of, bond_forces *forces, double *const *values) {
   if (of->body->cells) {
     double *const *u = of->body->body->displacement;
     const double *const two[2] = {u[0], u[1]};
-    node_field_stress(of->body->cells, of->body->laws[0].parameters, two, values);
+    node_field_stress(of->body->cells, two, values);
     return;
   }
   bond_forces_find(forces, -1);
@@ -290,6 +309,11 @@ static bool with_losses(const deck_output *asked, const pl_law *law) {
   const bool may_lose = law->field_count > 0 || law->reads_rates;
   return asked->energy &&
          (law->kind != PL_STATE || (asked->losses && may_lose && sweep_knows_losses(law, true)));
+}
+
+static bool with_failing(const deck_output *asked, const pl_law *law) {
+  (void)asked;
+  return law->kind == PL_CONTINUUM && point_law_failed(law) >= 0;
 }
 
 /* as many as there are directions of space, or axes to turn about */
@@ -396,7 +420,8 @@ static int first_law(const frame_set *f, int b) {
 /* What is stored of any law. */
 static void add_own(frame_set *f, const own_field *own, int b) {
   const run_body *of = &f->bodies[b];
-  if (!is_asked(f->asked, own->name) || !exists_on(own, f->asked, of)) return;
+  const bool asked = is_asked(f->asked, own->name) || own->values == values_of_dead_cells;
+  if (!asked || !exists_on(own, f->asked, of)) return;
   const bool largest = own->values == values_of_damage && damage_on_particles(of->law);
   add(f,
       (frame_field){.name = own->name,
@@ -475,7 +500,7 @@ static bool is_field(const run_law *of, int parameter) {
 static void add_parameter(frame_set *f, int n, int parameter, values_of *values, int index) {
   const pl_law *law = f->laws[n].law;
   const pl_parameter *p = &law->parameters[parameter];
-  const bool pairs = law->kind != PL_STATE || law->pairwise;
+  const bool pairs = law->kind != PL_CONTINUUM && (law->kind != PL_STATE || law->pairwise);
   const bool bonds = pairs && parameter != law->density;
   const bool link = run_body_is_link(&f->bodies[f->laws[n].from->lattice]);
   if (!is_asked(f->asked, p->name) || (link && !bonds)) return;
@@ -638,6 +663,39 @@ static void values_of_law(const frame_set *f, int field, const run_body *of, con
   if (from->values) from->values(&here, from, values);
 }
 
+/* How many of a body's laws have the field. */
+static int laws_with(const frame_set *f, int field, const run_body *of) {
+  int count = 0;
+  for (int n = 0; n < of->law_count; n++)
+    count += f->sources[field * f->law_count + (of->laws + n - f->laws)].values != NULL;
+  return count;
+}
+
+/* Nodes between cells of several laws that have the field: the mean by the areas of these. */
+static void values_between_cells(const frame_set *f, int field, const run_body *of,
+                                 double *values) {
+  const rows *g = of->lattice_rows;
+  const size_t count = (size_t)g->particle_count;
+  double *one = must_calloc(count, sizeof *one), *weight = must_calloc(count, sizeof *weight),
+         *sum = must_calloc(count, sizeof *sum);
+  for (int n = 0; n < of->law_count; n++) {
+    const run_law *law = &of->laws[n];
+    if (!f->sources[field * f->law_count + (law - f->laws)].values) continue;
+    values_of_law(f, field, of, law, one);
+    for (long p = 0; p < g->particle_count; p++) {
+      const double share = law->share[g->particle_site[p]];
+      if (!(share > 0)) continue;
+      sum[p] += share * one[p];
+      weight[p] += share;
+    }
+  }
+  for (long p = 0; p < g->particle_count; p++)
+    if (weight[p] > 0) values[p] = sum[p] / weight[p];
+  free(one);
+  free(weight);
+  free(sum);
+}
+
 static void values_of_cracks(const frame_set *f, const frame_field *field, double *values) {
   long count;
   const crack *found = crack_line_find(line_of(f, field), &count);
@@ -672,6 +730,10 @@ void frames_values(const frame_set *f, int field, double *values) {
     const run_body *here = &f->bodies[b];
     double *at = values + here->first_particle * of->components;
     fill_without(of, here, at);
+    if (here->cells && of->of_law && laws_with(f, field, here) > 1) {
+      values_between_cells(f, field, here, at);
+      continue;
+    }
     for (int n = 0; n < here->law_count && !run_body_is_link(here); n++)
       values_of_law(f, field, here, &here->laws[n], at);
   }

@@ -80,9 +80,10 @@ static bool topology_serves(const pl_law *law, const deck_lattice *l, const rows
 }
 
 /* Laws of continua are for meshes, and these have no others. */
-static bool kind_differs(const pl_law *law, const deck *k, int lattice, diagnostics *d) {
+static bool kind_differs(const pl_law *law, span where, const deck *k, int lattice,
+                         diagnostics *d) {
   const bool continuum = law->kind == PL_CONTINUUM;
-  diag_report(d, DIAG_CONFLICT, law_fits_where(k, lattice),
+  diag_report(d, DIAG_CONFLICT, where,
               continuum ? "`%s` is a law of a continuum, but `%s` is no mesh"
                         : "`%s` is no law of a continuum, but `%s` is a mesh",
               law->name, k->lattices[lattice].name);
@@ -91,8 +92,11 @@ static bool kind_differs(const pl_law *law, const deck *k, int lattice, diagnost
   return false;
 }
 
-/* Stress intensities, and what hides nodes from points, are of linear laws. */
+/* Stress intensities, and what hides nodes from points, are of linear laws. With other laws beside it
+   depends on whose cells the tips are in (tip_laws.h). */
 static bool cracks_fit(const pl_law *law, const deck *k, const deck_mesh *m, diagnostics *d) {
+  const int whole = deck_find_material(k, m->name);
+  if (whole >= 0 && k->materials[whole].beside) return true;
   for (int n = 0; n < k->crack_count; n++) {
     if (!k->cracks[n].mesh || strcmp(k->cracks[n].mesh, m->name) != 0) continue;
     diag_report(d, DIAG_CONFLICT, k->cracks[n].item.where,
@@ -105,32 +109,31 @@ static bool cracks_fit(const pl_law *law, const deck *k, const deck_mesh *m, dia
 }
 
 /* What meshes do not do as yet, and what of the deck would have to be done. */
-static bool mesh_can_have(const pl_law *law, const deck *k, int lattice, diagnostics *d) {
+static bool mesh_can_have(const pl_law *law, const deck_material *of, span where, const deck *k,
+                          int lattice, diagnostics *d) {
   const deck_mesh *m = &k->lattices[lattice];
   const deck_item *item = NULL;
   const char *why = NULL;
   if (!law->linear && !cracks_fit(law, k, m, d)) return false;
   if (!law->linear && k->relaxation.solved) {
-    diag_report(d, DIAG_NOT_SUPPORTED, law_fits_where(k, lattice),
+    diag_report(d, DIAG_NOT_SUPPORTED, where,
                 "the law `%s` is not linear: `&static` solves equations of linear laws alone",
                 law->name);
     diag_hint(d, "`&relaxation increments = %d` in its place brings a body of any law to rest",
               k->relaxation.increments);
     return false;
   }
-  for (int n = 0; n < k->material_count && !item; n++)
-    if (k->materials[n].lattice && strcmp(k->materials[n].lattice, m->name) == 0 &&
-        (k->materials[n].region || k->materials[n].between[0])) {
-      item = &k->materials[n].item;
-      why = "a material of its own in a part of it";
-    }
+  if (of && of->between[0]) {
+    item = &of->item;
+    why = "a material between two regions, as it has no bonds;";
+  }
   for (int n = 0; n < k->field_count && !item; n++)
     if (k->fields[n].lattice && strcmp(k->fields[n].lattice, m->name) == 0) {
       item = &k->fields[n].item;
       why = "a random field";
     }
   if (!item && law->varying_count > 0) {
-    item = &k->materials[deck_find_material(k, m->name)].item;
+    item = of ? &of->item : &k->materials[deck_find_material(k, m->name)].item;
     why = "parameters that differ from place to place";
   }
   const deck_protect *held = protected_on(k, m->name);
@@ -149,13 +152,14 @@ static bool mesh_can_have(const pl_law *law, const deck *k, int lattice, diagnos
   return false;
 }
 
-bool law_fits_lattice(const pl_law *law, const deck *k, int lattice, const rows *w,
-                      diagnostics *d) {
+bool law_fits_lattice(const pl_law *law, const deck_material *of, const deck *k, int lattice,
+                      const rows *w, diagnostics *d) {
   const deck_lattice *l = &k->lattices[lattice];
+  const span where = of ? deck_where(&of->item, "model") : law_fits_where(k, lattice);
   const bool same = law->dimensions == w->dimensions;
   if ((law->kind == PL_CONTINUUM) != deck_lattice_is_mesh(l))
-    return kind_differs(law, k, lattice, d);
-  if (same && law->kind == PL_CONTINUUM) return mesh_can_have(law, k, lattice, d);
+    return kind_differs(law, where, k, lattice, d);
+  if (same && law->kind == PL_CONTINUUM) return mesh_can_have(law, of, where, k, lattice, d);
   if (same && (law->kind == PL_STATE || w->list)) return topology_serves(law, l, w, d);
   if (same && bravais_is_hexagon(l)) return true;
   if (!same) {

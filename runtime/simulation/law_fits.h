@@ -14,8 +14,9 @@
 span law_fits_where(const deck *k, int lattice);
 
 /* A law is of the plane or of space. Laws of bonds run on the hexagonal lattice of nearest
-   neighbours. */
-bool law_fits_lattice(const pl_law *law, const deck *k, int lattice, const rows *w, diagnostics *d);
+   neighbours. `of`: the material that has it; NULL: that of the whole lattice. */
+bool law_fits_lattice(const pl_law *law, const deck_material *of, const deck *k, int lattice,
+                      const rows *w, diagnostics *d);
 /* Particles have a mass: the law has a density. */
 bool law_fits_motion(const pl_law *law, const deck *k, int lattice, diagnostics *d);
 /* A warning where the deck protects particles of the lattice in vain. */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/base/elementary.h"
+#include "runtime/continuum/cells.h"
 #include "runtime/interaction/family.h"
 
 const char *const ledger_names[LEDGER_COUNT] = {
@@ -55,6 +56,7 @@ static double imbalance(const ledger *g, const ledger_laws *of, const double *te
 
 double ledger_stored_by(const sweep *law) {
   double sum = 0;
+  if (law->law->kind == PL_CONTINUUM) return law->law->stores ? cells_stored_by(law) : NAN;
   for (int row = 0; row < law->lattice->row_count; row++)
     sum += family_stored_in_row(law, row);
   return law->law->stores ? sum : NAN;

@@ -261,7 +261,7 @@ static void take_gauges(monitor *m, const monitors *all, diagnostics *d) {
     const run_body *of = m->of[end];
     take_sites(m, end, all, opening ? m->deck->between[end] : m->deck->region);
     m->gauge[end] = mesh_gauge_new(m->deck, m->indices[end], m->index_count[end], of->cells,
-                                   of->laws[0].parameters, of->loads, of->body, d);
+                                   of->loads, of->body, d);
   }
 }
 

@@ -10,7 +10,10 @@
 #include "dsl/base/elementary.h"
 #include "runtime/analysis/material.h"
 #include "runtime/analysis/stability.h"
+#include "runtime/continuum/cell_sizes.h"
 #include "runtime/continuum/line_load.h"
+#include "runtime/continuum/side_load.h"
+#include "runtime/continuum/tip_laws.h"
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/filling/lattice.h"
 #include "runtime/filling/linked.h"
@@ -59,7 +62,8 @@ static bool is_for_one_of_several(const run_body *b, const run_law *l, diagnosti
 }
 
 /* A body has particles of one kind, and engines for laws of one kind. */
-static bool laws_are_alike(const run_body *b, diagnostics *d) {
+static bool laws_are_alike(const run_body *b, const deck *k, diagnostics *d) {
+  if (deck_lattice_is_mesh(&k->lattices[b->lattice])) return true;
   for (int n = 0; n < b->law_count && b->law_count > 1; n++) {
     if (!is_for_one_of_several(b, &b->laws[n], d)) return false;
     const pl_law *first = b->law, *law = b->laws[n].law;
@@ -83,15 +87,23 @@ static bool laws_fit(run_body *b, const deck *k, diagnostics *d) {
   for (int n = 0; n < b->law_count; n++) {
     run_law *l = &b->laws[n];
     l->rows = b->lattice_rows;
-    l->fits = l->law && law_fits_lattice(l->law, k, b->lattice, b->lattice_rows, d);
+    l->fits =
+        l->law && law_fits_lattice(l->law, l->from->material, k, b->lattice, b->lattice_rows, d);
     good = good && l->fits;
   }
-  return good && laws_are_alike(b, d);
+  return good && laws_are_alike(b, k, d);
 }
 
-/* Of several laws: which bonds are whose. */
+/* Of several laws: which bonds are whose; of those of a mesh, which nodes. */
 static bool open_parts(run_body *b, const deck *k, diagnostics *d) {
   if (b->law_count == 1) return true;
+  if (b->cells) {
+    for (int n = 0; n < b->law_count; n++) {
+      b->laws[n].own = b->cells->where.sites[n];
+      b->laws[n].share = b->cells->where.share[n];
+    }
+    return true;
+  }
   const int first = (int)(b->laws[0].from - k->interactions);
   const bool families = !b->law->pairwise;
   b->parts = law_parts_new(k, first, b->law_count, b->lattice_rows, families, d);
@@ -142,28 +154,50 @@ static unsigned char *held_freedoms(const run_body *b) {
 }
 
 /* The fields of a tip are those of isotropic plates. */
-static bool is_isotropic(const run_body *b, const deck *k, diagnostics *d) {
-  const double(*D)[3] = b->cells->stiffness.D, scale = 1e-9 * D[0][0];
+static bool is_isotropic(const run_body *b, diagnostics *d) {
+  const int law = b->cells->tips->law;
+  const double(*D)[3] = b->cells->stiffness[law].D, scale = 1e-9 * D[0][0];
   double off = fabs(D[0][0] - D[1][1]) + fabs(D[0][1] - D[1][0]) + fabs(D[0][2]) + fabs(D[1][2]) +
                fabs(D[2][2] - 0.5 * (D[0][0] - D[0][1]));
   if (off <= scale) return true;
-  diag_report(d, DIAG_CONFLICT, law_fits_where(k, b->lattice),
+  diag_report(d, DIAG_CONFLICT, deck_where(&b->laws[law].from->material->item, "model"),
               "cracks need an isotropic law: stress intensities of `%s` have no meaning",
-              b->law->name);
+              b->laws[law].law->name);
   return false;
 }
 
-static bool find_limit_of_cells(run_body *b, const deck *k, diagnostics *d) {
-  const run_law *l = &b->laws[0];
-  unsigned char *held = held_freedoms(b);
-  cells_take_law(b->cells, l->law, l->parameters);
-  if (b->cells->tips && !is_isotropic(b, k, d)) {
-    free(held);
-    return false;
+static void give_laws(const run_body *b) {
+  cells_law *laws = must_calloc((size_t)b->law_count, sizeof *laws);
+  for (int n = 0; n < b->law_count; n++)
+    laws[n] = (cells_law){b->laws[n].law, b->laws[n].parameters};
+  cells_take_laws(b->cells, laws);
+  free(laws);
+}
+
+static bool cracks_suit_laws(const run_body *b, const deck *k, diagnostics *d) {
+  const cells *c = b->cells;
+  return !c->tips || (tip_laws_fit(c->tips, k, b->name, &c->where, c->linear, &c->mesh, d) &&
+                      is_isotropic(b, d));
+}
+
+static bool cells_suit_laws(const run_body *b, diagnostics *d) {
+  for (int n = 0; n < b->law_count; n++) {
+    const run_law *l = &b->laws[n];
+    if (!cell_sizes_fit(&b->cells->mesh, cell_laws_own(&b->cells->where, n), l->law, l->parameters,
+                        deck_where(&l->from->material->item, "model"), d))
+      return false;
   }
-  cells_step_limit(b->cells, l->parameters, held, &b->limit);
+  return true;
+}
+
+static bool find_limit_of_cells(run_body *b, const deck *k, diagnostics *d) {
+  if (!cells_suit_laws(b, d)) return false;
+  give_laws(b);
+  if (!cracks_suit_laws(b, k, d)) return false;
+  unsigned char *held = held_freedoms(b);
+  cells_step_limit(b->cells, held, &b->limit);
   free(held);
-  return step_limit_check(k, law_fits_where(k, b->lattice), l->law, &b->limit, d);
+  return step_limit_check(k, law_fits_where(k, b->lattice), b->law, &b->limit, d);
 }
 
 static bool find_limit(run_body *b, const deck *k, diagnostics *d) {
@@ -177,6 +211,15 @@ static bool find_limit(run_body *b, const deck *k, diagnostics *d) {
   free(laws);
   l = law_at_fault(b);
   return step_limit_check(k, deck_where(&l->from->material->item, "model"), l->law, &b->limit, d);
+}
+
+/* Of the nodes of a mesh with several laws. */
+static void take_densities_of_cells(const run_body *b, double *rho) {
+  double *density = must_calloc((size_t)b->law_count, sizeof *density);
+  for (int n = 0; n < b->law_count; n++)
+    density[n] = material_density(b->laws[n].law, b->laws[n].parameters);
+  cells_densities(b->cells, density, rho);
+  free(density);
 }
 
 /* Of the particles that a law owns; those between regions own none. */
@@ -209,8 +252,9 @@ static bool set_masses(run_body *b, rows *const *built) {
     return true;
   }
   double *rho = must_calloc((size_t)b->lattice_rows->size, sizeof *rho);
-  for (int n = 0; n < b->law_count; n++)
+  for (int n = 0; n < b->law_count && !b->cells; n++)
     take_densities(b, &b->laws[n], rho);
+  if (b->cells) take_densities_of_cells(b, rho);
   rows_set_densities(b->lattice_rows, rho);
   free(rho);
   return true;
@@ -335,6 +379,40 @@ static void take_point(void *context, const double at[2], double area, const poi
                           t->number, area * s->n[n]);
 }
 
+/* Adds a share along x and y; the direction may turn along the edge. */
+static void take_side(void *context, const double at[2], const double normal[2], double area,
+                      const point_shape *s) {
+  taken_traction *t = context;
+  const double here[3] = {at[0], at[1], 0};
+  const double way[4][2] = {{1, 0}, {0, 1}, {normal[0], normal[1]}, {-normal[1], normal[0]}};
+  const double *along = way[t->from->component];
+  if (!t->share && t->good) t->good = loads_add_place(t->b->loads, here, t->number, t->d);
+  for (int n = 0; n < s->count && t->good; n++)
+    for (int a = 0; a < 2; a++) {
+      const double share = area * s->n[n] * along[a];
+      if (t->share)
+        t->share[2 * s->node[n] + a] += share;
+      else if (share != 0)
+        loads_add_share_there(t->b->loads, cells_particle(t->b->cells, s->node[n]), a, t->number,
+                              share);
+    }
+}
+
+/* On lines of the mesh's file. */
+static bool add_edge(run_body *b, const deck *k, int number, diagnostics *d) {
+  const deck_traction *f = &k->forces[number];
+  const gmsh_mesh *file = k->lattices[b->lattice].gmsh;
+  const int nodes = mesh_node_count(&b->cells->mesh);
+  taken_traction t = {.b = b, .from = f, .number = number, .good = true, .d = d};
+  if (!time_function_varies(&f->force)) t.share = must_calloc(2 * (size_t)nodes, sizeof(double));
+  sides_visit(&b->cells->mesh, file, gmsh_mesh_group(file, f->edge), take_side, &t);
+  for (int n = 0; n < 2 * nodes && t.share; n++)
+    if (t.share[n] != 0)
+      loads_add_share(b->loads, cells_particle(b->cells, n / 2), n % 2, number, t.share[n]);
+  free(t.share);
+  return t.good;
+}
+
 static void warn_of_part(const deck_traction *f, double loaded, const char *name, diagnostics *d) {
   const double length = pl_hypot(f->to[0] - f->from[0], f->to[1] - f->from[1]);
   if (!(loaded > 0) || loaded > (1 - 1e-6) * length) return;
@@ -366,7 +444,7 @@ static bool add_tractions(run_body *b, const deck *k, diagnostics *d) {
   bool good = true;
   for (int n = 0; n < k->force_count && b->loads; n++)
     if (k->forces[n].mesh && strcmp(k->forces[n].mesh, b->name) == 0)
-      good = add_traction(b, k, n, d) && good;
+      good = (k->forces[n].edge ? add_edge : add_traction)(b, k, n, d) && good;
   if (b->loads) loads_links_added(b->loads);
   return good;
 }
@@ -471,8 +549,11 @@ static void open_state(run_body *b, const deck *k, double step) {
                                                   : BODY_LEDGER;
   const int threads = choose_threads(b, k);
   if (b->cells) {
-    b->state = l->state =
-        cells_sweep(b->cells, k, l->parameters, b->cracks, step, threads, energies);
+    sweep **states = must_calloc((size_t)b->law_count, sizeof(sweep *));
+    b->state = cells_sweep(b->cells, k, b->cracks, step, threads, energies, states);
+    for (int n = 0; n < b->law_count; n++)
+      b->laws[n].state = states[n];
+    free(states);
     return;
   }
   if (b->law_count == 1 && !run_body_is_link(b)) {
@@ -491,9 +572,11 @@ static void open_state(run_body *b, const deck *k, double step) {
   free(laws);
 }
 
-/* Nodes on which loads or supports act, which forces of cells alone do not accelerate. */
+/* Nodes on which loads or supports act, or cells of laws that are not linear, which the stiffness
+   alone does not accelerate. */
 static void mark_loaded(run_body *b) {
   tips *t = b->cells ? b->cells->tips : NULL;
+  if (t && b->cells->linear) cells_mark_pushed(b->cells, t->loaded);
   for (long n = 0; t && n < b->loads->constraint_count; n++)
     t->loaded[cells_node(b->cells, b->loads->constraints[n].site)] = 1;
   for (long n = 0; t && n < b->loads->force_count; n++)
@@ -526,7 +609,7 @@ double run_body_limit_now(const run_body *b) {
   step_limit now = b->limit;
   if (!b->cells) return now.limit;
   unsigned char *held = held_freedoms(b);
-  cells_step_limit(b->cells, b->laws[0].parameters, held, &now);
+  cells_step_limit(b->cells, held, &now);
   free(held);
   return now.limit;
 }

@@ -71,6 +71,7 @@ static void add_state(part_list *l, const run_body *of) {
   if (!of->cells) return;
   cells_memory m = cells_remembered(of->state);
   add_cells(l, &m, of->cells->tips);
+  cells_memory_free(&m);
 }
 
 static void add_loads(part_list *l, loads *of) {

@@ -1,7 +1,7 @@
 /* The benchmark: ratios of programs that compute the same thing, taken in turn in one process,
    medians of at least five rounds. Prints tables and writes a flat object of named figures.
 
-   benchmark [--parts bonds,families,meshes,runs,lammps] [result.json] */
+   benchmark [--parts bonds,families,meshes,points,runs,lammps] [result.json] */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,6 +17,7 @@ typedef struct part {
 static const part parts[] = {{"bonds", benchmark_bonds},
                              {"families", benchmark_families},
                              {"meshes", benchmark_meshes},
+                             {"points", benchmark_points},
                              {"runs", benchmark_runs},
                              {"lammps", benchmark_lammps}};
 enum { PARTS = sizeof parts / sizeof *parts };
@@ -59,6 +60,8 @@ static const aim aims[] = {
     {"mplm_space_generated_of_handwritten", "mplm_space, 18 neighbours, of hand-written", true,
      0.85, 0.95},
     {"lps_cubic_generated_of_handwritten", "lps, 122 neighbours, of hand-written", true, 0.85,
+     0.95},
+    {"von_mises_generated_of_handwritten", "von_mises, plane strain, of hand-written", true, 0.85,
      0.95},
     {"mplm_bilinear_generated_times_naive", "mplm_bilinear, times naive", true, 10, 15},
     {"splm_concrete_generated_times_naive", "splm_concrete, times naive", true, 10, 15},

@@ -33,7 +33,7 @@ static void find_block(const contestant *c, int block, bool take) {
   }
   if (!take) point_forces_find(c->points, block, from, to, c->motion, false);
   for (int row = from; row < to && take; row++)
-    point_forces_take(c->points, row, c->force);
+    point_forces_take(c->points, row, false, c->force);
 }
 
 static void find(const contestant *c) {
@@ -132,9 +132,9 @@ static bool measure_case(figures *f, const mesh_case *of) {
   const point_motion motion = {u, u, 0, 1e-9};
   pl_law any = *linear->law.law;
   any.linear = 0;
-  point_forces *of_elastic =
-                   point_forces_new(&c->mesh, &c->points, &any, linear->law.parameters, 2, true),
-               *of_stiffening = point_forces_new(&c->mesh, &c->points, bent->law.law,
+  point_forces *of_elastic = point_forces_new(&c->mesh, NULL, &c->points, &any,
+                                              linear->law.parameters, 2, true),
+               *of_stiffening = point_forces_new(&c->mesh, NULL, &c->points, bent->law.law,
                                                  bent->law.parameters, 2, true);
   pool *memory = pool_new();
   contestant one[3], two[2];
@@ -178,7 +178,7 @@ static void measure_growth(figures *f) {
   double piece[PIECES], fresh[ROUNDS], changed = 0;
   crack_lines_open(&m.cracks);
   crack_lines_add(&m.cracks, (double[2]){0.025, 0.1}, (double[2]){0.025, 0.05});
-  node_stencil_open(&k, &m, &c->points, &c->stiffness, NULL);
+  node_stencil_open(&k, &m, &c->points, c->stiffness, NULL);
   double a[2] = {0.025, 0.05};
   for (int n = 0; n < PIECES; n++) {
     const double b[2] = {a[0] + 0.95e-3 / 3, a[1] + 0.3e-3 / 3}, begun = processor_seconds();
@@ -189,7 +189,7 @@ static void measure_growth(figures *f) {
   for (int n = 0; n < ROUNDS; n++) {
     node_stencil_close(&k);
     const double begun = processor_seconds();
-    node_stencil_open(&k, &m, &c->points, &c->stiffness, NULL);
+    node_stencil_open(&k, &m, &c->points, c->stiffness, NULL);
     fresh[n] = processor_seconds() - begun;
   }
   node_stencil_close(&k);

@@ -74,6 +74,7 @@ static const pl_law hooke_law = {.abi = PL_KERNEL_ABI,
                                  .point_step = hooke_step,
                                  .point_observe = hooke_observe,
                                  .point_tangent = hooke_tangent,
-                                 .linear = 1};
+                                 .linear = 1,
+                                 .failed_field = -1};
 
 #endif

@@ -111,6 +111,7 @@ static const pl_law softening_law = {.abi = PL_KERNEL_ABI,
                                      .point_step = softening_step,
                                      .point_ledger = softening_ledger,
                                      .point_observe = softening_observe,
-                                     .point_tangent = hooke_tangent};
+                                     .point_tangent = hooke_tangent,
+                                     .failed_field = -1};
 
 #endif

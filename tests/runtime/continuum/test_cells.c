@@ -136,8 +136,6 @@ static void what_cannot_be_is_refused(void **state) {
         "is element-free");
   wrong(MESH "&support region = 'left' fix = 'x', 'y' /\n&tips from = '-1 ms' /\n", "negative");
   wrong(MESH HELD "&newmark motion = 'slow' /\n", "cannot be `slow`");
-  wrong(MESH HELD "&material mesh = 'plate' model = 'hooke' region = 'left' E = 1e9 /\n",
-        "cannot have a material of its own");
   wrong(MESH HELD "&notch lattice = 'plate' shape = 'disc' centre = 0.1, 0.1 radius = 0.01 /\n",
         "is a mesh, not a lattice");
   wrong(MESH HELD "&zone mesh = 'plat' method = 'finite_elements' shape = 'disc' centre = 9, 9 "

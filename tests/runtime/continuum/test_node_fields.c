@@ -17,6 +17,8 @@ enum { ALONG = 9, UP = 8, NODES = ALONG * UP };
 
 typedef struct small_mesh {
   cells c;
+  cells_law law;
+  point_forces *none;
   rows nodes;
   node_layout layout;
   int32_t *site_particle;
@@ -35,7 +37,10 @@ static void begin(small_mesh *s, int gauss) {
     if (n % ALONG < 3) s->c.mesh.element_free[n] = 0;
   memset(s->c.mesh.element_gauss, gauss, (size_t)mesh_cell_count(&s->c.mesh));
   mesh_settle(&s->c.mesh);
-  s->c.law = &hooke_law;
+  s->law = (cells_law){&hooke_law, parameters};
+  s->c.where.count = 1;
+  s->c.laws = &s->law;
+  s->c.by_points = &s->none;
   s->layout = node_layout_of(nodes, 2.1);
   const size_t places = (size_t)s->layout.size;
   s->site_particle = malloc(places * sizeof *s->site_particle);
@@ -91,7 +96,7 @@ static void linear_fields_are_exact(void **state) {
         if (k < 2) assert_true(fabs(values[2 * n + k] - s.u[k][site]) < 1e-13);
         assert_true(fabs(s.out[k][site] - strain[k]) < 1e-12);
       }
-    node_field_stress(&s.c, parameters, u, s.out);
+    node_field_stress(&s.c, u, s.out);
     for (int n = 0; n < NODES; n++)
       for (int k = 0; k < 3; k++)
         assert_true(fabs(s.out[k][node_layout_at(&s.layout, n)] - stress[k]) < 1e-8 * stress[0]);

@@ -51,7 +51,7 @@ static void open_both(both *b) {
   integration_points_open(&b->points, &b->m);
   b->law = isotropic(30e9, 0.2, false);
   node_stencil_open(&b->K, &b->m, &b->points, &b->law, NULL);
-  b->P = point_forces_new(&b->m, &b->points, &hooke_law, hooke_values, 1, true);
+  b->P = point_forces_new(&b->m, NULL, &b->points, &hooke_law, hooke_values, 1, true);
   b->memory = pool_new();
   for (int d = 0; d < 2; d++) {
     b->u[d] = pool_doubles(b->memory, b->K.layout.size);
@@ -74,7 +74,7 @@ static void find_both(both *b) {
   node_stencil_multiply(&b->K, u, b->by_stencil, 0, b->m.nodes[1]);
   point_forces_find(b->P, 0, 0, b->m.nodes[1], &at, false);
   for (int row = 0; row < b->m.nodes[1]; row++)
-    point_forces_take(b->P, row, b->by_points);
+    point_forces_take(b->P, row, false, b->by_points);
 }
 
 static void move_at_random(both *b) {
@@ -199,7 +199,7 @@ static void laws_read_the_size_of_their_cell(void **state) {
   integration_points points;
   mesh_open_mapped(&m, (int[2]){12, 6}, cook, 1, 2.1);
   integration_points_open(&points, &m);
-  point_forces *p = point_forces_new(&m, &points, &sized, hooke_values, 1, true);
+  point_forces *p = point_forces_new(&m, NULL, &points, &sized, hooke_values, 1, true);
   pool *memory = pool_new();
   const double *u = pool_doubles(memory, p->strips.layout.size);
   double sum = 0, stored = 0, expected = 0;
@@ -238,7 +238,7 @@ static void tables_are_shared(void **state) {
               (double[2]){24 + 16 * k, 24 + 32 * k}, 1, 2.6);
     mesh_settle(&m);
     integration_points_open(&points, &m);
-    cell_strips_open(&s, &m, &points);
+    cell_strips_open(&s, &m, &points, NULL);
     tables[k] = s.table_count;
     cell_strips_close(&s);
     integration_points_close(&points);
@@ -290,7 +290,7 @@ static void nothing_comes_from_beside(void **state) {
   open_plate(&b.m, 12, 7, 2.1, 4, 1);
   open_both(&b);
   point_forces_free(b.P);
-  b.P = point_forces_new(&b.m, &b.points, &brittle, hooke_values, 1, true);
+  b.P = point_forces_new(&b.m, NULL, &b.points, &brittle, hooke_values, 1, true);
   for (int d = 0; d < 2; d++)
     for (int n = 0; n < mesh_node_count(&b.m); n++)
       b.u[d][node_layout_at(&b.K.layout, n)] = d ? 0.002 : -0.003;
@@ -568,7 +568,7 @@ static void nodes_show_states(void **state) {
   double stress[4], states[2], most[2] = {0, 0};
   const cells *c = simulation_cells(r.simulation, 0);
   for (int p = 0; p < 63; p++) {
-    assert_true(cells_mean_stress(c, p, stress));
+    assert_true(cells_mean_stress(c, 0, p, stress));
     assert_true(fabs(stress[0] - 3 * expected[2]) < 1e-2 * 3 * expected[2]);
     assert_true(fabs(stress[1]) < 1e-3 * stress[0] && fabs(stress[2]) < 1e-3 * stress[0]);
   }
@@ -610,7 +610,7 @@ static void nodes_beside_a_hole_show_states(void **state) {
     for (long p = 0; p < w->particle_count; p++) {
       sum += values[p];
       if (!press) continue;
-      assert_true(cells_mean_stress(c, cells_node(c, w->particle_site[p]), stress));
+      assert_true(cells_mean_stress(c, 0, cells_node(c, w->particle_site[p]), stress));
       most = fmax(most, fabs(values[p]));
       assert_true(fabs(values[p] - (stress[0] + stress[1]) / 3) < 1);
     }

@@ -28,7 +28,7 @@ static const double reference[2 * ALL] = {9, 9, 0, 0, 1, 0, 2, 0, 0, 1,
                                           1, 1, 2, 1, 0, 2, 1, 2, 2, 2};
 static const int32_t cells[4 * CELLS] = {0, 1, 4, 3, 1, 2, 5, 4, 3, 4, 7, 6, 4, 5, 8, 7};
 static const int32_t method[CELLS] = {1, 2, 2, 3};
-static const result_mesh plate = {"plate", 1, NODES, CELLS, cells, method, 0.5};
+static const result_mesh plate = {"plate", 1, NODES, CELLS, 4, cells, method, 0.5};
 static const result_field fields[] = {{"displacement", "m", NULL, 2, ALL, "other", "displacement"},
                                       {"slit/points", "m", NULL, 2, MOST, "path", "its points"}};
 static const result_crack cracks[] = {{"slit/points", "plate"}};
@@ -98,6 +98,25 @@ static void cells_that_a_crack_crosses_are_left_out(void **state) {
   v = views(&h, points, 0); /* nothing is known of cracks */
   assert_int_equal(v.sets[0].count, CELLS);
   close_views(&v);
+}
+
+/* Of a node the first bit is of the cell that begins with it. */
+static void cells_that_have_died_are_left_out(void **state) {
+  (void)state;
+  const result_header h = header("m.h5");
+  mesh_views v = {.particles = ALL, .dead = calloc(3 * ALL, sizeof(double))};
+  v.dead[ALL + 1 + 1] = 1; /* cell 1 from the second frame on, */
+  v.dead[2 * ALL + 1 + 1] = 1;
+  v.dead[2 * ALL + 1 + 3] = 3; /* cell 2 from the third; another would begin there */
+  mesh_views_find(&v, &h, 3);
+  assert_int_equal(v.set_count, 3);
+  for (int k = 0; k < 3; k++) {
+    assert_int_equal(v.set_of_frame[k], k);
+    assert_int_equal(v.sets[k].count, CELLS - k);
+  }
+  assert_int_equal(v.sets[2].corners[4], 1 + cells[12]);
+  mesh_views_free(&v);
+  assert_true(mesh_cell_died(5, 2) && !mesh_cell_died(5, 1) && mesh_cell_died(5, 0));
 }
 
 static bool has_number(hid_t file, const char *name, long rows, int columns) {
@@ -200,6 +219,7 @@ static void the_sidecar_has_cells_and_cracks_in_every_frame(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(cells_that_a_crack_crosses_are_left_out),
+      cmocka_unit_test(cells_that_have_died_are_left_out),
       cmocka_unit_test(what_is_written_is_read_back),
       cmocka_unit_test(the_sidecar_has_cells_and_cracks_in_every_frame)};
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -61,7 +61,7 @@ static void a_law_is_of_its_lattice(void **state) {
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     built_rows b;
     build_rows(&b, cases[k].deck);
-    const bool fits = law_fits_lattice(cases[k].law, b.deck, 0, b.rows, &b.said);
+    const bool fits = law_fits_lattice(cases[k].law, NULL, b.deck, 0, b.rows, &b.said);
     if (fits == (cases[k].at != NULL)) fail_msg("case %zu: %s", k, fits ? "fits" : "does not");
     if (cases[k].at)
       check_said(&b, cases[k].deck, cases[k].at, cases[k].sentence);

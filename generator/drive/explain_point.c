@@ -1,0 +1,90 @@
+#include "generator/drive/explain_point.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "dsl/base/arena.h"
+#include "generator/interpreter/comparison.h"
+#include "generator/ir/interpret.h"
+#include "generator/lower/lower_inputs.h"
+#include "generator/lower/point_inputs.h"
+
+ir_node *explain_named_values(const kernel_plan *p, program_task task, int *count) {
+  const ir *g = p->graph;
+  unsigned char *marks = segment_needed(g, plan_segment(p, task));
+  ir_node *named = must_calloc((size_t)ir_count(g) + 1, sizeof *named);
+  *count = 0;
+  for (ir_node n = 0; n < ir_count(g); n++)
+    if (marks[n] && ir_name(g, n) && ir_operation(g, n) != IR_INPUT && ir_where(g, n).end > 0)
+      named[(*count)++] = n;
+  free(marks);
+  return named;
+}
+
+void explain_line(const kernel_plan *p, ir_node n, const char *what, FILE *out) {
+  span where = ir_where(p->graph, n);
+  place at = source_place(p->law->sources, where.file, where.begin);
+  fprintf(out, "  %s:%d: the law's `%s` %s there\n", p->law->sources->items[where.file].name,
+          at.line, ir_name(p->graph, n), what);
+}
+
+/* Whether the value is a state of a flow that is solved for. */
+static bool is_returned(const kernel_plan *p, ir_node n) {
+  const span where = ir_where(p->graph, n);
+  for (int f = 0; f < p->law->fields.count; f++) {
+    const symbol *s = p->law->fields.items[f], *of = s->component_of ? s->component_of : s;
+    if (lower_is_returned(of) && of->rule->where.file == where.file &&
+        of->rule->where.begin == where.begin)
+      return true;
+  }
+  return false;
+}
+
+static void report_point(const kernel_plan *p, const interpreter_inputs *in, FILE *out) {
+  int count;
+  ir_node *named = explain_named_values(p, PROGRAM_STEP, &count);
+  double **values = planes_new(count + 1, 1);
+  interpreter *program = interpreter_new(p->graph, named, count);
+  interpreter_run(program, in, 1, values);
+  int k = 0;
+  while (k < count && isfinite(values[k][0]))
+    k++;
+  if (k < count)
+    explain_line(p, named[k],
+                 is_returned(p, named[k]) ? "does not come back to its limit: the flow is not found"
+                                          : "stops being finite",
+                 out);
+  else if (p->law->setting == SETTING_PLANE_STRESS)
+    fputs("  no strain along z is found that leaves no stress there\n", out);
+  interpreter_free(program);
+  planes_free(values, count + 1);
+  free(named);
+}
+
+void explain_point(const kernel_plan *p, const double *parameters, const asked_point *at,
+                   FILE *out) {
+  const law *l = p->law;
+  const double none = 0, *point[POINT_INPUTS], *ends[ENDS_COUNT] = {[ENDS_TIME_STEP] = &at->step};
+  const double **given = must_calloc((size_t)l->parameters.count + 1, sizeof *given),
+               **own = must_calloc((size_t)l->parameters.count + 1, sizeof *own),
+               **field = must_calloc((size_t)l->fields.count + 1, sizeof *field);
+  for (int k = 0; k < POINT_INPUTS; k++)
+    point[k] = k == POINT_CELL_SIZE ? &at->size : &none;
+  for (int k = 0; k < PL_STRAINS(p->dimensions); k++)
+    point[POINT_STRAIN + point_component(p->dimensions, k)] = &at->strain[k];
+  for (int k = 0; k < l->parameters.count; k++)
+    given[k] = &parameters[k];
+  for (int k = 0; k < p->variation.varying_count; k++)
+    own[k] = &parameters[p->variation.varying[k]];
+  for (int k = 0; k < l->fields.count; k++)
+    field[k] = &at->field[k];
+  const interpreter_inputs in = {.values = {[IR_FROM_PARAMETER] = given,
+                                            [IR_FROM_BOND_PARAMETER] = own,
+                                            [IR_FROM_FIELD] = field,
+                                            [IR_FROM_ENDS] = ends,
+                                            [IR_FROM_POINT] = point}};
+  report_point(p, &in, out);
+  free(given);
+  free(own);
+  free(field);
+}
