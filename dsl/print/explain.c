@@ -413,11 +413,16 @@ static void put_head(const page *p) {
 }
 
 static void put_steps(const page *p) {
-  if (p->law->fields.count == 0) return;
-  fputs("\nThe index $(n)$ marks values of the present step, $(n-1)$ those at the end of the last "
-        "one; "
-        "everything else is of the present step.\n",
-        p->out);
+  const symbol_list *fields = &p->law->fields;
+  bool returned = false;
+  if (fields->count == 0) return;
+  for (int k = 0; k < fields->count; k++)
+    returned = returned || (fields->items[k]->rule && fields->items[k]->rule->returned);
+  fprintf(
+      p->out,
+      "\nThe index $(n)$ marks values of the present step, $(n-1)$ those at the end of the last "
+      "one%s; everything else is of the present step.\n",
+      returned ? ", $(*)$ those on the way back to the limit" : "");
 }
 
 void explain_law(const law *l, explain_form form, const law_choice *choices, int choice_count,

@@ -454,6 +454,10 @@ void cell_strips_push(const cell_strips *s, int row, const cell_group *g,
     push_group(g->table, PL_LANES, traction, pushed[0] + at, pushed[1] + at);
 }
 
+double *cell_strips_row(const cell_strips *s, int row, double *pushed) {
+  return pushed + row * plane_of(s) - s->low * s->layout.stride;
+}
+
 void cell_strips_push_even(const cell_strips *s, int row, const cell_group *g, int count,
                            const double *const stress[3], double *const pushed[2]) {
   const long at = row * plane_of(s) - s->low * s->layout.stride + g->first;

@@ -446,7 +446,7 @@ static bool is_tied_to_mesh(const run_body *b, const deck *k) {
 }
 
 /* What a tied particle bears of its own bonds is known; of a family it would be the mesh's, too. */
-static bool can_be_tied(const run_body *b, const deck *k, diagnostics *d) {
+static bool can_be_tied(const run_body *b, diagnostics *d) {
   for (int n = 0; n < b->law_count; n++) {
     const pl_law *law = b->laws[n].law;
     if (law->kind != PL_STATE || law->pairwise) continue;
@@ -456,16 +456,12 @@ static bool can_be_tied(const run_body *b, const deck *k, diagnostics *d) {
     diag_hint(d, "take a law of bonds, such as `elastic_micropolar` or `mplm_bilinear`");
     return false;
   }
-  if (!k->relaxation.solved) return true;
-  diag_report(d, DIAG_NOT_SUPPORTED, k->at_rest.item.where,
-              "a lattice that is tied to a mesh has no static solution");
-  diag_hint(d, "use `&relaxation` in place of `&static`");
-  return false;
+  return true;
 }
 
 static bool open_ties(run_body *b, const deck *k, diagnostics *d) {
   if (!is_tied_to_mesh(b, k)) return true;
-  if (!can_be_tied(b, k, d)) return false;
+  if (!can_be_tied(b, d)) return false;
   const bool halves = b->law_count == 1 && b->law->kind != PL_STATE;
   b->ties = mesh_ties_new(k, b->lattice, b->lattice_rows, halves, &b->tie_count, d);
   return b->ties != NULL;
