@@ -1,4 +1,6 @@
-// A quarter of a plate with a hole of radius 1 m. gmsh -2 -order 2 -format msh41 hole.geo -o hole.msh
+// A quarter of a plate with a hole of radius 1 m.
+//   gmsh -2 -order 2 -format msh41 hole.geo -o hole.msh     triangles of 6 nodes
+//   gmsh -2 -format msh41 hole.geo -o hole_t3.msh           triangles of 3
 Point(1) = {0, 0, 0};
 Point(2) = {1, 0, 0, 0.08};
 Point(3) = {5, 0, 0, 0.9};

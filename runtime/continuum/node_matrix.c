@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/mesh/element_modes.h"
 #include "runtime/mesh/shape_functions.h"
 
 /* --- which nodes ------------------------------------------------------------------------------ */
@@ -53,37 +54,78 @@ static double *block_of(node_matrix *k, int node, int32_t other) {
   return k->block[at - k->other];
 }
 
+typedef double strains[3][2]; /* xx, yy, xy of engineers by the motions of a node */
+
 /* Adds w B_a^T D B_b. */
-static void add_pair(double block[4], const double D[3][3], double w, const double a[2],
-                     const double b[2]) {
-  const double left[2][3] = {{a[0], 0, a[1]}, {0, a[1], a[0]}},
-               right[2][3] = {{b[0], 0, b[1]}, {0, b[1], b[0]}};
+static void add_pair(double block[4], const double D[3][3], double w, const strains a,
+                     const strains b) {
   for (int i = 0; i < 2; i++)
     for (int j = 0; j < 2; j++) {
       double sum = 0;
       for (int r = 0; r < 3; r++)
         for (int s = 0; s < 3; s++)
-          sum += left[i][r] * D[r][s] * right[j][s];
+          sum += a[r][i] * D[r][s] * b[s][j];
       block[2 * i + j] += w * sum;
     }
+}
+
+/* The mean of the gradients over the points of a cell, 1/m; where it does not take the mean of its
+   dilatation those of each point stay: false. */
+static bool mean_gradients(const mesh *m, const integration_points *p, int cell,
+                           double mean[ELEMENT_MOST_NODES][2]) {
+  double area = 0;
+  if (!element_takes_mean(m, cell)) return false;
+  memset(mean, 0, sizeof(double[ELEMENT_MOST_NODES][2]));
+  for (int n = p->first[cell]; n < p->first[cell + 1]; n++) {
+    point_shape s;
+    shape_functions(m, cell, p->at[n], &s);
+    for (int q = 0; q < s.count; q++) {
+      mean[q][0] += p->area[n] * s.nx[q];
+      mean[q][1] += p->area[n] * s.ny[q];
+    }
+    area += p->area[n];
+  }
+  for (int q = 0; q < 2 * ELEMENT_MOST_NODES; q++)
+    mean[q / 2][q % 2] /= area;
+  return true;
+}
+
+/* Of the nodes of a point; `mean`: with that dilatation (element_modes.h), or NULL. */
+static void strains_of(const point_shape *s, double (*mean)[2], strains B[ELEMENT_MOST_NODES]) {
+  for (int q = 0; q < s->count; q++) {
+    const double own[2] = {s->nx[q], s->ny[q]};
+    for (int a = 0; a < 2; a++) {
+      const double shift = mean ? 0.5 * (mean[q][a] - own[a]) : 0;
+      B[q][0][a] = (a == 0 ? own[0] : 0) + shift;
+      B[q][1][a] = (a == 1 ? own[1] : 0) + shift;
+      B[q][2][a] = own[1 - a];
+    }
+  }
+}
+
+static void add_cell(node_matrix *k, const mesh *m, const integration_points *p,
+                     const plane_stiffness *law, int cell) {
+  double mean[ELEMENT_MOST_NODES][2];
+  const bool means = mean_gradients(m, p, cell, mean);
+  for (int n = p->first[cell]; n < p->first[cell + 1]; n++) {
+    point_shape s;
+    strains B[ELEMENT_MOST_NODES];
+    shape_functions(m, cell, p->at[n], &s);
+    strains_of(&s, means ? mean : NULL, B);
+    for (int a = 0; a < s.count; a++)
+      for (int b = 0; b < s.count; b++)
+        add_pair(block_of(k, s.node[a], s.node[b]), law->D, m->thickness * p->area[n],
+                 (const double(*)[2])B[a], (const double(*)[2])B[b]);
+  }
 }
 
 void node_matrix_open(node_matrix *k, const mesh *m, const integration_points *p,
                       const plane_stiffness *laws, const unsigned char *law_of_cell) {
   *k = (node_matrix){.layout = node_layout_of(m->nodes, m->support), .nodes = m->lists->node_count};
   find_partners(k, m);
-  for (int n = 0; n < p->count; n++) {
-    const int cell = p->cell[n];
+  for (int cell = 0; cell < mesh_cell_count(m); cell++) {
     const int number = law_of_cell ? law_of_cell[cell] : 0;
-    if (number == NO_LINEAR_LAW) continue;
-    const plane_stiffness *law = &laws[number];
-    point_shape s;
-    shape_functions(m, cell, p->at[n], &s);
-    for (int a = 0; a < s.count; a++)
-      for (int b = 0; b < s.count; b++) {
-        const double left[2] = {s.nx[a], s.ny[a]}, right[2] = {s.nx[b], s.ny[b]};
-        add_pair(block_of(k, s.node[a], s.node[b]), law->D, m->thickness * p->area[n], left, right);
-      }
+    if (number != NO_LINEAR_LAW) add_cell(k, m, p, &laws[number], cell);
   }
 }
 

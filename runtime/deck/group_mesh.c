@@ -245,8 +245,9 @@ static bool has_extent(deck_reader *r, const namelist_group *from, deck_mesh *it
 /* A mesh of a file has what stands there, and finite elements. */
 static void refuse_keys_of_grids(deck_reader *r, const namelist_group *from,
                                  const deck_mesh *item) {
-  static const char *const others[] = {"corner", "size",  "corners", "nodes",          "support",
-                                       "parts",  "basis", "ramp",    "enriched_radius"};
+  static const char *const others[] = {"corner",          "size",     "corners", "nodes",
+                                       "support",         "parts",    "basis",   "ramp",
+                                       "enriched_radius", "hourglass"};
   for (size_t k = 0; k < sizeof others / sizeof *others; k++)
     deck_refuse_both(r, from, "file", others[k]);
   if (!namelist_find(from, "method") || item->method == MESH_FINITE_ELEMENTS) return;
@@ -316,6 +317,9 @@ static void take_file(deck_reader *r, const namelist_group *from, deck_mesh *ite
   item->method = MESH_FINITE_ELEMENTS;
   item->support = 1;
   check_gauss(r, from, item);
+  deck_check_elements(r, from, &item->item,
+                      &(deck_elements){item->method, item->gauss, item->dilatation, item->hourglass,
+                                       item->setting});
   if (r->d->errors > errors) return;
   item->gmsh = gmsh_mesh_read(r->memory, deck_file_path(r->k->name, item->file),
                               unit_of(item->unit), deck_where(&item->item, "file"), r->d);

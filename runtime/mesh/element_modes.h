@@ -19,18 +19,20 @@
 
 #include "runtime/mesh/mesh.h"
 
-/* Whether the cell is an element with 2 x 2 points whose dilatation is the mean. */
+/* Whether the cell is an element with 2 x 2 points, or a triangle with 3, whose dilatation is the
+   mean. */
 static inline bool element_takes_mean(const mesh *m, int cell) {
-  return m->mean_dilatation[cell] && m->cell[cell] == CELL_ELEMENT && m->element_gauss[cell] == 2;
+  return m->mean_dilatation[cell] && m->cell[cell] == CELL_ELEMENT && m->element_gauss[cell] == 2 &&
+         (!m->lists || m->lists->nodes[cell] > 3);
 }
-/* The cell's mean of the gradients of its corners' functions, 1/m, in the order of mesh_corners; that
+/* Of a grid: the cell's mean of the gradients of its corners' functions, 1/m, in the order of mesh_corners; that
    at the point of an element with one. Returns its area, m^2. */
 double element_mean_gradient(const mesh *m, int cell, double mean[4][2]);
-/* Where the cell takes the mean: strain xx, yy, xy with it in place of the point's own dilatation, u:
+/* Likewise, where the cell takes the mean: strain xx, yy, xy with it in place of the point's own dilatation, u:
    the corners' displacements, m. */
 void element_mean_strain(const mesh *m, int cell, double u[4][2], double strain[3]);
 
-/* gamma by the order of mesh_corners, and C/(t D), 1; 0 where nothing resists such motions. */
+/* Of a grid: gamma by the order of mesh_corners, and C/(t D), 1; 0 where nothing resists such motions. */
 double element_hourglass(const mesh *m, int cell, double gamma[4]);
 /* D of a tangent xx, yy, xy by xx, yy, xy, Pa: the larger one of both axes. */
 double element_strip_stiffness(const double tangent[3][3]);
