@@ -17,6 +17,7 @@
 #include "runtime/continuum/cells.h"
 #include "runtime/continuum/node_matrix.h"
 #include "runtime/continuum/point_forces.h"
+#include "runtime/mesh/cell_lists.h"
 #include "runtime/mesh/element_modes.h"
 #include "runtime/simulation/simulation_save.h"
 #include "softening_law.h"
