@@ -31,4 +31,4 @@ Transfinite Surface {5} = {14, 24, 21, 11};
 Recombine Surface {1, 2, 3, 4, 5};
 Physical Curve("bottom") = {32};
 Physical Curve("top") = {36};
-Physical Surface("concrete") = {1, 2, 3, 4, 5};
+Physical Surface(10) = {1, 2, 3, 4, 5};

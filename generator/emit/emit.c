@@ -6,8 +6,11 @@
 #include "generator/target/prelude.h"
 
 static void write_prelude(emitter *e) {
+  const bool of_points = e->plan->form == FORM_POINTS;
   say(e, SAY_PRELUDE,
-      spell(e, plan_is_of_families(e->plan) ? SAY_FAMILY_OPTIONS : SAY_STRIP_OPTIONS));
+      spell(e, plan_is_of_families(e->plan) ? SAY_FAMILY_OPTIONS
+               : of_points                  ? SAY_POINT_OPTIONS
+                                            : SAY_STRIP_OPTIONS));
   c_text_add(e->out, "%s\n%s\n", prelude_kernel_h, prelude_elementary_h);
   say(e, SAY_PRELUDE_END);
 }

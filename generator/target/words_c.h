@@ -61,7 +61,7 @@
   X(PREPARE, "PL_RARE static void prepare(const pl_law *law, const double *parameters,\n"          \
     "    const pl_bond_class *bonds, double *uniforms) {\n"                                        \
     "  (void)law, (void)parameters, (void)bonds, (void)uniforms;\n")                               \
-  X(BOUNDS, "PL_RARE static void bounds(const pl_law *law, const double *parameters, "             \
+  X(BOUNDS, "PL_RARE static void $1(const pl_law *law, const double *parameters, "                 \
     "double *lower,\n"                                                                             \
     "    double *upper, unsigned char *low_open, unsigned char *high_open) {\n"                    \
     "  (void)law, (void)parameters, (void)lower, (void)upper, (void)low_open, (void)high_open;\n") \
@@ -387,8 +387,10 @@
   /* --- before all: what the compiler is told --- */                                              \
   /* gcc would ask one question of a case several times, and of strips keep what it had better     \
      load again (8 % of a step); of families it would move what is loaded for a choice into a      \
-     branch. The others only take the compiler's time. */                                          \
+     branch; of points it would take a power's cases apart and no longer see a loop for vectors.   \
+     The others only take the compiler's time. */                                                  \
   X(STRIP_OPTIONS, "\"no-thread-jumps\", \"no-gcse\"")                                             \
+  X(POINT_OPTIONS, "\"no-thread-jumps\", \"no-gcse\", \"no-tree-pre\"")                            \
   X(FAMILY_OPTIONS, "\"no-thread-jumps\", \"no-tree-sink\", \"no-tree-pre\", "                     \
     "\"no-tree-slp-vectorize\", \"no-predictive-commoning\", \"no-tree-loop-distribution\", "      \
     "\"no-split-loops\"")                                                                          \

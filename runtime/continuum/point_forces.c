@@ -338,11 +338,14 @@ static pl_points motion_of(const point_forces *p, const strip *s, point_scratch 
 
 /* Groups from g on that are side by side, even and alike; 0: g is not even. */
 static int even_from(const cell_group *groups, int g, int last) {
+  const cell_group *first = &groups[g];
   int count = 0;
-  while (g + count < last && groups[g + count].even > 0 &&
-         groups[g + count].even == groups[g].even && groups[g + count].table == groups[g].table &&
-         groups[g + count].first == groups[g].first + count * PL_LANES)
-    count++;
+  for (; g + count < last; count++) {
+    const cell_group *next = &first[count];
+    if (!(next->even > 0) || next->even != first->even || next->table != first->table ||
+        next->first != first->first + count * PL_LANES)
+      break;
+  }
   return count;
 }
 

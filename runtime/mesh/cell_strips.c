@@ -220,9 +220,10 @@ static void place_group(cell_strips *s, const mesh *m, const integration_points 
 /* The volume of each of its points, where that is one. */
 static double even_volume(const cell_strips *s, const cell_group *g) {
   const double *volume = s->volume + g->at;
-  if (!g->table->rectangle || g->count < PL_LANES) return 0;
-  for (int k = 1; k < g->table->points * PL_LANES; k++)
-    if (volume[k] != volume[0]) return 0;
+  if (!g->table->rectangle) return 0;
+  for (int k = 0; k < g->table->points; k++)
+    for (int lane = 0; lane < g->count; lane++)
+      if (volume[k * PL_LANES + lane] != volume[0]) return 0;
   return volume[0];
 }
 
@@ -461,7 +462,8 @@ double *cell_strips_row(const cell_strips *s, int row, double *pushed) {
 void cell_strips_push_even(const cell_strips *s, int row, const cell_group *g, int count,
                            const double *const stress[3], double *const pushed[2]) {
   const long at = row * plane_of(s) - s->low * s->layout.stride + g->first;
-  rectangle_cells_push(&g->table->slopes, count, stress, g->even,
+  const int cells = (count - 1) * PL_LANES + g[count - 1].count;
+  rectangle_cells_push(&g->table->slopes, cells, stress, g->even,
                        (double *const[]){pushed[0] + at, pushed[1] + at}, s->layout.stride);
 }
 
@@ -469,10 +471,15 @@ long cell_strips_pushed(const cell_strips *s) {
   return s->elements ? s->elements->slots : plane_of(s) * s->rows;
 }
 
+/* A loop: to begin a memset of this size takes longer. What is behind the last row is not read. */
 void cell_strips_clear(const cell_strips *s, int row, double *const pushed[2]) {
-  const long plane = plane_of(s);
-  for (int d = 0; d < 2 && !s->elements; d++) /* slots are written, not added to */
-    memset(pushed[d] + row * plane, 0, (size_t)plane * sizeof(double));
+  const long count = (s->high - s->low + 1) * s->layout.stride;
+  for (int d = 0; d < 2 && !s->elements; d++) { /* slots are written, not added to */
+    double *plane = pushed[d] + row * plane_of(s);
+    INDEPENDENT
+    for (long k = 0; k < count; k++)
+      plane[k] = 0;
+  }
 }
 
 void cell_strips_take(const cell_strips *s, int row, double *const pushed[2], bool more,

@@ -36,7 +36,7 @@ typedef struct cell_group {
   int points;       /* of each */
   int at;           /* place of its first point; PL_LANES for each point of a cell follow */
   const cell_table *table; /* NULL in a mesh of lists */
-  double even; /* m^3: of each point, where it is full of rectangles with the same; else 0 */
+  double even;             /* m^3: of each point, where they are rectangles with the same; else 0 */
 } cell_group;
 
 typedef struct cell_strips {
@@ -80,7 +80,8 @@ void cell_strips_clear(const cell_strips *s, int row, double *const pushed[2]);
 /* N: the forces of a row of nodes, in planes of the layout; `more`: beside those that are there. */
 void cell_strips_take(const cell_strips *s, int row, double *const pushed[2], bool more,
                       double *const force[2]);
-/* The same of `count` groups side by side that are alike and even, from their stress. */
+/* The same of `count` groups side by side that are alike and even, from their stress; all but the
+   last are full. */
 void cell_strips_push_even(const cell_strips *s, int row, const cell_group *g, int count,
                            const double *const stress[3], double *const pushed[2]);
 

@@ -99,19 +99,31 @@ INLINE lanes shift_in(lanes before, lanes x) {
 }
 _Static_assert(PL_LANES == 8, "places of lanes");
 
-/* To the left nodes of the cells what is theirs, with what the cells before do to their right ones,
-   which are the same. */
-INLINE void add_to_nodes(double *force, lanes left, lanes right, lanes *before) {
-  *(lanes *)force += left + shift_in(*before, right);
-  *before = right;
+/* What cells do to their left and right nodes, the lower or the upper ones. */
+INLINE pair cut(pair node, int cells) {
+  for (int lane = cells; lane < PL_LANES; lane++)
+    node.first[lane] = node.second[lane] = 0;
+  return node;
 }
 
-INLINE void add_to_rows(double *force, long stride, pair x, pair y, lanes before[2]) {
-  add_to_nodes(force, -(x.first + y.first), x.first - y.second, &before[0]);
-  add_to_nodes(force + stride, y.first - x.second, x.second + y.second, &before[1]);
+/* The right nodes of the cells before are left ones of these. */
+INLINE void add_to_nodes(double *force, pair node, lanes *before) {
+  *(lanes *)force += node.first + shift_in(*before, node.second);
+  *before = node.second;
 }
 
-void rectangle_cells_push(const rectangle_slopes *r, int groups, const double *const stress[3],
+INLINE void add_to_rows(double *force, long stride, int cells, pair x, pair y, lanes before[2]) {
+  pair low = {-(x.first + y.first), x.first - y.second},
+       high = {y.first - x.second, x.second + y.second};
+  if (cells < PL_LANES) {
+    low = cut(low, cells);
+    high = cut(high, cells);
+  }
+  add_to_nodes(force, low, &before[0]);
+  add_to_nodes(force + stride, high, &before[1]);
+}
+
+void rectangle_cells_push(const rectangle_slopes *r, int cells, const double *const stress[3],
                           double volume, double *const force[2], long stride) {
   const lanes none = {0};
   lanes before[2][2] = {{none, none}, {none, none}};
@@ -121,14 +133,17 @@ void rectangle_cells_push(const rectangle_slopes *r, int groups, const double *c
       scaled.x[a][b] = volume * r->x[a][b];
       scaled.y[a][b] = volume * r->y[a][b];
     }
-  for (int g = 0; g < groups; g++) {
-    const long at = (long)g * CORNERS * PL_LANES, to = (long)g * PL_LANES;
+  int first = 0;
+  for (; first < cells; first += PL_LANES) {
+    const long at = (long)first * CORNERS;
     const lanes *xx = (const lanes *)(stress[0] + at), *yy = (const lanes *)(stress[1] + at),
                 *xy = (const lanes *)(stress[2] + at);
-    add_to_rows(force[0] + to, stride, across_x(&scaled, xx), across_y(&scaled, xy), before[0]);
-    add_to_rows(force[1] + to, stride, across_x(&scaled, xy), across_y(&scaled, yy), before[1]);
+    const pair a = across_x(&scaled, xx), b = across_y(&scaled, xy), c = across_x(&scaled, xy),
+               d = across_y(&scaled, yy);
+    add_to_rows(force[0] + first, stride, cells - first, a, b, before[0]);
+    add_to_rows(force[1] + first, stride, cells - first, c, d, before[1]);
   }
   for (int d = 0; d < 2; d++)
     for (int high = 0; high < 2; high++)
-      force[d][groups * PL_LANES + high * stride] += before[d][high][PL_LANES - 1];
+      force[d][first + high * stride] += before[d][high][PL_LANES - 1];
 }

@@ -19,10 +19,10 @@ bool rectangle_slopes_find(rectangle_slopes *r, const double slope[4][4][2], dou
 /* strain xx, yy, xy [4][PL_LANES]; u at the lower left node of the first cell, rows `stride` apart. */
 void rectangle_cells_strain(const rectangle_slopes *r, const double *const u[2], long stride,
                             double *const strain[3]);
-/* Adds sum B^T stress volume of `groups` times PL_LANES cells of a row to the forces of their nodes.
-   stress xx, yy, xy [groups][4][PL_LANES]; volume: m^3 of each point; force at the lower left node of
-   the first cell. */
-void rectangle_cells_push(const rectangle_slopes *r, int groups, const double *const stress[3],
+/* Adds sum B^T stress volume of `cells` of a row to the forces of their nodes. stress xx, yy, xy
+   [groups][4][PL_LANES], groups of PL_LANES cells, the last filled up; volume: m^3 of each point;
+   force at the lower left node of the first cell; the groups' room and one more is written. */
+void rectangle_cells_push(const rectangle_slopes *r, int cells, const double *const stress[3],
                           double volume, double *const force[2], long stride);
 
 #endif

@@ -51,7 +51,7 @@ static void open_planes(loaded *l) {
   }
 }
 
-/* `linear` laws are asked at their points all the same. */
+/* Linear laws are asked at their points all the same. */
 static loaded loaded_open(const char *law_name, const char *setting, bool ledger) {
   char text[TEXT];
   snprintf(text, sizeof text,
@@ -62,7 +62,7 @@ static loaded loaded_open(const char *law_name, const char *setting, bool ledger
            WIDTH, WIDTH, THICKNESS, setting, SIDE, SIDE, law_name);
   loaded l = {.trial = trial_open(text), .memory = pool_new()};
   l.cells = simulation_cells(l.trial->run, 0);
-  l.points = point_forces_new(&l.cells->mesh, &l.cells->points, l.trial->law.law,
+  l.points = point_forces_new(&l.cells->mesh, NULL, &l.cells->points, l.trial->law.law,
                               l.trial->law.parameters, 2, ledger);
   open_planes(&l);
   return l;
@@ -102,10 +102,10 @@ static void find(loaded *l, int threads) {
       const int from = block * count / threads, to = (block + 1) * count / threads;
       if (!take) point_forces_find(l->points, block, from, to, &at, false);
       for (int row = from; row < to && take; row++)
-        point_forces_take(l->points, row, l->force);
+        point_forces_take(l->points, row, false, l->force);
     }
   }
-  point_forces_turn(l->points);
+  point_forces_turn(l->points, 0);
 }
 
 /* Part of the points whose states the last step has changed. */
@@ -242,7 +242,64 @@ static bool measure_beside(figures *f) {
   return fair;
 }
 
+/* --- all laws --------------------------------------------------------------------------------- */
+
+typedef struct point_case {
+  const char *law, *setting;
+  double strain; /* of the last step: part of the points yield or break */
+} point_case;
+
+static const point_case cases[] = {
+    {"elastic", "plane_strain", 1e-4},          {"stiffening", "plane_strain", 1e-2},
+    {"von_mises", "plane_strain", 4e-3},        {"von_mises", "plane_stress", 4e-3},
+    {"drucker_prager", "plane_strain", 8e-4},   {"drucker_prager", "plane_stress", 8e-4},
+    {"brittle_cracking", "plane_strain", 2e-4}, {"brittle_cracking", "plane_stress", 2e-4},
+    {"mazars", "plane_strain", 2e-4},           {"mazars", "plane_stress", 2e-4}};
+
+/* Seconds a step, mean of a loading. */
+static double seconds_of_loading(loaded *l, double strain, int threads, double (*clock_of)(void),
+                                 double *changes) {
+  double sum = 0;
+  rest(l);
+  *changes = 0;
+  for (int n = 1; n <= STEPS; n++) {
+    load(l, strain * n / STEPS);
+    const double begun = clock_of();
+    find(l, threads);
+    sum += clock_of() - begun;
+    *changes += part_that_changes(l) / STEPS;
+  }
+  return sum / STEPS;
+}
+
+static void measure_law(figures *f, const point_case *c) {
+  loaded l = loaded_open(c->law, c->setting, false);
+  const double points = l.cells->points.count;
+  double one[ROUNDS], wall[ROUNDS], two[ROUNDS], changes;
+  for (int round = 0; round < ROUNDS; round++) {
+    one[round] = seconds_of_loading(&l, c->strain, 1, processor_seconds, &changes);
+    wall[round] = seconds_of_loading(&l, c->strain, 1, wall_seconds, &changes);
+    two[round] = seconds_of_loading(&l, c->strain, 2, wall_seconds, &changes);
+  }
+  const double by_one = median_of(one, ROUNDS),
+               faster = median_of(wall, ROUNDS) / median_of(two, ROUNDS),
+               bytes = (double)point_forces_bytes(l.points) / points;
+  const pl_law *of = l.trial->law.law;
+  printf("  %-16s %-13s %7.1f %7.2f %7.2f %6.0f %7.0f %5.0f %6.0f %%\n", c->law, c->setting,
+         1e-6 * points / by_one, 1e9 * by_one / points, faster, bytes, of->flops_per_bond,
+         of->divisions_per_bond, 100 * changes);
+  figures_add(f, 1e-6 * points / by_one, "points_%s_%s_million_per_second", c->law, c->setting);
+  figures_add(f, faster, "points_%s_%s_threads_2_over_1", c->law, c->setting);
+  figures_add(f, bytes, "points_%s_%s_bytes_per_point", c->law, c->setting);
+  loaded_close(&l);
+}
+
 bool benchmark_points(figures *f) {
   puts("\nPoints");
-  return measure_beside(f);
+  const bool fair = measure_beside(f);
+  printf("  %-30s %7s %7s %7s %6s %7s %5s %8s\n", "", "10^6/s", "ns", "2 by 1", "bytes", "flops",
+         "div.", "changed");
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
+    measure_law(f, &cases[k]);
+  return fair;
 }
