@@ -185,6 +185,8 @@ static bool all_names_known(const deck *k, const namelist *n) {
   bool known = !n->broken;
   for (int i = 0; i < k->lattice_count; i++)
     known &= k->lattices[i].name != NULL;
+  for (int i = 0; i < k->lattice_count; i++) /* whose groups are regions */
+    known &= !deck_lattice_is_mesh(&k->lattices[i]) || !k->lattices[i].file || k->lattices[i].gmsh;
   for (int i = 0; i < k->region_count; i++)
     known &= k->regions[i].name != NULL;
   for (int i = 0; i < k->monitor_count; i++)
