@@ -294,13 +294,16 @@ double mesh_tie_mass(const mesh_tie *t, const rows *w) {
   return sum;
 }
 
+/* Of functions that are negative somewhere, too: (sum N u)^2 <= sum |N| sum |N| u^2. */
 void mesh_tie_add(const mesh_tie *t, const rows *w, tied_node *node) {
   for (long n = 0; n < t->count; n++) {
     const tied_particle *p = &t->particles[n];
+    double size = 0;
+    for (int k = 0; k < p->count; k++)
+      size += fabs(p->weight[k]);
     for (int k = 0; k < p->count; k++) {
-      const double part = pl_fmax(p->weight[k], 0) * mass_of(w, p);
-      node[p->node[k]].added += p->outside * part;
-      node[p->node[k]].whole += part;
+      node[p->node[k]].added += p->outside * p->weight[k] * mass_of(w, p);
+      node[p->node[k]].whole += size * fabs(p->weight[k]) * mass_of(w, p);
     }
   }
 }
