@@ -1,5 +1,5 @@
-/* A deck of a lattice between two meshes, wrong in one place at a time, and the exact text that a user
-   sees: bad_ties/strip.nml, and a text for each fault. */
+/* A deck of a lattice between two meshes, wrong in one place at a time, and the exact text that a
+   user sees: bad_ties/strip.nml, and a text for each fault. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
