@@ -39,6 +39,14 @@ static const fault faults[] = {
      "mm' "
      "/\n&drive   region = 'end'  component = 'x' velocity = 1",
      false},
+    {"loaded",
+     "name = 'end'  lattice = 'left'  shape = 'rectangle'  corner = '-41 mm', 0  size = '2 mm', "
+     "'40 mm' "
+     "/\n&support   region = 'end'  fix = 'x', 'y'",
+     "name = 'end'  lattice = 'core'  shape = 'rectangle'  corner = '-1 mm', 0  size = '2 mm', '40 "
+     "mm' "
+     "/\n&force   region = 'end'  component = 'x' total = 1",
+     false},
     {"thinner", "thickness = '10 mm'  rotation", "thickness = '12 mm'  rotation", true},
     {"plane_strain", "'10 mm'  rotation", "'10 mm'  setting = 'plane_strain'  rotation", true},
     {"families", "'elastic_micropolar'  E = '30 GPa'  nu = 0.2", "'lps'  E = '30 GPa'  nu = 0.2",
