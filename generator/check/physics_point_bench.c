@@ -68,12 +68,24 @@ void point_bench_close(point_bench *b) {
   b->plan = NULL;
 }
 
+/* Of the cell: CELL, or as near to it as the law holds for with room to spare. */
+static void choose_size(point_bench *b) {
+  double low = 0, high = INFINITY;
+  unsigned char open[2];
+  const pl_law *kernel = b->kernel;
+  if (kernel->size_bounds)
+    kernel->size_bounds(kernel, b->parameters, &low, &high, &open[0], &open[1]);
+  for (int k = 0; k < LANES; k++)
+    b->size[k] = pl_fmax(2 * low, pl_fmin(high / 2, CELL));
+}
+
 void point_bench_parameters(point_bench *b, const physics_options *o, bool usual) {
   b->others = !o->parameters && !usual;
   if (o->parameters)
     memcpy(b->parameters, o->parameters, (size_t)b->law->parameters.count * sizeof(double));
   else
     physics_draw_parameters(b->law, usual ? NULL : &b->seed, b->parameters);
+  choose_size(b);
   const pl_bond_class none = {.size = sizeof none};
   b->kernel->prepare(b->kernel, b->parameters, &none, b->uniforms);
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "dsl/semantics/law_reads.h"
 #include "generator/ir/derive.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/lower_inputs.h"
@@ -480,6 +481,7 @@ bool plan_points(kernel_plan *plan, diagnostics *d) {
   plan->linear = is_linear(&p);
   plan->stores = plan->law->nonconservative == NULL;
   plan->reads_rates = reads_rates(&p);
+  plan->reads_size = law_reads(plan->law, QUANTITY_CELL_SIZE);
   seen_points seen = {stored_energy(&p), rate_power(&p), still_power(&p), stress};
   improve(&p, &seen);
   static void (*const program[])(planner *, const seen_points *,

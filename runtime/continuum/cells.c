@@ -525,37 +525,19 @@ static void stored(sweep *w, double *values) {
   }
 }
 
-/* Of an element in lists: the mean over its points. */
-static double dilatation_of(const cells *c, int cell, const double *const displacement[2]) {
-  const node_layout l = node_layout_of(c->mesh.nodes, c->mesh.support);
-  double sum = 0, area = 0;
-  for (int n = c->points.first[cell]; n < c->points.first[cell + 1]; n++) {
-    point_shape s;
-    double gradient[2][2];
-    shape_functions(&c->mesh, cell, c->points.at[n], &s);
-    mesh_field(&s, &l, displacement, NULL, gradient);
-    sum += c->points.area[n] * (gradient[0][0] + gradient[1][1]);
-    area += c->points.area[n];
-  }
-  return sum / area;
-}
-
 void cells_mean_dilatation(const cells *c, int cell, const double *const displacement[2],
                            double strain[3]) {
-  int corner[4];
-  double u[4][2];
+  double mean[ELEMENT_MOST_NODES][2], theta = 0;
   if (!element_takes_mean(&c->mesh, cell)) return;
-  if (c->mesh.lists) {
-    const double shift = 0.5 * (dilatation_of(c, cell, displacement) - strain[0] - strain[1]);
-    strain[0] += shift;
-    strain[1] += shift;
-    return;
-  }
-  mesh_corners(&c->mesh, cell, corner);
-  for (int q = 0; q < 4; q++)
+  point_shape s;
+  shape_functions(&c->mesh, cell, c->points.at[c->points.first[cell]], &s);
+  element_mean_gradient(&c->mesh, &c->points, cell, mean);
+  for (int q = 0; q < s.count; q++)
     for (int d = 0; d < 2; d++)
-      u[q][d] = displacement[d][cells_site(c, corner[q])];
-  element_mean_strain(&c->mesh, cell, u, strain);
+      theta += mean[q][d] * displacement[d][cells_site(c, s.node[q])];
+  const double shift = 0.5 * (theta - strain[0] - strain[1]);
+  strain[0] += shift;
+  strain[1] += shift;
 }
 
 /* Of a linear law a point remembers nothing: asked for, it is looked at. */

@@ -54,68 +54,49 @@ static double *block_of(node_matrix *k, int node, int32_t other) {
   return k->block[at - k->other];
 }
 
-typedef double strains[3][2]; /* xx, yy, xy of engineers by the motions of a node */
+enum { MOST_MOTIONS = 2 * ELEMENT_MOST_NODES };
 
-/* Adds w B_a^T D B_b. */
-static void add_pair(double block[4], const double D[3][3], double w, const strains a,
-                     const strains b) {
-  for (int i = 0; i < 2; i++)
-    for (int j = 0; j < 2; j++) {
-      double sum = 0;
-      for (int r = 0; r < 3; r++)
-        for (int s = 0; s < 3; s++)
-          sum += a[r][i] * D[r][s] * b[s][j];
-      block[2 * i + j] += w * sum;
-    }
-}
-
-/* The mean of the gradients over the points of a cell, 1/m; where it does not take the mean of its
-   dilatation those of each point stay: false. */
-static bool mean_gradients(const mesh *m, const integration_points *p, int cell,
-                           double mean[ELEMENT_MOST_NODES][2]) {
-  double area = 0;
-  if (!element_takes_mean(m, cell)) return false;
-  memset(mean, 0, sizeof(double[ELEMENT_MOST_NODES][2]));
-  for (int n = p->first[cell]; n < p->first[cell + 1]; n++) {
-    point_shape s;
-    shape_functions(m, cell, p->at[n], &s);
-    for (int q = 0; q < s.count; q++) {
-      mean[q][0] += p->area[n] * s.nx[q];
-      mean[q][1] += p->area[n] * s.ny[q];
-    }
-    area += p->area[n];
+/* Strains xx, yy, xy (of engineers) by the motions of the nodes; `mean`: with that dilatation, or
+   NULL. */
+static void strains_of(const point_shape *s, double (*mean)[2], double B[3][MOST_MOTIONS]) {
+  if (mean) {
+    element_mean_strains(s, (const double(*)[2])mean, B);
+    return;
   }
-  for (int q = 0; q < 2 * ELEMENT_MOST_NODES; q++)
-    mean[q / 2][q % 2] /= area;
-  return true;
-}
-
-/* Of the nodes of a point; `mean`: with that dilatation (element_modes.h), or NULL. */
-static void strains_of(const point_shape *s, double (*mean)[2], strains B[ELEMENT_MOST_NODES]) {
   for (int q = 0; q < s->count; q++) {
-    const double own[2] = {s->nx[q], s->ny[q]};
-    for (int a = 0; a < 2; a++) {
-      const double shift = mean ? 0.5 * (mean[q][a] - own[a]) : 0;
-      B[q][0][a] = (a == 0 ? own[0] : 0) + shift;
-      B[q][1][a] = (a == 1 ? own[1] : 0) + shift;
-      B[q][2][a] = own[1 - a];
-    }
+    B[0][2 * q] = B[2][2 * q + 1] = s->nx[q];
+    B[1][2 * q + 1] = B[2][2 * q] = s->ny[q];
+    B[0][2 * q + 1] = B[1][2 * q] = 0;
   }
+}
+
+/* Of the nodes a and b of a point. */
+static void add_pair(double block[4], const double D[3][3], double w,
+                     const double B[3][MOST_MOTIONS], int a, int b) {
+  for (int p = 0; p < 2; p++)
+    for (int q = 0; q < 2; q++) {
+      double sum = 0;
+      for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+          sum += B[i][2 * a + p] * D[i][j] * B[j][2 * b + q];
+      block[2 * p + q] += w * sum;
+    }
 }
 
 static void add_cell(node_matrix *k, const mesh *m, const integration_points *p,
                      const plane_stiffness *law, int cell) {
   double mean[ELEMENT_MOST_NODES][2];
-  const bool means = mean_gradients(m, p, cell, mean);
+  const bool means = element_takes_mean(m, cell);
+  if (means) element_mean_gradient(m, p, cell, mean);
   for (int n = p->first[cell]; n < p->first[cell + 1]; n++) {
     point_shape s;
-    strains B[ELEMENT_MOST_NODES];
+    double B[3][MOST_MOTIONS];
     shape_functions(m, cell, p->at[n], &s);
     strains_of(&s, means ? mean : NULL, B);
     for (int a = 0; a < s.count; a++)
       for (int b = 0; b < s.count; b++)
         add_pair(block_of(k, s.node[a], s.node[b]), law->D, m->thickness * p->area[n],
-                 (const double(*)[2])B[a], (const double(*)[2])B[b]);
+                 (const double(*)[MOST_MOTIONS])B, a, b);
   }
 }
 

@@ -77,38 +77,23 @@ static void add_point(node_stencil *k, int point, const point_shape *s, double s
   }
 }
 
-/* Of an element's point with the mean dilatation: strains xx, yy, xy of engineers by the motions of
-   its corners, [3][corner and direction]. */
-static void mean_strains(const node_stencil *k, int cell, const point_shape *s, double B[3][8]) {
-  double mean[4][2];
-  element_mean_gradient(k->of, cell, mean);
-  for (int q = 0; q < 4; q++) {
-    const double shift[2] = {0.5 * (mean[q][0] - s->nx[q]), 0.5 * (mean[q][1] - s->ny[q])};
-    B[0][2 * q] = s->nx[q] + shift[0];
-    B[0][2 * q + 1] = shift[1];
-    B[1][2 * q] = shift[0];
-    B[1][2 * q + 1] = s->ny[q] + shift[1];
-    B[2][2 * q] = s->ny[q];
-    B[2][2 * q + 1] = s->nx[q];
-  }
-}
-
-/* The same as add_point. */
+/* The same as add_point, with the mean dilatation of the cell. */
 static void add_mean_point(node_stencil *k, int point, const point_shape *s) {
   const int cell = k->points->cell[point];
   const plane_stiffness *law = node_stencil_law(k, cell);
   const double factor = k->of->thickness * k->points->area[point];
   long from[SHAPE_MOST_NODES], to[SHAPE_MOST_NODES];
-  double B[3][8];
+  double mean[ELEMENT_MOST_NODES][2], B[3][2 * ELEMENT_MOST_NODES];
   if (!law) return;
   find_places(k, s, from, to);
-  mean_strains(k, cell, s, B);
-  for (int p = 0; p < 8; p++) {
+  element_mean_gradient(k->of, k->points, cell, mean);
+  element_mean_strains(s, (const double(*)[2])mean, B);
+  for (int p = 0; p < 2 * s->count; p++) {
     double left[3] = {0, 0, 0};
     for (int a = 0; a < 3; a++)
       for (int c = 0; c < 3; c++)
         left[c] += factor * B[a][p] * law->D[a][c];
-    for (int q = 0; q < 8; q++)
+    for (int q = 0; q < 2 * s->count; q++)
       k->blocks[from[p / 2] + to[q / 2] + (2 * (p % 2) + q % 2) * PL_LANES] +=
           left[0] * B[0][q] + left[1] * B[1][q] + left[2] * B[2][q];
   }

@@ -1,5 +1,7 @@
 #include "runtime/mesh/element_modes.h"
 
+#include <string.h>
+
 #include "dsl/base/elementary.h"
 
 static void corners_of(const mesh *m, int cell, double at[4][2]) {
@@ -24,7 +26,8 @@ static double of_quadrilateral(double at[4][2], double mean[4][2]) {
   return area;
 }
 
-double element_mean_gradient(const mesh *m, int cell, double mean[4][2]) {
+/* At the point of an element with one, of a grid; returns the area, m^2. */
+static double middle_gradient(const mesh *m, int cell, double mean[4][2]) {
   double at[4][2];
   if (m->mapped) {
     corners_of(m, cell, at);
@@ -37,23 +40,42 @@ double element_mean_gradient(const mesh *m, int cell, double mean[4][2]) {
   return m->spacing[0] * m->spacing[1];
 }
 
-void element_mean_strain(const mesh *m, int cell, double u[4][2], double strain[3]) {
-  double mean[4][2], theta = 0;
-  if (!element_takes_mean(m, cell)) return;
-  element_mean_gradient(m, cell, mean);
-  for (int q = 0; q < 4; q++)
-    theta += mean[q][0] * u[q][0] + mean[q][1] * u[q][1];
-  const double shift = 0.5 * (theta - strain[0] - strain[1]);
-  strain[0] += shift;
-  strain[1] += shift;
+void element_mean_gradient(const mesh *m, const integration_points *p, int cell,
+                           double mean[ELEMENT_MOST_NODES][2]) {
+  double area = 0;
+  point_shape s;
+  memset(mean, 0, ELEMENT_MOST_NODES * sizeof *mean);
+  for (int n = p->first[cell]; n < p->first[cell + 1]; n++)
+    area += p->area[n];
+  for (int n = p->first[cell]; n < p->first[cell + 1]; n++) {
+    shape_functions(m, cell, p->at[n], &s);
+    for (int q = 0; q < s.count; q++) {
+      mean[q][0] += p->area[n] / area * s.nx[q];
+      mean[q][1] += p->area[n] / area * s.ny[q];
+    }
+  }
+}
+
+void element_mean_strains(const point_shape *s, const double mean[ELEMENT_MOST_NODES][2],
+                          double B[3][2 * ELEMENT_MOST_NODES]) {
+  for (int q = 0; q < s->count; q++) {
+    const double shift[2] = {0.5 * (mean[q][0] - s->nx[q]), 0.5 * (mean[q][1] - s->ny[q])};
+    B[0][2 * q] = s->nx[q] + shift[0];
+    B[0][2 * q + 1] = shift[1];
+    B[1][2 * q] = shift[0];
+    B[1][2 * q + 1] = s->ny[q] + shift[1];
+    B[2][2 * q] = s->ny[q];
+    B[2][2 * q + 1] = s->nx[q];
+  }
 }
 
 double element_hourglass(const mesh *m, int cell, double gamma[4]) {
   static const double h[4] = {1, -1, -1, 1};
   double at[4][2], mean[4][2], sum = 0, along[2] = {0, 0};
-  if (!(m->hourglass[cell] > 0) || m->cell[cell] != CELL_ELEMENT || m->element_gauss[cell] != 1)
+  if (m->lists || !(m->hourglass[cell] > 0) || m->cell[cell] != CELL_ELEMENT ||
+      m->element_gauss[cell] != 1)
     return 0;
-  const double area = element_mean_gradient(m, cell, mean);
+  const double area = middle_gradient(m, cell, mean);
   corners_of(m, cell, at);
   for (int q = 0; q < 4; q++)
     for (int a = 0; a < 2 && m->mapped; a++) /* 0 in a rectangle */

@@ -17,7 +17,9 @@
 #ifndef PERILAT_RUNTIME_ELEMENT_MODES_H
 #define PERILAT_RUNTIME_ELEMENT_MODES_H
 
+#include "runtime/mesh/integration_points.h"
 #include "runtime/mesh/mesh.h"
+#include "runtime/mesh/shape_functions.h"
 
 /* Whether the cell is an element with 2 x 2 points, or a triangle with 3, whose dilatation is the
    mean. */
@@ -25,12 +27,13 @@ static inline bool element_takes_mean(const mesh *m, int cell) {
   return m->mean_dilatation[cell] && m->cell[cell] == CELL_ELEMENT && m->element_gauss[cell] == 2 &&
          (!m->lists || m->lists->nodes[cell] > 3);
 }
-/* Of a grid: the cell's mean of the gradients of its corners' functions, 1/m, in the order of mesh_corners; that
-   at the point of an element with one. Returns its area, m^2. */
-double element_mean_gradient(const mesh *m, int cell, double mean[4][2]);
-/* Likewise, where the cell takes the mean: strain xx, yy, xy with it in place of the point's own dilatation, u:
-   the corners' displacements, m. */
-void element_mean_strain(const mesh *m, int cell, double u[4][2], double strain[3]);
+/* The mean over the points of such a cell of the gradients of its nodes' functions, 1/m, in the order of
+   these at every point. */
+void element_mean_gradient(const mesh *m, const integration_points *p, int cell,
+                           double mean[ELEMENT_MOST_NODES][2]);
+/* Strains xx, yy, xy (of engineers) of a point with it by the motions of the nodes, x and y in turn. */
+void element_mean_strains(const point_shape *s, const double mean[ELEMENT_MOST_NODES][2],
+                          double B[3][2 * ELEMENT_MOST_NODES]);
 
 /* Of a grid: gamma by the order of mesh_corners, and C/(t D), 1; 0 where nothing resists such motions. */
 double element_hourglass(const mesh *m, int cell, double gamma[4]);

@@ -10,6 +10,7 @@
 #include "dsl/base/elementary.h"
 #include "runtime/analysis/material.h"
 #include "runtime/analysis/stability.h"
+#include "runtime/continuum/cell_sizes.h"
 #include "runtime/continuum/line_load.h"
 #include "runtime/continuum/side_load.h"
 #include "runtime/continuum/tip_laws.h"
@@ -179,7 +180,18 @@ static bool cracks_suit_laws(const run_body *b, const deck *k, diagnostics *d) {
                       is_isotropic(b, d));
 }
 
+static bool cells_suit_laws(const run_body *b, diagnostics *d) {
+  for (int n = 0; n < b->law_count; n++) {
+    const run_law *l = &b->laws[n];
+    if (!cell_sizes_fit(&b->cells->mesh, cell_laws_own(&b->cells->where, n), l->law, l->parameters,
+                        deck_where(&l->from->material->item, "model"), d))
+      return false;
+  }
+  return true;
+}
+
 static bool find_limit_of_cells(run_body *b, const deck *k, diagnostics *d) {
+  if (!cells_suit_laws(b, d)) return false;
   give_laws(b);
   if (!cracks_suit_laws(b, k, d)) return false;
   unsigned char *held = held_freedoms(b);
