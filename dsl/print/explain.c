@@ -192,6 +192,19 @@ static void put_parameters(const page *p) {
   end_table(p);
 }
 
+/* `require h in ...` */
+static void put_sizes(const page *p) {
+  const stmt *s = p->law->sized;
+  if (!s) return;
+  fputs("\nFor cells whose size $", p->out);
+  math_symbol(p->law, s->name, NO_STEP, false, false, p->out);
+  fputs("$ is in ", p->out);
+  put_bounds(p, &s->in);
+  if (s->text) fputs(": ", p->out);
+  if (s->text) put_text(p, s->text);
+  fputs(".\n", p->out);
+}
+
 static bool is_chosen(const page *p, const char *option) {
   for (int k = 0; k < p->choice_count; k++)
     if (strcmp(p->choices[k].option, option) == 0) return true;
@@ -413,11 +426,16 @@ static void put_head(const page *p) {
 }
 
 static void put_steps(const page *p) {
-  if (p->law->fields.count == 0) return;
-  fputs("\nThe index $(n)$ marks values of the present step, $(n-1)$ those at the end of the last "
-        "one; "
-        "everything else is of the present step.\n",
-        p->out);
+  const symbol_list *fields = &p->law->fields;
+  bool returned = false;
+  if (fields->count == 0) return;
+  for (int k = 0; k < fields->count; k++)
+    returned = returned || (fields->items[k]->rule && fields->items[k]->rule->returned);
+  fprintf(
+      p->out,
+      "\nThe index $(n)$ marks values of the present step, $(n-1)$ those at the end of the last "
+      "one%s; everything else is of the present step.\n",
+      returned ? ", $(*)$ those on the way back to the limit" : "");
 }
 
 void explain_law(const law *l, explain_form form, const law_choice *choices, int choice_count,
@@ -425,6 +443,7 @@ void explain_law(const law *l, explain_form form, const law_choice *choices, int
   page p = {l, choices, choice_count, form == EXPLAIN_LATEX, out};
   put_head(&p);
   put_parameters(&p);
+  put_sizes(&p);
   put_options(&p);
   put_fields(&p);
   put_quantities(&p);

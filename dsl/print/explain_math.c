@@ -11,15 +11,15 @@
   X("alpha", "alpha")                                                                              \
   X("beta", "beta")                                                                                \
   X("gamma", "gamma")                                                                              \
-  X("delta", "delta") X("eps", "varepsilon") X("epsilon", "epsilon") X("zeta", "zeta")             \
-      X("eta", "eta") X("theta", "theta") X("iota", "iota") X("kappa", "kappa")                    \
-          X("lambda", "lambda") X("mu", "mu") X("nu", "nu") X("xi", "xi") X("pi", "pi")            \
-              X("rho", "rho") X("sigma", "sigma") X("tau", "tau") X("upsilon", "upsilon")          \
-                  X("phi", "varphi") X("chi", "chi") X("psi", "psi") X("omega", "omega")           \
-                      X("Gamma", "Gamma") X("Delta", "Delta") X("Theta", "Theta")                  \
-                          X("Lambda", "Lambda") X("Xi", "Xi") X("Pi", "Pi") X("Sigma", "Sigma")    \
-                              X("Upsilon", "Upsilon") X("Phi", "Phi") X("Psi", "Psi")              \
-                                  X("Omega", "Omega")
+  X("delta", "delta")                                                                              \
+  X("eps", "varepsilon") X("epsilon", "epsilon") X("zeta", "zeta") X("eta", "eta")                 \
+      X("theta", "theta") X("iota", "iota") X("kappa", "kappa") X("lambda", "lambda")              \
+          X("mu", "mu") X("nu", "nu") X("xi", "xi") X("pi", "pi") X("rho", "rho")                  \
+              X("sigma", "sigma") X("tau", "tau") X("upsilon", "upsilon") X("phi", "varphi")       \
+                  X("chi", "chi") X("psi", "psi") X("omega", "omega") X("Gamma", "Gamma")          \
+                      X("Delta", "Delta") X("Theta", "Theta") X("Lambda", "Lambda") X("Xi", "Xi")  \
+                          X("Pi", "Pi") X("Sigma", "Sigma") X("Upsilon", "Upsilon")                \
+                              X("Phi", "Phi") X("Psi", "Psi") X("Omega", "Omega")
 
 static const struct {
   const char *word, *letter;
@@ -149,7 +149,7 @@ void math_symbol(const law *l, const char *name, step_index step, bool indexed, 
   else
     fputs(letters, out);
   free(letters);
-  static const char *const steps[] = {"", "(n-1)", "(n)"};
+  static const char *const steps[] = {"", "(n-1)", "(n)", "(*)"};
   if (step != NO_STEP || primed) fprintf(out, "^{%s%s}", primed ? "\\prime " : "", steps[step]);
 }
 
@@ -288,7 +288,11 @@ static void put_name(const law *l, const expr *e, FILE *out) {
     fputc('}', out);
     return;
   }
-  step_index step = !math_has_step(s) ? NO_STEP : e->reads_old ? STEP_OLD : STEP_NEW;
+  const bool flows = math_has_step(s) && s->rule && s->rule->returned;
+  step_index step = !math_has_step(s) ? NO_STEP
+                    : !e->reads_old   ? STEP_NEW
+                    : flows           ? STEP_FLOWING
+                                      : STEP_OLD;
   math_symbol(l, e->name, step, e->indexed, e->primed, out);
 }
 

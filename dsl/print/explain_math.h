@@ -7,7 +7,8 @@
 #include "dsl/semantics/law.h"
 
 /* Step a state or damage is taken at. */
-typedef enum step_index { NO_STEP, STEP_OLD, STEP_NEW } step_index;
+/* STEP_FLOWING: while a returned flow is solved for. */
+typedef enum step_index { NO_STEP, STEP_OLD, STEP_NEW, STEP_FLOWING } step_index;
 
 /* A symbol with step and, when `indexed`, neighbour: \omega^{(n-1)}, x_{j}. */
 void math_symbol(const law *l, const char *name, step_index step, bool indexed, bool primed,

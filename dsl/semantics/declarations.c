@@ -400,6 +400,25 @@ static void declare_nonconservative(checker *ck, stmt *s) {
   ck->law->nonconservative = s->text ? s->text : "";
 }
 
+/* What a deck sets has its bounds in its own line; of what it does not, only cells have a size. */
+static void declare_required(checker *ck, const stmt *s) {
+  if (!s->name) return;
+  const char *size = builtin_quantities[QUANTITY_CELL_SIZE].name;
+  if (ck->tree->law != LAW_CONTINUUM || strcmp(s->name, size) != 0) {
+    complain(ck, DIAG_LAW_KIND, s->name_where, "`require` is of the size `%s` of cells alone",
+             size);
+    diag_hint(ck->d,
+              ck->tree->law == LAW_CONTINUUM
+                  ? "bounds of a parameter stand in its own line: `parameter x = 1 in (0, 2)`"
+                  : "only a law of a continuum knows cells");
+  } else if (ck->law->sized) {
+    complain(ck, DIAG_DUPLICATE_NAME, s->name_where, "`%s` is required twice", size);
+    diag_note(ck->d, ck->law->sized->name_where, "first required here");
+  } else {
+    ck->law->sized = s;
+  }
+}
+
 static void declare_one(checker *ck, stmt *s) {
   switch (s->kind) {
   case STMT_PARAMETER:
@@ -443,6 +462,9 @@ static void declare_one(checker *ck, stmt *s) {
     break;
   case STMT_NONCONSERVATIVE:
     declare_nonconservative(ck, s);
+    break;
+  case STMT_REQUIRE:
+    declare_required(ck, s);
     break;
   case STMT_INCLUDE:
   case STMT_COUNT:

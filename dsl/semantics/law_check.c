@@ -318,6 +318,7 @@ static void check_statement(checker *ck, stmt *s) {
   case STMT_STATE:
   case STMT_OPTION:
   case STMT_NONCONSERVATIVE:
+  case STMT_REQUIRE:
   case STMT_INCLUDE:
   case STMT_COUNT:
     break;
@@ -504,6 +505,7 @@ static bool is_rule(const stmt *s) {
   case STMT_STATE:
   case STMT_FUNCTION:
   case STMT_NONCONSERVATIVE:
+  case STMT_REQUIRE:
   case STMT_INCLUDE:
   case STMT_COUNT:
     return false;

@@ -95,16 +95,15 @@ static double own_unit(const symbol *p, char *text, size_t size) {
   return 1;
 }
 
-static bool check_limit(checker *ck, expr *limit, const symbol *parameter) {
+static bool check_limit(checker *ck, expr *limit, const char *name, dimension dim,
+                        const char *own) {
   if (!limit) return true;
   value v = check_plain(ck, limit, IN_BOUNDS);
   if (v.broken) return false;
-  const char *what = arena_printf(ck->memory, "a bound of `%s`", parameter->name);
-  if (expect(ck, limit, v, entry_of(parameter)->type.dim, SHAPE_SCALAR, what)) return true;
-  char text[64];
-  own_unit(parameter, text, sizeof(text));
+  const char *what = arena_printf(ck->memory, "a bound of `%s`", name);
+  if (expect(ck, limit, v, dim, SHAPE_SCALAR, what)) return true;
   if (limit->kind == EXPR_NUMBER && !limit->unit_text)
-    diag_hint(ck->d, "give the number its unit: `%g [%s]`", limit->number, text);
+    diag_hint(ck->d, "give the number its unit: `%g [%s]`", limit->number, own);
   return false;
 }
 
@@ -126,6 +125,14 @@ static void check_default_in_bounds(checker *ck, const symbol *p, const double *
   }
 }
 
+static void check_sizes(checker *ck) {
+  const stmt *s = ck->law->sized;
+  if (!s) return;
+  const dimension dim = dimension_of("m");
+  check_limit(ck, s->in.lower, s->name, dim, "mm");
+  check_limit(ck, s->in.upper, s->name, dim, "mm");
+}
+
 void check_bounds(checker *ck) {
   const symbol_list *parameters = &ck->law->parameters;
   double *defaults = arena_alloc(ck->memory, (size_t)parameters->count * sizeof(double));
@@ -135,7 +142,12 @@ void check_bounds(checker *ck) {
     const symbol *p = parameters->items[i];
     const bounds *in = &p->declared->in;
     if (!in->given || entry_of(p)->type.broken) continue;
-    bool lower = check_limit(ck, in->lower, p), upper = check_limit(ck, in->upper, p);
+    const dimension dim = entry_of(p)->type.dim;
+    char text[64];
+    own_unit(p, text, sizeof(text));
+    bool lower = check_limit(ck, in->lower, p->name, dim, text),
+         upper = check_limit(ck, in->upper, p->name, dim, text);
     if (lower && upper) check_default_in_bounds(ck, p, defaults);
   }
+  check_sizes(ck);
 }

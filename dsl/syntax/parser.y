@@ -54,6 +54,7 @@ static const word no_word;
 %token NEWLINE
 %token MODEL END LAW FOR PARAMETER CONSTANT OPTION STATE DAMAGE FUNCTION FORCE MOMENT ENERGY STRESS
 %token STRAIN YIELD FLOW OUTPUT NONCONSERVATIVE INCLUDE CRACK GROW TOWARD SPEED FAILED
+%token REQUIRE
 %token EXPRESSION /* begins one that stands by itself: no text has it */
 %token WHEN OTHERWISE JUMP IN AND OR NOT BY ALONG RETURNED ON
 %token EQ NE LE GE POW
@@ -121,6 +122,8 @@ declaration:
                                       build_placement(p, $$, $4); }
 | DAMAGE NAME index on '=' body     { $$ = build_stmt(p, STMT_DAMAGE, $2, $3, $6, @$);
                                       build_placement(p, $$, $4); }
+| REQUIRE NAME IN interval          { $$ = build_stmt(p, STMT_REQUIRE, $2, no_word, NULL, @$);
+                                      $$->in = $4; }
 | FAILED WHEN expression            { $$ = build_failure(p, @1, $3, @$); }
 | FUNCTION NAME '(' names ')' '=' body
                                     { $$ = build_stmt(p, STMT_FUNCTION, $2, no_word, $7, @$);

@@ -147,7 +147,8 @@ typedef enum stmt_kind {
           X(MOMENT, "moment") X(ENERGY, "energy") X(STRESS, "stress") X(STRAIN, "strain")          \
               X(YIELD, "yield") X(FLOW, "flow") X(OUTPUT, "output")                                \
                   X(NONCONSERVATIVE, "nonconservative") X(INCLUDE, "include")        \
-                      X(GROW, "grow") X(TOWARD, "toward") X(SPEED, "speed")
+                      X(GROW, "grow") X(TOWARD, "toward") X(SPEED, "speed")        \
+                      X(REQUIRE, "require")
 #define X(code, text) STMT_##code,
   TREE_STATEMENTS(X)
 #undef X
@@ -173,7 +174,7 @@ struct stmt {
   const char *unit_text; /* PARAMETER without default: its unit, NULL for a pure number */
   span unit_where;
   bool along_reference; /* FORCE_STATE: acts along the reference bond, not the current one */
-  bounds in;            /* PARAMETER */
+  bounds in;            /* PARAMETER, REQUIRE */
   const char **words;   /* OPTION: choices; FUNCTION: arguments */
   span *word_where;
   int word_count;

@@ -13,7 +13,8 @@
   X(FUNCTION, "function") X(FORCE, "force") X(MOMENT, "moment") X(ENERGY, "energy")                \
   X(STRESS, "stress") X(STRAIN, "strain") X(YIELD, "yield") X(FLOW, "flow") X(OUTPUT, "output")    \
   X(NONCONSERVATIVE, "nonconservative") X(INCLUDE, "include") X(CRACK, "crack") X(GROW, "grow")   \
-  X(TOWARD, "toward") X(SPEED, "speed") X(FAILED, "failed")
+  X(TOWARD, "toward") X(SPEED, "speed") X(FAILED, "failed")  \
+  X(REQUIRE, "require")
 
 /* Words that are never names. X(token, text) */
 #define RESERVED_WORDS(X)                                                                          \

@@ -68,12 +68,24 @@ void point_bench_close(point_bench *b) {
   b->plan = NULL;
 }
 
+/* Of the cell: CELL, or as near to it as the law holds for with room to spare. */
+static void choose_size(point_bench *b) {
+  double low = 0, high = INFINITY;
+  unsigned char open[2];
+  const pl_law *kernel = b->kernel;
+  if (kernel->size_bounds)
+    kernel->size_bounds(kernel, b->parameters, &low, &high, &open[0], &open[1]);
+  for (int k = 0; k < LANES; k++)
+    b->size[k] = pl_fmax(2 * low, pl_fmin(high / 2, CELL));
+}
+
 void point_bench_parameters(point_bench *b, const physics_options *o, bool usual) {
   b->others = !o->parameters && !usual;
   if (o->parameters)
     memcpy(b->parameters, o->parameters, (size_t)b->law->parameters.count * sizeof(double));
   else
     physics_draw_parameters(b->law, usual ? NULL : &b->seed, b->parameters);
+  choose_size(b);
   const pl_bond_class none = {.size = sizeof none};
   b->kernel->prepare(b->kernel, b->parameters, &none, b->uniforms);
 }
@@ -198,20 +210,33 @@ static char *state_text(const point_bench *b, const double *strain) {
   return text;
 }
 
-void point_bench_say(point_bench *b, diag_code code, const double *strain, const char *mend,
-                     const char *format, ...) {
+static void tell(point_bench *b, span where, diag_code code, const double *strain, const char *mend,
+                 const char *format, va_list values) {
+  char message[512];
   if (b->failed[code]) return;
   b->failed[code] = true;
-  const symbol *const *given = b->law->results;
-  const symbol *s = given[RESULT_SIGMA] ? given[RESULT_SIGMA] : given[RESULT_W];
-  char message[512];
-  va_list values;
-  va_start(values, format);
   vsnprintf(message, sizeof message, format, values);
-  va_end(values);
   char *state = state_text(b, strain);
-  diag_report(b->said, code, s->rule->where, "%s", message);
+  diag_report(b->said, code, where, "%s", message);
   diag_note(b->said, (span){0, 0, UINT16_MAX}, "found at %s", state);
   if (mend) diag_hint(b->said, "%s", mend);
   free(state);
+}
+
+void point_bench_say(point_bench *b, diag_code code, const double *strain, const char *mend,
+                     const char *format, ...) {
+  const symbol *const *given = b->law->results;
+  const symbol *s = given[RESULT_SIGMA] ? given[RESULT_SIGMA] : given[RESULT_W];
+  va_list values;
+  va_start(values, format);
+  tell(b, s->rule->where, code, strain, mend, format, values);
+  va_end(values);
+}
+
+void point_bench_say_at(point_bench *b, span where, diag_code code, const double *strain,
+                        const char *mend, const char *format, ...) {
+  va_list values;
+  va_start(values, format);
+  tell(b, where, code, strain, mend, format, values);
+  va_end(values);
 }

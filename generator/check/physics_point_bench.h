@@ -62,5 +62,9 @@ double point_bench_largest(const double *v, int count);
    (NULL: rest) and how to mend it. */
 void point_bench_say(point_bench *b, diag_code code, const double *strain, const char *mend,
                      const char *format, ...) __attribute__((format(printf, 5, 6)));
+/* The same at another line. */
+void point_bench_say_at(point_bench *b, span where, diag_code code, const double *strain,
+                        const char *mend, const char *format, ...)
+    __attribute__((format(printf, 6, 7)));
 
 #endif

@@ -7,6 +7,7 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "generator/check/physics_point_bench.h"
+#include "generator/check/physics_point_flows.h"
 #include "generator/check/physics_point_turns.h"
 #include "generator/ir/random_values.h"
 #include "runtime/base/eigen.h"
@@ -394,6 +395,7 @@ static void check_setting(point_bench *b, const physics_options *o, int sets) {
   enum { ROUNDS = 40, PATHS = 4 };
   const double effort = o->effort > 0 ? o->effort : 1;
   const bool jumps = means_jumps(b->law);
+  point_flows *flows = point_flows_open(b);
   for (int set = 0; set < sets; set++) {
     point_bench_parameters(b, o, set == 0);
     check_rest(b);
@@ -406,10 +408,12 @@ static void check_setting(point_bench *b, const physics_options *o, int sets) {
       check_stored(b);
       check_energy_and_stress(b);
       physics_check_turns(b);
+      if (flows) physics_check_flows(b, flows);
     }
     for (int round = 0; round < PATHS * effort; round++)
       check_paths(b);
   }
+  point_flows_close(flows);
 }
 
 static bool is_meant_for(const law *l, law_setting setting) {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "dsl/semantics/law_limits.h"
 #include "dsl/semantics/law_variant.h"
 #include "generator/drive/drive_motion.h"
 #include "generator/drive/point_control.h"
@@ -183,12 +184,33 @@ static double largest_entry(double tangent[MOST][MOST], int order) {
   return most;
 }
 
+/* Whether the law holds for the size of the cell. */
+static bool size_fits(const drive_input *in, const pl_law *kernel, const double *parameters,
+                      diagnostics *d) {
+  if (!kernel->size_bounds) return true;
+  law_limits limits;
+  unsigned char low_open, high_open;
+  kernel->size_bounds(kernel, parameters, &limits.lower, &limits.upper, &low_open, &high_open);
+  limits.lower_open = low_open;
+  limits.upper_open = high_open;
+  if (limits_hold(limits, in->point.cell_size)) return true;
+  char text[80];
+  limits_text(limits_in(limits, 1e-3), text, sizeof text);
+  diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&in->point.item, "size"),
+              "a cell of %.6g mm is not in %s mm, the sizes that the law `%s` holds for%s%s",
+              1e3 * in->point.cell_size, text, kernel->name, kernel->size_reason ? ": " : "",
+              kernel->size_reason ? kernel->size_reason : "");
+  return false;
+}
+
 static bool march_open(marching *m, const double *parameters, const double *initial,
                        const pl_law *kernel, diagnostics *d) {
   const strained rest = {.step = 1};
   double tangent[MOST][MOST] = {{0}};
   *m->band = (drive_band){.row = -1};
-  if (!point_control_read(m->in, kernel->dimensions, &m->control, d)) return false;
+  if (!point_control_read(m->in, kernel->dimensions, &m->control, d) ||
+      !size_fits(m->in, kernel, parameters, d))
+    return false;
   driven_point_open(&m->point, kernel, parameters, m->in->point.cell_size);
   for (int f = 0; f < kernel->field_count; f++)
     driven_point_set(&m->point, f, initial[f]);

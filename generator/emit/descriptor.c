@@ -141,6 +141,16 @@ static void write_programs(c_text *out, const kernel_plan *p) {
   }
 }
 
+/* `require h in ...` */
+static void write_sizes(c_text *out, const stmt *sized) {
+  if (!sized) return;
+  c_text_add(out, "    .size_bounds = size_bounds,\n");
+  if (!sized->text) return;
+  c_text_add(out, "    .size_reason = ");
+  c_text_string(out, sized->text);
+  c_text_add(out, ",\n");
+}
+
 void descriptor_entry(const kernel_plan *p, c_text *out) {
   c_text_add(out, "#if PL_IN_PART(0)\n");
   write_law(out, p);
@@ -148,7 +158,8 @@ void descriptor_entry(const kernel_plan *p, c_text *out) {
 #define X(task, member) c_text_add(out, "    .%s = %s,\n", #member, #member);
     POINT_PROGRAMS(X)
 #undef X
-    c_text_add(out, "    .linear = %d,\n", p->linear);
+    c_text_add(out, "    .linear = %d,\n    .reads_size = %d,\n", p->linear, p->reads_size);
+    write_sizes(out, p->law->sized);
   } else if (p->form == FORM_TIPS) {
 #define X(task, member) c_text_add(out, "    .%s = %s,\n", #member, #member);
     TIP_PROGRAMS(X)

@@ -99,24 +99,38 @@ static void write_prepare(emitter *e) {
 }
 
 /* `lower[3] = 0.0, low_open[3] = 1;` */
-static void write_bound(emitter *e, int number, segment_target target, bool is_open) {
+static void write_bound(emitter *e, int number, int at, segment_target target, bool is_open) {
   const segment_root *r = expression_find_root(e, target, number);
   const bool lower = target == TO_LOWER;
   const char *nowhere = spell(e, lower ? SAY_BELOW_ALL : SAY_ABOVE_ALL);
-  say(e, lower ? SAY_LOWER_BOUND : SAY_UPPER_BOUND, numeral(e, number),
+  say(e, lower ? SAY_LOWER_BOUND : SAY_UPPER_BOUND, numeral(e, at),
       r ? expression_whole(e, r->node) : nowhere, numeral(e, !r || is_open));
+}
+
+static void open_bounds(emitter *e, program_task task) {
+  expression_open_segment(e, &of_parameters, plan_segment(e->plan, task));
+  say(e, SAY_BOUNDS, e->plan->programs[task].name);
+  expression_lines(e);
 }
 
 static void write_bounds(emitter *e) {
   const symbol_list *parameters = &e->plan->law->parameters;
-  expression_open_segment(e, &of_parameters, plan_segment(e->plan, PROGRAM_BOUNDS));
-  say(e, SAY_BOUNDS);
-  expression_lines(e);
+  open_bounds(e, PROGRAM_BOUNDS);
   for (int k = 0; k < parameters->count; k++) {
     const bounds *in = &parameters->items[k]->declared->in;
-    write_bound(e, k, TO_LOWER, in->lower_open);
-    write_bound(e, k, TO_UPPER, in->upper_open);
+    write_bound(e, k, k, TO_LOWER, in->lower_open);
+    write_bound(e, k, k, TO_UPPER, in->upper_open);
   }
+  say(e, SAY_LAST_END);
+  expression_close(e);
+}
+
+static void write_size_bounds(emitter *e) {
+  const stmt *sized = e->plan->law->sized;
+  if (!sized) return;
+  open_bounds(e, PROGRAM_SIZE_BOUNDS);
+  write_bound(e, e->plan->law->parameters.count, 0, TO_LOWER, sized->in.lower_open);
+  write_bound(e, e->plan->law->parameters.count, 0, TO_UPPER, sized->in.upper_open);
   say(e, SAY_LAST_END);
   expression_close(e);
 }
@@ -124,4 +138,5 @@ static void write_bounds(emitter *e) {
 void law_functions_of_parameters(emitter *e) {
   write_prepare(e);
   write_bounds(e);
+  write_size_bounds(e);
 }

@@ -79,7 +79,8 @@ static const char *root_name(const kernel_plan *p, const segment_root *r, char *
   case TO_LOWER:
   case TO_UPPER:
     snprintf(text, size, "%s bound of %s", r->target == TO_LOWER ? "lower" : "upper",
-             p->law->parameters.items[r->index]->name);
+             r->index == p->law->parameters.count ? p->law->sized->name
+                                         : p->law->parameters.items[r->index]->name);
   }
   return text;
 }

@@ -103,7 +103,17 @@ static void run_bounds(const pl_law *kernel, const double *parameters, double *l
     low_open[k] = list->items[k]->declared->in.lower_open;
     high_open[k] = list->items[k]->declared->in.upper_open;
   }
-  interpreted_bounds(w->run, parameters, lower, upper);
+  interpreted_bounds(w->run, PROGRAM_BOUNDS, parameters, lower, upper);
+  give_back(w);
+}
+
+static void run_size_bounds(const pl_law *kernel, const double *parameters, double *lower,
+                            double *upper, unsigned char *low_open, unsigned char *high_open) {
+  const interpreted *p = kernel->context;
+  worker *w = borrow(kernel);
+  *low_open = p->plan->law->sized->in.lower_open;
+  *high_open = p->plan->law->sized->in.upper_open;
+  interpreted_bounds(w->run, PROGRAM_SIZE_BOUNDS, parameters, lower, upper);
   give_back(w);
 }
 
@@ -221,6 +231,10 @@ static void describe_points(interpreted *p) {
   POINT_PROGRAMS(X)
 #undef X
   p->law.linear = p->plan->linear;
+  p->law.reads_size = p->plan->reads_size;
+  if (!p->plan->law->sized) return;
+  p->law.size_bounds = run_size_bounds;
+  p->law.size_reason = p->plan->law->sized->text;
 }
 
 static void describe_families(interpreted *p) {

@@ -188,10 +188,13 @@ void interpreted_prepare(runner *r, const double *parameters, const pl_bond_clas
     uniforms[k] = r->result[k][0];
 }
 
-void interpreted_bounds(runner *r, const double *parameters, double *lower, double *upper) {
-  const segment *a = plan_segment(r->plan, PROGRAM_BOUNDS);
+void interpreted_bounds(runner *r, program_task task, const double *parameters, double *lower,
+                        double *upper) {
+  const segment *a = plan_segment(r->plan, task);
   runner_take_parameters(r, parameters);
-  evaluate(r, PROGRAM_BOUNDS, 1);
+  evaluate(r, task, 1);
   for (int k = 0; k < a->root_count; k++)
-    (a->roots[k].target == TO_LOWER ? lower : upper)[a->roots[k].index] = r->result[k][0];
+    (a->roots[k].target == TO_LOWER ? lower
+                                    : upper)[task == PROGRAM_BOUNDS ? a->roots[k].index : 0] =
+        r->result[k][0];
 }

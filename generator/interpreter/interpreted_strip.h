@@ -12,6 +12,8 @@ void interpreted_points(runner *r, program_task task, const double *uniforms, co
 void interpreted_tips(runner *r, program_task task, const double *uniforms, const pl_tips *s);
 void interpreted_prepare(runner *r, const double *parameters, const pl_bond_class *bonds,
                          double *uniforms);
-void interpreted_bounds(runner *r, const double *parameters, double *lower, double *upper);
+/* `task`: PROGRAM_BOUNDS or PROGRAM_SIZE_BOUNDS. */
+void interpreted_bounds(runner *r, program_task task, const double *parameters, double *lower,
+                        double *upper);
 
 #endif

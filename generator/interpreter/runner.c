@@ -24,7 +24,7 @@ static interpreter *segment_interpreter(const kernel_plan *p, int task, const se
                                         const ir_node *inputs, needs *most) {
   ir_node *nodes = must_alloc((2 * (size_t)a->root_count + 1) * sizeof *nodes);
   const int count = segment_nodes(p->graph, a, nodes);
-  if (task != PROGRAM_BOUNDS)
+  if (task < PROGRAM_BOUNDS)
     ir_substitute(p->graph, nodes, count, p->uniforms, inputs, p->uniform_count, nodes);
   interpreter *made = count ? interpreter_new(p->graph, nodes, count) : NULL;
   most->nodes = larger(most->nodes, count);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "generator/ir/derive.h"
 
 /* --- rebuilding ------------------------------------------------------------------------------- */
 
@@ -567,15 +568,43 @@ bool rewrite_nan_follows(const ir *g, ir_node a, ir_node b) {
 
 /* --- rounding --------------------------------------------------------------------------------- */
 
+static ir_node size_of(ir *g, ir_node n, int deep);
+
+/* Of a function that can be 0 where its operands are not: how much these move it. */
+static ir_node size_of_function(ir *g, ir_node n, int deep) {
+  ir_node sum = ir_unary(g, IR_ABS, n);
+  for (int k = 0; k < ir_arity(ir_operation(g, n)); k++) {
+    const ir_node of = ir_operand(g, n, k), slope = ir_derivative(g, n, of);
+    sum = ir_add(g, sum, ir_mul(g, ir_unary(g, IR_ABS, slope), size_of(g, of, deep + 1)));
+  }
+  return sum;
+}
+
 static ir_node size_of(ir *g, ir_node n, int deep) {
   enum { DEEP = 10 };
   const ir_op op = ir_operation(g, n);
-  if (deep == DEEP) return ir_unary(g, IR_ABS, n);
-  if (op == IR_NEG) return size_of(g, ir_operand(g, n, 0), deep + 1);
-  if (op != IR_ADD && op != IR_SUB && op != IR_MUL && op != IR_DIV) return ir_unary(g, IR_ABS, n);
-  const ir_node a = size_of(g, ir_operand(g, n, 0), deep + 1),
-                b = size_of(g, ir_operand(g, n, 1), deep + 1);
-  return op == IR_MUL ? ir_mul(g, a, b) : op == IR_DIV ? ir_div(g, a, b) : ir_add(g, a, b);
+  if (deep == DEEP || ir_arity(op) == 0) return ir_unary(g, IR_ABS, n);
+  ir_node of[3] = {IR_NONE, IR_NONE, IR_NONE};
+  switch (op) {
+  case IR_ADD:
+  case IR_SUB:
+  case IR_MUL:
+  case IR_DIV:
+  case IR_NEG:
+  case IR_SELECT:
+  case IR_MIN:
+  case IR_MAX:
+    for (int k = op == IR_SELECT; k < ir_arity(op); k++)
+      of[k] = size_of(g, ir_operand(g, n, k), deep + 1);
+    break;
+  default:
+    return operations[op].image.low < 0 ? size_of_function(g, n, deep) : ir_unary(g, IR_ABS, n);
+  }
+  if (op == IR_NEG) return of[0];
+  if (op == IR_SELECT) return ir_select(g, ir_operand(g, n, 0), of[1], of[2]);
+  if (op == IR_MUL) return ir_mul(g, of[0], of[1]);
+  if (op == IR_DIV) return ir_div(g, of[0], ir_unary(g, IR_ABS, ir_operand(g, n, 1)));
+  return ir_add(g, of[0], of[1]);
 }
 
 ir_node rewrite_size(ir *g, ir_node n) {

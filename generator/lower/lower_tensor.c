@@ -4,6 +4,10 @@ static bool is_shear(int k) {
   return k >= TENSOR_XY;
 }
 
+ir_node tensor_scaled(ir *g, ir_node factor, ir_node component) {
+  return ir_is_number(g, component, 0) ? component : ir_mul(g, factor, component);
+}
+
 ir_node tensor_contract(ir *g, components a, components b) {
   ir_node sum = ir_constant(g, 0);
   for (int k = 0; k < a.count; k++) {
@@ -88,12 +92,6 @@ ir_node tensor_principal(ir *g, components a, int which) {
   return plane ? plane_principal(g, a, which) : space_principal(g, a, which);
 }
 
-/* A component times a factor. One that is 0 stays, so that it is known that a tensor of the plane does
-   not leave it: factors that are no finite numbers show in the others. */
-static ir_node times(ir *g, ir_node component, ir_node factor) {
-  return ir_is_number(g, component, 0) ? component : ir_mul(g, component, factor);
-}
-
 /* Isotropic elasticity. In plane stress the third direction is free: sigma_zz = 0 whatever eps_zz
    says. */
 components tensor_hooke(ir *g, law_setting setting, components eps, ir_node E, ir_node nu) {
@@ -109,7 +107,7 @@ components tensor_hooke(ir *g, law_setting setting, components eps, ir_node E, i
   }
   ir_node pressure = ir_mul(g, lambda, sum);
   for (int k = 0; k < TENSOR_COUNT; k++) {
-    eps.of[k] = times(g, eps.of[k], twice_mu);
+    eps.of[k] = tensor_scaled(g, twice_mu, eps.of[k]);
     if (k < TENSOR_XY) eps.of[k] = ir_add(g, pressure, eps.of[k]);
   }
   if (setting == SETTING_PLANE_STRESS) eps.of[TENSOR_ZZ] = ir_constant(g, 0);
@@ -135,7 +133,7 @@ components tensor_binary(lowering *c, const expr *e, components a, components b)
       v.of[k] = ir_sub(g, left, right);
       break;
     case OP_MUL:
-      v.of[k] = a.count == 1 ? times(g, right, left) : times(g, left, right);
+      v.of[k] = a.count == 1 ? tensor_scaled(g, left, right) : tensor_scaled(g, right, left);
       break;
     default:
       v.of[k] = ir_is_number(g, left, 0) ? left : ir_div(g, left, right);

@@ -4,6 +4,8 @@
 
 #include "generator/lower/lowering.h"
 
+/* What is 0 stays so, whatever the factor: in the plane nothing leaves it. */
+ir_node tensor_scaled(ir *g, ir_node factor, ir_node component);
 /* a : b, of vectors a . b. */
 ir_node tensor_contract(ir *g, components a, components b);
 ir_node tensor_trace(ir *g, components a);

@@ -27,7 +27,7 @@ static components difference(ir *g, components a, components b) {
 
 static components scaled(ir *g, components a, ir_node by) {
   for (int k = 0; k < TENSOR_COUNT; k++)
-    a.of[k] = ir_mul(g, by, a.of[k]);
+    a.of[k] = tensor_scaled(g, by, a.of[k]);
   return a;
 }
 
@@ -36,16 +36,20 @@ static ir_node inverse(ir *g, ir_node x) {
   return ir_div(g, ir_constant(g, 1), ir_binary(g, IR_MAX, x, ir_constant(g, 1e-290)));
 }
 
+static ir_node both(ir *g, ir_node a, ir_node b) {
+  return ir_is_number(g, a, 0) ? a : tensor_scaled(g, a, b);
+}
+
 components tensor_product(ir *g, components a, components b) {
   components v = {TENSOR_COUNT, {0}};
   for (int i = 0; i < 3; i++)
     for (int j = i; j < 3; j++) {
       ir_node sum = ir_constant(g, 0);
       for (int k = 0; k < 3; k++) {
-        sum = ir_add(g, sum, ir_mul(g, a.of[place_of[i][k]], b.of[place_of[k][j]]));
-        sum = ir_add(g, sum, ir_mul(g, b.of[place_of[i][k]], a.of[place_of[k][j]]));
+        sum = ir_add(g, sum, both(g, a.of[place_of[i][k]], b.of[place_of[k][j]]));
+        sum = ir_add(g, sum, both(g, b.of[place_of[i][k]], a.of[place_of[k][j]]));
       }
-      v.of[place_of[i][j]] = half(g, sum);
+      v.of[place_of[i][j]] = tensor_scaled(g, ir_constant(g, 0.5), sum);
     }
   return v;
 }

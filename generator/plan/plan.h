@@ -34,6 +34,7 @@ typedef enum program_task {
   PROGRAM_STATES,      /* a bond alone, state by state (pl_states) */
   PROGRAM_TANGENT,     /* its derivatives; of points the tangent */
   PROGRAM_BOUNDS,      /* of parameters */
+  PROGRAM_SIZE_BOUNDS, /* of the size of cells */
   PROGRAM_COUNT
 } program_task;
 
@@ -61,9 +62,9 @@ typedef enum kernel_form {
   FORM_LOOPS,  /* families by loops over particles and neighbours, any number of these */
   /* One loop over the particles, neighbour by neighbour in its body: law->neighbours of them */
   FORM_UNROLLED,
-  FORM_PAIRS, /* loops over bonds that add to both ends (SHARE_PAIRS) */
+  FORM_PAIRS,  /* loops over bonds that add to both ends (SHARE_PAIRS) */
   FORM_POINTS, /* loops over points of a continuum */
-  FORM_TIPS /* loops over tips of cracks */
+  FORM_TIPS    /* loops over tips of cracks */
 } kernel_form;
 
 typedef struct kernel_plan {
@@ -85,10 +86,10 @@ typedef struct kernel_plan {
      changed. */
   bool loses_by_own_fields;
   program_links links;
-  bool reads_shape;         /* inverse shape matrices */
-  bool reads_share;         /* shares of particles */
-  bool reads_mass;          /* and masses */
-  bool stores, reads_rates, linear; /* pl_law */
+  bool reads_shape;                             /* inverse shape matrices */
+  bool reads_share;                             /* shares of particles */
+  bool reads_mass;                              /* and masses */
+  bool stores, reads_rates, reads_size, linear; /* pl_law */
   arena *memory;
 } kernel_plan;
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "dsl/semantics/law_reads.h"
 #include "generator/ir/derive.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/lower_inputs.h"
@@ -77,8 +78,8 @@ static ir_node slope_at_hand(planner *p, const along_z *at_hand) {
 }
 
 /* A slope to divide by in Newton's step k. Where its own is next to nothing or negative (a point that
-   has broken, the apex of a cone) it goes on by that of the states at hand, each time twice as far.
-   What is the same everywhere stays. */
+   has broken, the apex of a cone) it goes on by that of the states at hand, each time four times
+   as far. What is the same everywhere stays. */
 static ir_node safe_slope(planner *p, const along_z *a, const along_z *at_hand, int k) {
   static const double NOTHING = 1e-3; /* of the slope of the states at hand */
   ir *g = p->graph;
@@ -86,7 +87,7 @@ static ir_node safe_slope(planner *p, const along_z *a, const along_z *at_hand, 
   const ir_node other = slope_at_hand(p, at_hand),
                 least = ir_mul(g, ir_constant(g, at_hand->affine ? NOTHING : 0), other);
   return ir_select(g, ir_binary(g, IR_LT, least, a->slope), a->slope,
-                   ir_mul(g, ir_constant(g, 1.0 / (double)(1 << k)), other));
+                   ir_mul(g, ir_constant(g, 1.0 / (double)(1 << 2 * k)), other));
 }
 
 /* z of Newton's method after so many steps from z = `from`; IR_NONE: too large to compile. */
@@ -110,7 +111,7 @@ static ir_node newton(planner *p, const along_z *a, const along_z *at_hand, ir_n
    it. */
 static ir_node strain_without_stress(planner *p, ir_node sigma_zz, ir_node sigma_zz_at_hand,
                                      diagnostics *d) {
-  enum { NEWTON_STEPS = 8 };
+  enum { NEWTON_STEPS = 9 };
   const along_z a = along_z_of(p, sigma_zz), at_hand = along_z_of(p, sigma_zz_at_hand);
   const ir_node zero = ir_constant(p->graph, 0);
   if (ir_is_number(p->graph, a.slope, 0)) return zero;
@@ -480,6 +481,7 @@ bool plan_points(kernel_plan *plan, diagnostics *d) {
   plan->linear = is_linear(&p);
   plan->stores = plan->law->nonconservative == NULL;
   plan->reads_rates = reads_rates(&p);
+  plan->reads_size = law_reads(plan->law, QUANTITY_CELL_SIZE);
   seen_points seen = {stored_energy(&p), rate_power(&p), still_power(&p), stress};
   improve(&p, &seen);
   static void (*const program[])(planner *, const seen_points *,

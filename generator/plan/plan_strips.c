@@ -252,18 +252,23 @@ static void plan_tangent(planner *p, const lowered_law *bare) {
     }
 }
 
+static bool want_bounds(kernel_plan *p, segment *a, const bounds *in, int k, diagnostics *d) {
+  ir_node lower = lower_bound(p->graph, p->law, in->lower, -INFINITY, d);
+  ir_node upper = lower_bound(p->graph, p->law, in->upper, INFINITY, d);
+  if (lower == IR_NONE || upper == IR_NONE) return false;
+  want(p, a, lower, TO_LOWER, k);
+  want(p, a, upper, TO_UPPER, k);
+  return true;
+}
+
 bool plan_bounds(kernel_plan *p, diagnostics *d) {
   const law *l = p->law;
   segment *a = plan_single(p, PROGRAM_BOUNDS, "bounds", OVER_BODY);
-  for (int k = 0; k < l->parameters.count; k++) {
-    const bounds *in = &l->parameters.items[k]->declared->in;
-    ir_node lower = lower_bound(p->graph, l, in->lower, -INFINITY, d);
-    ir_node upper = lower_bound(p->graph, l, in->upper, INFINITY, d);
-    if (lower == IR_NONE || upper == IR_NONE) return false;
-    want(p, a, lower, TO_LOWER, k);
-    want(p, a, upper, TO_UPPER, k);
-  }
-  return true;
+  for (int k = 0; k < l->parameters.count; k++)
+    if (!want_bounds(p, a, &l->parameters.items[k]->declared->in, k, d)) return false;
+  if (!l->sized) return true;
+  a = plan_single(p, PROGRAM_SIZE_BOUNDS, "size_bounds", OVER_BODY);
+  return want_bounds(p, a, &l->sized->in, l->parameters.count, d);
 }
 
 /* --- the plan --------------------------------------------------------------------------------- */

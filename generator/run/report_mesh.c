@@ -33,9 +33,30 @@ static void print_cells(const mesh *m) {
            count_set(m->gone, mesh_node_count(m)));
 }
 
+/* "mesh       plate: 858 nodes of plate.msh, 1560 triangles of 3 nodes, sides of at least 1.2 mm; 1560
+   points" */
+static void announce_lists(const cells *c, const deck_mesh *k) {
+  const cell_lists *l = c->mesh.lists;
+  long count[ELEMENT_MOST_NODES + 1] = {0};
+  printf("  mesh       %s: %d nodes of %s", k->name, l->node_count, k->file);
+  for (int n = 0; n < l->count; n++)
+    count[l->nodes[n]]++;
+  for (int n = 3; n <= ELEMENT_MOST_NODES; n++)
+    if (count[n] > 0)
+      printf(", %ld %s", count[n],
+             n == 4   ? "quadrilaterals"
+             : n == 3 ? "triangles of 3 nodes"
+                      : "triangles of 6 nodes");
+  printf(", %.6g mm between neighbours at least; %d points\n", 1e3 * k->spacing, c->points.count);
+}
+
 /* "mesh       beam: 74 x 25 nodes, 3.13151 x 3.175 mm apart, 1752 cells: ...; 24048 points" */
 static void announce_cells(const cells *c, const deck_mesh *k) {
   const mesh *m = &c->mesh;
+  if (m->lists) {
+    announce_lists(c, k);
+    return;
+  }
   printf("  mesh       %s: %d x %d nodes, ", k->name, m->nodes[0], m->nodes[1]);
   if (m->mapped)
     printf("at least %.6g mm apart", 1e3 * k->spacing);

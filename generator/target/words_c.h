@@ -61,7 +61,7 @@
   X(PREPARE, "PL_RARE static void prepare(const pl_law *law, const double *parameters,\n"          \
     "    const pl_bond_class *bonds, double *uniforms) {\n"                                        \
     "  (void)law, (void)parameters, (void)bonds, (void)uniforms;\n")                               \
-  X(BOUNDS, "PL_RARE static void bounds(const pl_law *law, const double *parameters, "             \
+  X(BOUNDS, "PL_RARE static void $1(const pl_law *law, const double *parameters, "                 \
     "double *lower,\n"                                                                             \
     "    double *upper, unsigned char *low_open, unsigned char *high_open) {\n"                    \
     "  (void)law, (void)parameters, (void)lower, (void)upper, (void)low_open, (void)high_open;\n") \

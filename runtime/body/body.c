@@ -79,6 +79,8 @@ void body_add_mass(body *w, long site, double mass, double inertia) {
 
 void body_give_away(body *w, long site) {
   if (!w->relative_mass[0]) new_masses(w);
+  for (int d = 0; d < w->dimensions && !w->ahead[d]; d++)
+    w->ahead[d] = body_doubles(w, w->lattice->size);
   w->relative_mass[0][site] = 0;
   if (w->weight) w->weight[site] = 0;
 }

@@ -85,6 +85,9 @@ typedef struct body {
      NULL without. The rows in which it is not 0 have a mark, [row_count]. */
   double *outer[3];
   unsigned char *row_outer;
+  /* [size] m/s: of particles that are given away the velocity after the coming step, as the state was
+     observed; NULL without */
+  double *ahead[3];
   double outer_work;  /* J: that it has done since the start */
   body_row *observed; /* [row_count] */
   /* [row_count] site from which on a row has not moved, a velocity there was bad; 0: it has */

@@ -14,6 +14,7 @@
 #include "runtime/continuum/mesh_build.h"
 #include "runtime/continuum/node_masses.h"
 #include "runtime/continuum/point_law.h"
+#include "runtime/mesh/element_modes.h"
 #include "runtime/mesh/mesh_fields.h"
 
 /* Power iteration finds the highest frequency from below. */
@@ -171,8 +172,10 @@ void cells_take_laws(cells *c, const cells_law *laws) {
   for (int n = 0; n < c->where.count; n++)
     c->stiffness[n] = tangent_at_rest(c, n, false);
   find_linear(c);
-  if (c->has_stencil) node_stencil_open(&c->stencil, &c->mesh, &c->points, c->stiffness, c->linear);
   if (c->has_matrix) node_matrix_open(&c->matrix, &c->mesh, &c->points, c->stiffness, c->linear);
+  if (!c->has_stencil) return;
+  node_stencil_open(&c->stencil, &c->mesh, &c->points, c->stiffness, c->linear);
+  node_stencil_resist_hourglass(&c->stencil);
 }
 
 void cells_densities(const cells *c, const double *density, double *at_site) {
@@ -217,6 +220,7 @@ static double highest(const cells *c, const plane_stiffness *laws, const double 
     return omega;
   }
   node_stencil_open(&k, &c->mesh, &c->points, laws, c->where.of_cell);
+  if (laws == c->stiffness) node_stencil_resist_hourglass(&k); /* rates are not resisted so */
   const double omega = frequency_limit(&k, mass, held);
   node_stencil_close(&k);
   return omega;
@@ -521,6 +525,21 @@ static void stored(sweep *w, double *values) {
   }
 }
 
+void cells_mean_dilatation(const cells *c, int cell, const double *const displacement[2],
+                           double strain[3]) {
+  double mean[ELEMENT_MOST_NODES][2], theta = 0;
+  if (!element_takes_mean(&c->mesh, cell)) return;
+  point_shape s;
+  shape_functions(&c->mesh, cell, c->points.at[c->points.first[cell]], &s);
+  element_mean_gradient(&c->mesh, &c->points, cell, mean);
+  for (int q = 0; q < s.count; q++)
+    for (int d = 0; d < 2; d++)
+      theta += mean[q][d] * displacement[d][cells_site(c, s.node[q])];
+  const double shift = 0.5 * (theta - strain[0] - strain[1]);
+  strain[0] += shift;
+  strain[1] += shift;
+}
+
 /* Of a linear law a point remembers nothing: asked for, it is looked at. */
 static double output_at(const cells_part *of, int number, int point) {
   const cells *c = of->engine->of;
@@ -531,6 +550,7 @@ static double output_at(const cells_part *of, int number, int point) {
   const node_layout l = node_layout_of(c->mesh.nodes, c->mesh.support);
   mesh_field(&s, &l, motion_of(of->state).displacement, NULL, gradient);
   mesh_strain(gradient, strain);
+  cells_mean_dilatation(c, c->points.cell[point], motion_of(of->state).displacement, strain);
   point_law_observe(of->one, strain, mesh_cell_size(&c->mesh, c->points.cell[point]), of->observed);
   return of->observed[1 + number];
 }

@@ -71,6 +71,10 @@ void cells_take_laws(cells *c, const cells_law *laws);
 void cells_densities(const cells *c, const double *density, double *at_site);
 /* node[nodes] becomes 1 where cells of laws that are not linear push. */
 void cells_mark_pushed(const cells *c, unsigned char *node);
+/* A point's strain as the law sees it, in a cell whose dilatation is the mean (element_modes.h);
+   displacement: planes of the body. */
+void cells_mean_dilatation(const cells *c, int cell, const double *const displacement[2],
+                           double strain[3]);
 /* The longest stable step at rest; held[2 p + d]: freedoms of particles that do not move by
    themselves. */
 void cells_step_limit(const cells *c, const unsigned char *held, step_limit *limit);

@@ -9,15 +9,18 @@
 
 static const double ON_OUTLINE = 1e-6; /* spacings: a node is on a zone's outline */
 
-/* Corners of a zone's nodes that elements have: its rule. */
-static void take_rule(mesh *m, const unsigned char *in_zone, int gauss) {
+/* Cells all of whose corners are a zone's, as elements: what it says of them. */
+static void take_rule(mesh *m, const unsigned char *in_zone, const deck_zone *z) {
   int corner[4];
   for (int c = 0; c < mesh_cell_count(m); c++) {
     mesh_corners(m, c, corner);
     int inside = 0;
     for (int n = 0; n < 4; n++)
       inside += in_zone[corner[n]];
-    if (inside == 4) m->element_gauss[c] = (unsigned char)gauss;
+    if (inside < 4) continue;
+    m->element_gauss[c] = (unsigned char)z->gauss;
+    m->mean_dilatation[c] = z->dilatation == DILATATION_MEAN;
+    m->hourglass[c] = z->hourglass;
   }
 }
 
@@ -32,7 +35,7 @@ static bool take_zone(const deck_zone *z, double spacing, mesh *m, diagnostics *
     in_zone[n] = 1;
     count++;
   }
-  if (z->method == MESH_FINITE_ELEMENTS) take_rule(m, in_zone, z->gauss);
+  if (z->method == MESH_FINITE_ELEMENTS) take_rule(m, in_zone, z);
   free(in_zone);
   if (count > 0) return true;
   diag_report(d, DIAG_EMPTY_REGION, z->item.where, "the zone holds no node of `%s`", z->mesh);
@@ -59,6 +62,9 @@ bool mesh_build(const deck *k, int lattice, mesh *out, diagnostics *d) {
   if (l->method == MESH_FINITE_ELEMENTS) {
     memset(out->element_free, 0, (size_t)mesh_node_count(out));
     memset(out->element_gauss, l->gauss, (size_t)mesh_cell_count(out));
+    memset(out->mean_dilatation, l->dilatation == DILATATION_MEAN, (size_t)mesh_cell_count(out));
+    for (int c = 0; c < mesh_cell_count(out); c++)
+      out->hourglass[c] = l->hourglass;
   }
   for (int n = 0; n < k->zone_count; n++)
     if (strcmp(k->zones[n].mesh, l->name) == 0)

@@ -66,6 +66,7 @@ static bool strain_at(const cells *c, const node_layout *l, const double *const 
     shape_functions(&c->mesh, around[n], at, &s);
     mesh_field(&s, l, displacement, NULL, gradient);
     mesh_strain(gradient, here);
+    cells_mean_dilatation(c, around[n], displacement, here);
     for (int k = 0; k < 3; k++)
       strain[k] += here[k] / count;
   }

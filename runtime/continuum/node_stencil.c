@@ -6,6 +6,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/mesh/element_modes.h"
 #include "runtime/mesh/shape_functions.h"
 
 /* --- layout ----------------------------------------------------------------------------------- */
@@ -76,6 +77,49 @@ static void add_point(node_stencil *k, int point, const point_shape *s, double s
   }
 }
 
+/* The same as add_point, with the mean dilatation of the cell. */
+static void add_mean_point(node_stencil *k, int point, const point_shape *s) {
+  const int cell = k->points->cell[point];
+  const plane_stiffness *law = node_stencil_law(k, cell);
+  const double factor = k->of->thickness * k->points->area[point];
+  long from[SHAPE_MOST_NODES], to[SHAPE_MOST_NODES];
+  double mean[ELEMENT_MOST_NODES][2], B[3][2 * ELEMENT_MOST_NODES];
+  if (!law) return;
+  find_places(k, s, from, to);
+  element_mean_gradient(k->of, k->points, cell, mean);
+  element_mean_strains(s, (const double(*)[2])mean, B);
+  for (int p = 0; p < 2 * s->count; p++) {
+    double left[3] = {0, 0, 0};
+    for (int a = 0; a < 3; a++)
+      for (int c = 0; c < 3; c++)
+        left[c] += factor * B[a][p] * law->D[a][c];
+    for (int q = 0; q < 2 * s->count; q++)
+      k->blocks[from[p / 2] + to[q / 2] + (2 * (p % 2) + q % 2) * PL_LANES] +=
+          left[0] * B[0][q] + left[1] * B[1][q] + left[2] * B[2][q];
+  }
+}
+
+static void add_hourglass(node_stencil *k, int cell) {
+  const plane_stiffness *law = node_stencil_law(k, cell);
+  double gamma[4];
+  point_shape s = {.count = 4};
+  const double part = law ? element_hourglass(k->of, cell, gamma) : 0;
+  long from[SHAPE_MOST_NODES], to[SHAPE_MOST_NODES];
+  if (!(part > 0)) return;
+  const double C = k->of->thickness * part * element_strip_stiffness(law->D);
+  mesh_corners(k->of, cell, s.node);
+  find_places(k, &s, from, to);
+  for (int p = 0; p < 4; p++)
+    for (int q = 0; q < 4; q++)
+      for (int a = 0; a < 2; a++)
+        k->blocks[from[p] + to[q] + 3 * a * PL_LANES] += C * gamma[p] * gamma[q];
+}
+
+void node_stencil_resist_hourglass(node_stencil *k) {
+  for (int cell = 0; cell < mesh_cell_count(k->of); cell++)
+    add_hourglass(k, cell);
+}
+
 void node_stencil_open(node_stencil *k, const mesh *m, const integration_points *p,
                        const plane_stiffness *laws, const unsigned char *law_of_cell) {
   *k = (node_stencil){.layout = node_layout_of(m->nodes, m->support),
@@ -90,7 +134,10 @@ void node_stencil_open(node_stencil *k, const mesh *m, const integration_points 
   point_shape s;
   for (int n = 0; n < p->count; n++) {
     k->blind += !shape_functions(m, p->cell[n], p->at[n], &s);
-    add_point(k, n, &s, 1);
+    if (element_takes_mean(m, p->cell[n]))
+      add_mean_point(k, n, &s);
+    else
+      add_point(k, n, &s, 1);
   }
 }
 

@@ -49,6 +49,8 @@ typedef struct node_stencil {
 void node_stencil_open(node_stencil *k, const mesh *m, const integration_points *p,
                        const plane_stiffness *laws, const unsigned char *law_of_cell);
 void node_stencil_close(node_stencil *k);
+/* Adds what elements resist their hourglass modes by (element_modes.h). */
+void node_stencil_resist_hourglass(node_stencil *k);
 
 /* That of a cell; NULL: none. */
 const plane_stiffness *node_stencil_law(const node_stencil *k, int cell);

@@ -8,6 +8,7 @@
 #include "dsl/base/elementary.h"
 #include "runtime/base/lane_sum.h"
 #include "runtime/continuum/point_law.h"
+#include "runtime/mesh/element_modes.h"
 
 enum {
   STRAINS = 3,
@@ -125,7 +126,46 @@ void point_forces_rest(const mesh *m, const unsigned char *own, const pl_law *la
 static void find_rest(point_forces *p, const unsigned char *own, const double *parameters) {
   double tangent[STRAINS][STRAINS];
   point_forces_rest(p->of, own, p->law, parameters, false, tangent);
+  p->strip = element_strip_stiffness((const double(*)[STRAINS])tangent);
   find_scale(tangent, p->scale);
+}
+
+typedef void take_cell(point_forces *p, int group, int lane, int cell);
+
+static void for_each_cell(point_forces *p, take_cell *take) {
+  for (int row = 0; row < p->strips.rows; row++)
+    for (int n = p->strips.first_group[row]; n < p->strips.first_group[row + 1]; n++)
+      for (int lane = 0; lane < p->strips.groups[n].count; lane++)
+        take(p, n, lane, cell_strips_cell(&p->strips, p->of, row, &p->strips.groups[n], lane));
+}
+
+static void open_mean(point_forces *p, int group, int lane, int cell) {
+  const cell_group *g = &p->strips.groups[group];
+  const double *volume = p->strips.volume + g->at + lane;
+  double whole = 0;
+  if (!element_takes_mean(p->of, cell)) return;
+  if (!p->mean) {
+    p->mean = doubles(p, (long)p->strips.group_count * PL_LANES);
+    p->part = doubles(p, p->strips.count);
+  }
+  p->mean[group * PL_LANES + lane] = 1;
+  for (int k = 0; k < g->points; k++)
+    whole += volume[k * PL_LANES];
+  for (int k = 0; k < g->points; k++)
+    p->part[g->at + k * PL_LANES + lane] = volume[k * PL_LANES] / whole;
+}
+
+enum { CORNERS = 4, HOURGLASS = CORNERS + 1 };
+
+static void open_hourglass(point_forces *p, int group, int lane, int cell) {
+  double gamma[CORNERS];
+  const double part = element_hourglass(p->of, cell, gamma);
+  if (!(part > 0)) return;
+  if (!p->hourglass) p->hourglass = doubles(p, (long)p->strips.group_count * HOURGLASS * PL_LANES);
+  double *own = p->hourglass + (long)group * HOURGLASS * PL_LANES + lane;
+  for (int q = 0; q < CORNERS; q++)
+    own[q * PL_LANES] = gamma[q];
+  own[CORNERS * PL_LANES] = p->of->thickness * part * p->strip;
 }
 
 point_forces *point_forces_new(const mesh *m, const unsigned char *own,
@@ -150,6 +190,8 @@ point_forces *point_forces_new(const mesh *m, const unsigned char *own,
   p->dead = must_calloc((size_t)p->strips.rows + 1, sizeof *p->dead);
   p->first_death = -1;
   find_rest(p, own, parameters);
+  for_each_cell(p, open_mean);
+  for_each_cell(p, open_hourglass);
   return p;
 }
 
@@ -224,6 +266,26 @@ static pl_points view_of(const point_forces *p, const strip *s, point_scratch *o
                      .time_step = at->time_step};
 }
 
+/* Takes the cells' mean dilatation in place of the points' own, of strains xx, yy; and of tractions (a
+   stress times the volume) what is due to it: the transpose. */
+static void take_mean(const point_forces *p, const strip *s, double *xx, double *yy,
+                      bool tractions) {
+  for (int g = s->first; g < s->last; g++) {
+    const cell_group *group = &p->strips.groups[g];
+    const double *taken = p->mean + (long)g * PL_LANES, *part = p->part + group->at;
+    double *x = xx + (group->at - s->at), *y = yy + (group->at - s->at), sum[PL_LANES] = {0};
+    for (int k = 0; k < group->points * PL_LANES; k++)
+      sum[k % PL_LANES] += (tractions ? 1 : part[k]) * (x[k] + y[k]);
+    for (int k = 0; k < group->points * PL_LANES; k++) {
+      const int lane = k % PL_LANES;
+      const double shift =
+          taken[lane] * 0.5 * ((tractions ? part[k] : 1) * sum[lane] - (x[k] + y[k]));
+      x[k] += shift;
+      y[k] += shift;
+    }
+  }
+}
+
 /* dead[PL_LANES] 1 in cells of a group all of whose points have failed by these states, a plane that
    begins with it. */
 static void find_dead(const cell_group *g, const double *failed, double dead[PL_LANES]) {
@@ -267,6 +329,8 @@ static pl_points motion_of(const point_forces *p, const strip *s, point_scratch 
   const bool rates = p->law->reads_rates || p->loses;
   find_strains(p, s, at->displacement, own->strain);
   if (rates) find_strains(p, s, at->velocity, own->rate);
+  if (p->mean) take_mean(p, s, own->strain[0], own->strain[1], false);
+  if (p->mean && rates) take_mean(p, s, own->rate[0], own->rate[1], false);
   if (p->failed >= 0) leave_dead(p, s, own->strain);
   if (p->failed >= 0 && rates) leave_dead(p, s, own->rate);
   return view_of(p, s, own, at);
@@ -299,8 +363,8 @@ static void push_group(const point_forces *p, int row, const cell_group *g,
   cell_strips_push(&p->strips, row, g, (const double *const *)own->traction, p->pushed);
 }
 
-static void push(const point_forces *p, const strip *s, const point_scratch *own,
-                 double *const stress[STRAINS]) {
+static void push_even(const point_forces *p, const strip *s, const point_scratch *own,
+                      double *const stress[STRAINS]) {
   const cell_group *groups = p->strips.groups;
   for (int g = s->first; g < s->last;) {
     const long to = groups[g].at - s->at;
@@ -311,6 +375,97 @@ static void push(const point_forces *p, const strip *s, const point_scratch *own
     else
       push_group(p, s->row, &groups[g], own, here);
     g += even > 0 ? even : 1;
+  }
+}
+
+/* Of elements whose dilatation is the mean. */
+static void push_mean(const point_forces *p, const strip *s, const point_scratch *own,
+                      double *const stress[STRAINS]) {
+  const double *volume = p->strips.volume + s->at;
+  for (int c = 0; c < STRAINS; c++) {
+    double *traction = own->traction[c];
+    const double *from = stress[c];
+    INDEPENDENT
+    for (long k = 0; k < s->count; k++)
+      traction[k] = volume[k] * from[k];
+  }
+  take_mean(p, s, own->traction[0], own->traction[1], true);
+  for (int g = s->first; g < s->last; g++) {
+    const cell_group *group = &p->strips.groups[g];
+    const long to = group->at - s->at;
+    const double *traction[STRAINS] = {own->traction[0] + to, own->traction[1] + to,
+                                       own->traction[2] + to};
+    cell_strips_push(&p->strips, s->row, group, traction, p->pushed);
+  }
+}
+
+static void push(const point_forces *p, const strip *s, const point_scratch *own,
+                 double *const stress[STRAINS]) {
+  (p->mean ? push_mean : push_even)(p, s, own, stress);
+}
+
+/* gamma . u of the cells of a group along an axis. */
+static void find_hourglass(const point_forces *p, const strip *s, int g, const double *nodes,
+                           double q[PL_LANES]) {
+  const node_layout *l = &p->strips.layout;
+  const double *gamma = p->hourglass + (long)g * HOURGLASS * PL_LANES,
+               *at = nodes + l->origin + s->row * l->stride + p->strips.groups[g].first;
+  for (int lane = 0; lane < PL_LANES; lane++)
+    q[lane] = gamma[lane] * at[lane] + gamma[PL_LANES + lane] * at[1 + lane] +
+              gamma[2 * PL_LANES + lane] * at[l->stride + lane] +
+              gamma[3 * PL_LANES + lane] * at[l->stride + 1 + lane];
+}
+
+/* alive[PL_LANES] 0 in cells of a group that are dead by these states, else 1. */
+static void find_alive(const point_forces *p, int g, const double *fields, double alive[PL_LANES]) {
+  const cell_group *group = &p->strips.groups[g];
+  double dead[PL_LANES] = {0};
+  if (p->failed >= 0)
+    find_dead(group, fields + p->failed * (long)p->strips.count + group->at, dead);
+  for (int lane = 0; lane < PL_LANES; lane++)
+    alive[lane] = 1 - dead[lane];
+}
+
+static void push_hourglass(const point_forces *p, const strip *s, int g, int axis,
+                           const double q[PL_LANES], const double alive[PL_LANES]) {
+  const long stride = p->strips.layout.stride;
+  const double *gamma = p->hourglass + (long)g * HOURGLASS * PL_LANES,
+               *C = gamma + CORNERS * PL_LANES;
+  double *force = cell_strips_row(&p->strips, s->row, p->pushed[axis]) + p->strips.groups[g].first;
+  for (int corner = 0; corner < CORNERS; corner++) {
+    double *to = force + corner / 2 * stride + corner % 2;
+    for (int lane = 0; lane < PL_LANES; lane++)
+      to[lane] += gamma[corner * PL_LANES + lane] * (alive[lane] * C[lane] * q[lane]);
+  }
+}
+
+/* What elements resist their hourglass modes by. Of the point that each of them has, J/m^3: `stored` is
+   added to; and what cells that die in this step had stored so is `lost`, with the term that is due to
+   forces halfway (ledger.h). Either may be NULL. */
+static void resist_hourglass(const point_forces *p, const strip *s, const point_motion *at,
+                             double *lost, double *stored) {
+  for (int g = s->first; g < s->last && p->hourglass; g++) {
+    const double *C = p->hourglass + ((long)g * HOURGLASS + CORNERS) * PL_LANES;
+    const double *volume = p->strips.volume + p->strips.groups[g].at;
+    const long point = p->strips.groups[g].at - s->at;
+    double before[PL_LANES], after[PL_LANES];
+    if (p->strips.groups[g].points > 1) continue;
+    find_alive(p, g, p->old_field, before);
+    find_alive(p, g, p->new_field, after);
+    for (int axis = 0; axis < 2; axis++) {
+      double q[PL_LANES], rate[PL_LANES] = {0};
+      find_hourglass(p, s, g, at->displacement[axis], q);
+      if (lost) find_hourglass(p, s, g, at->velocity[axis], rate);
+      push_hourglass(p, s, g, axis, q, after);
+      for (int lane = 0; lane < PL_LANES && (stored || lost); lane++) {
+        if (!(C[lane] > 0)) continue;
+        const double half = 0.5 * C[lane] * q[lane] / volume[lane];
+        if (stored) stored[point + lane] += after[lane] * half * q[lane];
+        if (lost)
+          lost[point + lane] +=
+              (before[lane] - after[lane]) * half * (q[lane] - at->time_step * rate[lane]);
+      }
+    }
   }
 }
 
@@ -333,6 +488,7 @@ static void step_strip(const point_forces *p, const strip *s, point_scratch *own
   }
   if (p->failed >= 0) p->dead[s->row] += count_dead(p, s);
   push(p, s, own, own->stress);
+  resist_hourglass(p, s, at, p->loses && p->failed >= 0 ? lost[PL_LOST_TO_STATES] : NULL, NULL);
 }
 
 /* --- looking at a state ----------------------------------------------------------------------- */
@@ -422,7 +578,6 @@ static void see_strip(const point_forces *p, const strip *s, point_scratch *own,
       memset(lost[k], 0, (size_t)s->count * sizeof(double));
     points.lost = lost;
     p->law->point_ledger(p->law, p->uniforms, &points);
-    add_losses(p, s, lost, row);
   } else {
     p->law->point_step(p->law, p->uniforms, &points);
   }
@@ -431,6 +586,9 @@ static void see_strip(const point_forces *p, const strip *s, point_scratch *own,
   aim(p, s, p->observed, 1 + p->law->output_count, own->observed);
   points.observed = own->observed;
   p->law->point_observe(p->law, p->uniforms, &points);
+  resist_hourglass(p, s, at, p->loses && p->failed >= 0 ? lost[PL_LOST_TO_STATES] : NULL,
+                   own->observed[0]);
+  if (p->loses) add_losses(p, s, lost, row);
   row->stored += lane_dot(s->count, NULL, own->observed[0], p->strips.volume + s->at);
   p->law->point_tangent(p->law, p->uniforms, &points);
   row->stiffness = stiffest_of(p, s, own, row->stiffness);

@@ -39,10 +39,15 @@ typedef struct point_forces {
   double *pushed[2];  /* [cell_strips_pushed] N */
   double *size;       /* [strips.count] m: of the points' cells */
   double scale[3][3]; /* Pa^(-1/2): L^-1 of the tangent at rest, L L^T */
-  point_row *rows;    /* [strips.rows] */
-  int failed;         /* the law's field that tells so; -1: points do not fail */
-  long *dead;         /* [strips.rows] dead cells after the step */
-  double first_death; /* s: of the first one; negative: all are alive */
+  double strip;       /* Pa: element_strip_stiffness of that tangent */
+  /* Of element_modes.h; NULL without. Mean dilatation: [groups][PL_LANES] 1 where a cell takes it, and
+     [strips.count] the point's part of its cell. Hourglass modes: [groups][5][PL_LANES] gamma of the
+     corners, and C, N/m. */
+  double *mean, *part, *hourglass;
+  point_row *rows;               /* [strips.rows] */
+  int failed;                    /* the law's field that tells so; -1: points do not fail */
+  long *dead;                    /* [strips.rows] dead cells after the step */
+  double first_death;            /* s: of the first one; negative: all are alive */
   struct point_scratch *scratch; /* [blocks] */
   int blocks;
   long doubles; /* of arrays */

@@ -74,16 +74,30 @@ static cholmod_sparse shown(const upper *a, long order) {
                           .packed = 1};
 }
 
+/* pivot[order]: the diagonal of L; columns that have the same rows may be stored as one block. */
+static void take_pivots(const cholmod_factor *l, double *pivot) {
+  const double *value = l->x;
+  const SuiteSparse_long *begin = l->p, *column = l->super, *rows = l->pi, *block = l->px;
+  if (!l->is_super) {
+    for (size_t k = 0; k < l->n; k++)
+      pivot[k] = value[begin[k]]; /* the first of its column */
+    return;
+  }
+  for (size_t b = 0; b < l->nsuper; b++)
+    for (SuiteSparse_long k = column[b]; k < column[b + 1]; k++)
+      pivot[k] = value[block[b] + (k - column[b]) * (rows[b + 1] - rows[b] + 1)];
+}
+
 /* The first freedom whose pivot is none; -1: all are good. */
 static long lost_pivot(const sparse_cholesky *f, const double *diagonal) {
-  const cholmod_factor *l = f->factor;
-  const SuiteSparse_long *begin = l->p, *freedom = l->Perm;
-  const double *value = l->x;
-  for (long k = 0; k < f->order; k++) {
-    const double pivot = value[begin[k]]; /* the first of its column */
-    if (!(pivot * pivot > NO_PIVOT * diagonal[freedom[k]])) return freedom[k];
-  }
-  return -1;
+  const SuiteSparse_long *freedom = f->factor->Perm;
+  double *pivot = must_calloc((size_t)f->order + 1, sizeof *pivot);
+  long lost = -1;
+  take_pivots(f->factor, pivot);
+  for (long k = 0; k < f->order && lost < 0; k++)
+    if (!(pivot[k] * pivot[k] > NO_PIVOT * diagonal[freedom[k]])) lost = freedom[k];
+  free(pivot);
+  return lost;
 }
 
 /* False where it is not positive, or there is no memory. */
@@ -111,8 +125,7 @@ sparse_cholesky *sparse_cholesky_new(const node_matrix *k, const unsigned char *
   cholmod_l_start(&f->library);
   f->library.print = 0;
   f->library.quick_return_if_not_posdef = 1;
-  f->library.final_ll = 1;    /* which tells negative pivots, */
-  f->library.final_super = 0; /* and where they stand */
+  f->library.final_ll = 1; /* which tells negative pivots */
   upper a = upper_of(k, fixed);
   const bool good = factorise(f, &a, loose);
   upper_free(&a);

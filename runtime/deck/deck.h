@@ -39,6 +39,8 @@ typedef enum volume_correction { VOLUME_WHOLE, VOLUME_LINEAR } volume_correction
 
 /* Of nodes and cells: bilinear finite elements, or moving least squares. */
 typedef enum mesh_method { MESH_ELEMENT_FREE, MESH_FINITE_ELEMENTS } mesh_method;
+/* Of the points of an element: each its own, or the mean of the cell. */
+typedef enum mesh_dilatation { DILATATION_POINT, DILATATION_MEAN } mesh_dilatation;
 
 /* Of a &lattice, or of a &bar, a &link or a &mesh, which are of the kinds `bar`, `link` and `mesh`:
    they stand behind them, in this order. */
@@ -85,6 +87,8 @@ typedef struct deck_lattice {
   int gauss, parts; /* background rule: gauss x gauss points in each of parts x parts of a cell */
   double rich;      /* radius of the enriched basis, spacings along x; 0: a linear basis */
   bool smooth;      /* zones are blended by a smooth ramp */
+  mesh_dilatation dilatation; /* of elements */
+  double hourglass;           /* of elements with one point: part of their stiffness */
 } deck_lattice;
 typedef deck_lattice deck_bar, deck_link, deck_mesh;
 
@@ -93,6 +97,8 @@ typedef struct deck_zone { /* a part of a mesh with the other method */
   const char *mesh;
   mesh_method method;
   int gauss; /* of finite elements: 1 or 2 */
+  mesh_dilatation dilatation;
+  double hourglass;
   deck_shape shape;
 } deck_zone;
 
@@ -256,11 +262,16 @@ typedef struct deck_force { /* on the region, shared equally by its particles */
   int component;       /* a rotation: moment in N*m */
   bool per_length;     /* by the particles' parts of their row */
   time_function force; /* N; per length N/m; of a traction Pa */
-  /* of a traction: the mesh (else NULL), and the ends of the line that it acts on */
+  /* of a traction: the mesh (else NULL), and the ends of the line that it acts on, or the name of lines
+     of the mesh's file */
   const char *mesh;
   double from[3], to[3]; /* m */
+  const char *edge;
 } deck_force;
 typedef deck_force deck_traction;
+/* Of a traction on an edge, beside x and y: along the normal out of the body, or that turned by a right
+   angle, counter-clockwise around the body. */
+enum { TRACTION_NORMAL = 2, TRACTION_TANGENTIAL };
 
 typedef struct deck_end_moment { /* horizontal forces, linear in y over the region, without
                                     resultant; N*m */

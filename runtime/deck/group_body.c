@@ -6,6 +6,7 @@
 #include "dsl/base/elementary.h"
 #include "runtime/deck/deck_check.h"
 #include "runtime/deck/deck_value.h"
+#include "runtime/deck/group_mesh.h"
 #include "runtime/deck/lattice_kind.h"
 
 /* --- shapes ----------------------------------------------------------------------------------- */
@@ -438,6 +439,19 @@ static const deck_key_info zone_keys[] = {
      .most = 2,
      DECK_AT(zone, gauss),
      .doc = "of finite elements: points of integration along either axis, 1 or 2"},
+    {.name = "dilatation",
+     .type = DECK_CHOICE,
+     .choices = "point|mean",
+     .fallback = "'point'",
+     DECK_AT(zone, dilatation),
+     .doc = "of its finite elements, as of the mesh's"},
+    {.name = "hourglass",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_NOT_NEGATIVE,
+     .fallback = "0",
+     DECK_AT(zone, hourglass),
+     .doc = "of its finite elements, as of the mesh's"},
     SHAPE_KEYS(zone),
 };
 
@@ -451,6 +465,10 @@ static void check_zone(deck_reader *r, const namelist_group *from, void *into) {
     diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "method"),
                 "element-free nodes stand on a rectangle, and `%s` is given by `corners`",
                 deck_shown(r->memory, item->mesh));
+  if (lattice >= 0)
+    deck_check_elements(r, from, &item->item,
+                        &(deck_elements){item->method, item->gauss, item->dilatation,
+                                         item->hourglass, r->k->lattices[lattice].setting});
   if (item->gauss < 1)
     diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "gauss"),
                 "an element has 1 or 2 points along either axis");

@@ -8,6 +8,7 @@
 #include "runtime/deck/deck_load.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/lattice_kind.h"
+#include "runtime/geometry/gmsh_mesh.h"
 
 #define REGION_KEY(group, text)                                                                    \
   { .name = "region", .type = DECK_NAME, .required = true, DECK_AT(group, region), .doc = text }
@@ -276,22 +277,29 @@ static const deck_key_info traction_keys[] = {
     {.name = "from",
      .type = DECK_PLACE,
      .unit = "m",
-     .required = true,
+     .fallback = "= required, or `edge`",
      DECK_AT(traction, from),
      .doc = "one end of the straight line that is loaded: an edge of the mesh, a part of it, or a "
             "line inside"},
     {.name = "to",
      .type = DECK_PLACE,
      .unit = "m",
-     .required = true,
+     .fallback = "= required, or `edge`",
      DECK_AT(traction, to),
      .doc = "its other end"},
+    {.name = "edge",
+     .type = DECK_NAME,
+     .fallback = "= none",
+     DECK_AT(traction, edge),
+     .doc = "instead, of the mesh of a file: the physical group of lines that are loaded"},
     {.name = "component",
      .type = DECK_CHOICE,
-     .choices = "x|y",
+     .choices = "x|y|normal|tangential",
      .required = true,
      DECK_AT(traction, component),
-     .doc = "direction of the load"},
+     .doc =
+         "direction of the load; of an `edge` also along its normal out of the body, or along it, "
+         "counter-clockwise around the body"},
     {.name = "stress",
      .type = DECK_LATER,
      .unit = "Pa",
@@ -302,21 +310,94 @@ static const deck_key_info traction_keys[] = {
 
 static const deck_load_kind traction_kind = {"stress", "Pa", false, &deck_formula_of_all};
 
+/* A name of lines, or what is there instead. */
+static void check_edge_name(deck_reader *r, const deck_traction *item, const gmsh_mesh *file) {
+  const gmsh_group *group = gmsh_mesh_group(file, item->edge);
+  const char **names = arena_alloc(r->memory, ((size_t)file->group_count + 1) * sizeof(char *));
+  int count = 0;
+  const span where = deck_where(&item->item, "edge");
+  for (int k = 0; k < file->group_count && !group; k++)
+    if (file->groups[k].dimension == 1) names[count++] = file->groups[k].name;
+  if (!group) {
+    diag_report(r->d, DIAG_UNKNOWN_NAME, where, "the file of `%s` has no physical group `%s`",
+                item->mesh, deck_shown(r->memory, item->edge));
+    deck_suggest(r->d, item->edge, names, count, "its groups of lines are");
+  } else if (group->dimension != 1) {
+    diag_report(r->d, DIAG_CONFLICT, where, "`%s` is a physical group of %s, not of lines",
+                deck_shown(r->memory, item->edge), group->dimension ? "cells" : "points");
+  }
+  for (int k = 0; group && group->dimension == 1 && k < group->item_count; k++) {
+    const gmsh_side *side = &file->sides[group->items[k]];
+    if (side->cell >= 0) continue;
+    diag_report(r->d, DIAG_CONFLICT, where,
+                "the line of `%s` from node %lld to %lld is no side of a cell",
+                deck_shown(r->memory, item->edge), (long long)file->tag[side->node[0]],
+                (long long)file->tag[side->node[1]]);
+    return;
+  }
+}
+
+static void check_edge(deck_reader *r, const namelist_group *from, const deck_traction *item) {
+  const int lattice = item->mesh ? deck_find_lattice(r->k, item->mesh) : -1;
+  deck_refuse_both(r, from, "edge", "from");
+  deck_refuse_both(r, from, "edge", "to");
+  if (lattice < 0) return;
+  if (r->k->lattices[lattice].gmsh) {
+    check_edge_name(r, item, r->k->lattices[lattice].gmsh);
+    return;
+  }
+  diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "edge"),
+              "edges have names in the mesh of a file, and `%s` is none",
+              deck_shown(r->memory, item->mesh));
+  diag_hint(r->d, "give the ends of the line, `from` and `to`");
+}
+
+/* A straight line by its ends. */
+static void check_line(deck_reader *r, const namelist_group *from, const deck_traction *item) {
+  static const char *const ends[] = {"from", "to"};
+  const int lattice = item->mesh ? deck_find_lattice(r->k, item->mesh) : -1;
+  if (lattice >= 0 && r->k->lattices[lattice].gmsh) {
+    diag_report(r->d, DIAG_CONFLICT, from->where,
+                "`%s` is the mesh of a file: its loaded lines are an `edge`",
+                deck_shown(r->memory, item->mesh));
+    diag_hint(r->d, "edge = 'right': a physical group of curves in Gmsh");
+    return;
+  }
+  for (int k = 0; k < 2; k++) {
+    if (namelist_find(from, ends[k])) continue;
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&traction` has no `%s`", ends[k]);
+    diag_hint(r->d,
+              "from, to: the ends of the straight line that is loaded (m); of the mesh of a file "
+              "also `edge`");
+    return;
+  }
+  if (item->component > 1) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "component"),
+                "a line that is given by its ends is loaded along x or y");
+    diag_hint(r->d, "the normal is known of an `edge` of the mesh of a file");
+  }
+  if (item->from[0] == item->to[0] && item->from[1] == item->to[1])
+    diag_report(r->d, DIAG_BAD_VALUE, deck_where(&item->item, "to"),
+                "the line that is loaded ends where it begins");
+}
+
 static void check_traction(deck_reader *r, const namelist_group *from, void *into) {
   deck_traction *item = into;
   deck_mesh_known(r, &item->item, item->mesh);
   deck_check_places(r, from, &deck_group_traction, 2);
   if (deck_load_kind_of(r->memory, from, &traction_kind, 1, r->d) < 0) return;
-  if (item->from[0] == item->to[0] && item->from[1] == item->to[1])
-    diag_report(r->d, DIAG_BAD_VALUE, deck_where(&item->item, "to"),
-                "the line that is loaded ends where it begins");
+  if (item->edge)
+    check_edge(r, from, item);
+  else
+    check_line(r, from, item);
   if (!deck_load_read(r->memory, from, &traction_kind, &item->force, r->d)) return;
   deck_warn_late(r, &item->item, "start", item->force.start);
   spread(r, from, &item->force);
 }
 
 DECK_MORE(traction, force, .identity = "mesh", .check = check_traction,
-          .doc = "Force per area on a straight line of a mesh. Nodes bear the integral of their "
+          .doc = "Force per area on a straight line of a mesh, or on an edge of one from a file. "
+                 "Nodes bear the integral of their "
                  "functions over it.");
 
 /* --- end moment ------------------------------------------------------------------------------- */

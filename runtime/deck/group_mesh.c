@@ -99,6 +99,23 @@ static const deck_key_info mesh_keys[] = {
      .most = 8,
      DECK_AT(mesh, parts),
      .doc = "element-free: equal parts of a cell along either axis, each with its own points"},
+    {.name = "dilatation",
+     .type = DECK_CHOICE,
+     .choices = "point|mean",
+     .fallback = "'point'",
+     DECK_AT(mesh, dilatation),
+     .doc =
+         "of finite elements with 2 x 2 points in plane strain: each point has its own change of "
+         "volume, or all that of the cell in the mean, so that nothing locks where volumes hardly "
+         "change"},
+    {.name = "hourglass",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_NOT_NEGATIVE,
+     .fallback = "0",
+     DECK_AT(mesh, hourglass),
+     .doc = "of finite elements with one point: how stiffly they resist motions that do not strain "
+            "it, in parts of their largest stiffness, such as 0.05"},
     {.name = "basis",
      .type = DECK_WORD,
      .choices = "linear|enriched",
@@ -223,13 +240,60 @@ static bool has_extent(deck_reader *r, const namelist_group *from, deck_mesh *it
   return false;
 }
 
+/* --- elements --------------------------------------------------------------------------------- */
+
+/* What is wrong with a choice of elements, and how to mend it; NULL: nothing. */
+static const char *wrong_dilatation(const deck_elements *e, const char **mend) {
+  *mend = "leave it out here, and give it in a `&zone` of finite elements";
+  if (e->method != MESH_FINITE_ELEMENTS) return "`dilatation` is of finite elements";
+  *mend = "leave it out, or gauss = 2";
+  if (e->gauss != 2) return "an element with one point has one dilatation anyhow";
+  *mend = "leave it out, or setting = 'plane_strain' of the mesh";
+  if (!e->setting || strcmp(e->setting, "plane_strain") != 0)
+    return "in plane stress the thickness gives way, so that nothing locks: `dilatation = 'mean'` "
+           "is "
+           "for plane strain";
+  return NULL;
+}
+
+static const char *wrong_hourglass(const deck_elements *e, const char **mend) {
+  *mend = "leave it out here, and give it in a `&zone` of finite elements with gauss = 1";
+  if (e->method != MESH_FINITE_ELEMENTS) return "`hourglass` is of finite elements";
+  *mend = "leave it out, or gauss = 1";
+  if (e->gauss != 1) return "elements with 2 x 2 points have no hourglass modes";
+  *mend = "0.05 is usual, and 0 leaves these motions alone";
+  if (e->hourglass > 1) return "`hourglass` is a part of the element's stiffness, 0 to 1";
+  return NULL;
+}
+
+void deck_check_elements(deck_reader *r, const namelist_group *from, const deck_item *item,
+                         const deck_elements *e) {
+  const char *mend, *why = NULL;
+  if (e->dilatation == DILATATION_MEAN) why = wrong_dilatation(e, &mend);
+  if (why) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(item, "dilatation"), "%s", why);
+    diag_hint(r->d, "%s", mend);
+  }
+  why = namelist_find(from, "hourglass") && e->hourglass > 0 ? wrong_hourglass(e, &mend) : NULL;
+  if (!why) return;
+  diag_report(r->d, DIAG_CONFLICT, deck_where(item, "hourglass"), "%s", why);
+  diag_hint(r->d, "%s", mend);
+}
+
+static void check_elements_of(deck_reader *r, const namelist_group *from, const deck_mesh *item) {
+  deck_check_elements(r, from, &item->item,
+                      &(deck_elements){item->method, item->gauss, item->dilatation, item->hourglass,
+                                       item->setting});
+}
+
 /* --- of a file -------------------------------------------------------------------------------- */
 
 /* A mesh of a file has what stands there, and finite elements. */
 static void refuse_keys_of_grids(deck_reader *r, const namelist_group *from,
                                  const deck_mesh *item) {
-  static const char *const others[] = {"corner", "size",  "corners", "nodes",          "support",
-                                       "parts",  "basis", "ramp",    "enriched_radius"};
+  static const char *const others[] = {"corner",          "size",     "corners", "nodes",
+                                       "support",         "parts",    "basis",   "ramp",
+                                       "enriched_radius", "hourglass"};
   for (size_t k = 0; k < sizeof others / sizeof *others; k++)
     deck_refuse_both(r, from, "file", others[k]);
   if (!namelist_find(from, "method") || item->method == MESH_FINITE_ELEMENTS) return;
@@ -299,6 +363,7 @@ static void take_file(deck_reader *r, const namelist_group *from, deck_mesh *ite
   item->method = MESH_FINITE_ELEMENTS;
   item->support = 1;
   check_gauss(r, from, item);
+  check_elements_of(r, from, item);
   if (r->d->errors > errors) return;
   item->gmsh = gmsh_mesh_read(r->memory, deck_file_path(r->k->name, item->file),
                               unit_of(item->unit), deck_where(&item->item, "file"), r->d);
@@ -363,6 +428,7 @@ static void check_mesh(deck_reader *r, const namelist_group *from, void *into) {
   if (!namelist_find(from, "nodes")) return;
   check_gauss(r, from, item);
   check_basis(r, from, item);
+  check_elements_of(r, from, item);
   if (!has_extent(r, from, item) || !has_nodes(r, item) || !has_support(r, item)) return;
   item->spacing = spacing_of(item);
   item->origin[0] = item->corner[0];

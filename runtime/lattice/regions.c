@@ -100,7 +100,9 @@ region_sites *regions_select(const deck *k, const char *lattice, const rows *w, 
     if (regions[r].count == 0)
       report_empty(lattice, region, w, d);
     else if (!deck_lacks(k, NULL) && !used[r] && is_told(k, region))
-      diag_report(d, DIAG_DECK_WARNING, region->item.where, "region `%s` is never used",
+      diag_report(d, DIAG_DECK_WARNING, region->item.where,
+                  region->group ? "the deck never names the physical group `%s`"
+                                : "region `%s` is never used",
                   region->name);
   }
   free(used);

@@ -396,10 +396,9 @@ static void correct_free_way(const body *w, int component, int64_t site, double 
   if (w->works) sums->internal -= 0.5 * w->time_step * w->force[component][site] * change;
 }
 
-/* Velocity that a force gives in a step; none to what a tie moves. */
+/* Velocity that a force gives in a step. */
 static double given_by(const body *w, int component, int64_t site, double force) {
-  const double mass = body_mass(w, component, site);
-  return mass > 0 ? w->time_step / mass * (motion_force_part(w) * force) : 0;
+  return w->time_step / body_mass(w, component, site) * (motion_force_part(w) * force);
 }
 
 static void apply_forces(const load_run *r) {
@@ -683,6 +682,7 @@ load_sums load_steps_total(const loads *l) {
 /* Velocity after the coming step if nothing but bonds, damping, gravity and outer forces acted on a
    particle. */
 static double free_velocity(const body *w, int component, int64_t site) {
+  if (!(body_mass(w, component, site) > 0)) return w->ahead[component][site];
   const double weight = component < w->dimensions ? w->gravity[component] : 0;
   return w->decay * w->velocity[component][site] +
          given_by(w, component, site, w->force[component][site] + body_outer(w, component, site)) +

@@ -171,6 +171,8 @@ static double tensor(const mesh_gauge *g) {
       gradient[i][1] += of->ny * g->w->displacement[i][of->site];
     }
   mesh_strain(gradient, strain);
+  cells_mean_dilatation(g->of, mesh_cell_of(m, g->places[0]),
+                        (const double *const *)g->w->displacement, strain);
   if (!g->law) return strain[g->deck->component];
   if (cells_states_near(g->of, g->places[0], g->states)) point_law_states(g->law, g->states);
   point_law_stress(g->law, strain, mesh_cell_size(m, mesh_cell_of(m, g->places[0])), stress);

@@ -182,7 +182,7 @@ static bool is_stiff(mesh_rest *r, const char *name, span where, diagnostics *d)
               name, 1e3 * at[0], 1e3 * at[1], found.loose_axis ? "y" : "x");
   diag_hint(d, has_single_points(&r->c->mesh)
                    ? "elements with one point of integration have motions without stiffness: give "
-                     "`gauss = 2`; and hold the mesh so that it can neither slide nor turn"
+                     "`gauss = 2`, or `hourglass = 0.05`; and hold the mesh so that it can neither slide nor turn"
                    : "hold it by a `&support` so that it can neither slide nor turn: both "
                      "directions of one node, and one of another");
   return false;

@@ -80,6 +80,7 @@ void tie_steps_open(tie_steps *t, const mesh_tie *of, int number, tied_body latt
     t->velocity[d] = values(of->count);
     t->node_force[d] = values(t->node_count);
   }
+  t->node_ahead = values(t->node_count);
   open_halves(t, law, parameters);
   become_loads(t, c);
   give_masses(t, c);
@@ -97,6 +98,7 @@ void tie_steps_close(tie_steps *t) {
     free(t->node_force[d]);
   }
   half_bonds_free(t->halves);
+  free(t->node_ahead);
   free(t->node_number);
   free(t->node);
   free(t->site);
@@ -167,7 +169,21 @@ void tie_steps_see(tie_steps *t, long step) {
             load_steps_see_tie(t->lattice.loads, w, t->number, step);
 }
 
-void tie_steps_look(const tie_steps *t, load_look *look) {
+static void look_ahead(const tie_steps *t, int d, long step) {
+  for (int n = 0; n < t->node_count; n++)
+    t->node_ahead[n] = load_steps_velocities(t->mesh.loads, t->mesh.body, d, t->node[n], step).after;
+  for (long p = 0; p < t->of->count; p++) {
+    const tied_particle *of = &t->of->particles[p];
+    double sum = 0;
+    for (int k = 0; k < of->count; k++)
+      sum += of->weight[k] * t->node_ahead[t->node_number[of->node[k]]];
+    t->lattice.body->ahead[d][t->site[p]] = sum;
+  }
+}
+
+void tie_steps_look(const tie_steps *t, load_look *look, long step) {
+  for (int d = 0; d < 2; d++)
+    look_ahead(t, d, step);
   const body *w = t->lattice.body;
   for (int d = 0; d < 2; d++)
     for (long p = 0; p < t->of->count; p++)

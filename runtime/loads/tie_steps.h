@@ -35,6 +35,7 @@ typedef struct tie_steps {
   int *node;             /* [node_count] of the mesh */
   int32_t *node_number;  /* [nodes of the mesh] number of these */
   double *node_force[2]; /* [node_count] N */
+  double *node_ahead;    /* [node_count] m/s, while looked at */
   half_bonds *halves;    /* NULL without */
   double internal;       /* J: correction of the work against the lattice's bonds */
   double work;           /* J: that it has done on loads of both, up to the state seen */
@@ -52,7 +53,8 @@ void tie_steps_follow(tie_steps *t, bool stepped);
 void tie_steps_give(tie_steps *t);
 /* The same of the state observed after `step` steps, before load_steps_observe. */
 void tie_steps_see(tie_steps *t, long step);
-/* After it: what the tie adds to what is known of the lattice. */
-void tie_steps_look(const tie_steps *t, load_look *look);
+/* After it: what the tie adds to what is known of the lattice, and the velocities of tied particles
+   after the coming step. */
+void tie_steps_look(const tie_steps *t, load_look *look, long step);
 
 #endif

@@ -455,6 +455,10 @@ void cell_strips_push(const cell_strips *s, int row, const cell_group *g,
     push_group(g->table, PL_LANES, traction, pushed[0] + at, pushed[1] + at);
 }
 
+double *cell_strips_row(const cell_strips *s, int row, double *pushed) {
+  return pushed + row * plane_of(s) - s->low * s->layout.stride;
+}
+
 void cell_strips_push_even(const cell_strips *s, int row, const cell_group *g, int count,
                            const double *const stress[3], double *const pushed[2]) {
   const long at = row * plane_of(s) - s->low * s->layout.stride + g->first;
@@ -467,10 +471,15 @@ long cell_strips_pushed(const cell_strips *s) {
   return s->elements ? s->elements->slots : plane_of(s) * s->rows;
 }
 
+/* A loop: to begin a memset of this size takes longer. What is behind the last row is not read. */
 void cell_strips_clear(const cell_strips *s, int row, double *const pushed[2]) {
-  const long read = (s->high - s->low + 1) * s->layout.stride; /* what is behind is not */
-  for (int d = 0; d < 2 && !s->elements; d++)                  /* slots are written, not added to */
-    memset(pushed[d] + row * plane_of(s), 0, (size_t)read * sizeof(double));
+  const long count = (s->high - s->low + 1) * s->layout.stride;
+  for (int d = 0; d < 2 && !s->elements; d++) { /* slots are written, not added to */
+    double *plane = pushed[d] + row * plane_of(s);
+    INDEPENDENT
+    for (long k = 0; k < count; k++)
+      plane[k] = 0;
+  }
 }
 
 void cell_strips_take(const cell_strips *s, int row, double *const pushed[2], bool more,

@@ -72,6 +72,9 @@ void cell_strips_strain(const cell_strips *s, int row, const cell_group *g,
 void cell_strips_push(const cell_strips *s, int row, const cell_group *g,
                       const double *const traction[3], double *const pushed[2]);
 long cell_strips_pushed(const cell_strips *s);
+/* Where what a row of cells pushes at its lower left node stands in a plane of `pushed`, the other
+   nodes as in the layout; of a grid. */
+double *cell_strips_row(const cell_strips *s, int row, double *pushed);
 /* Before a row of cells pushes. */
 void cell_strips_clear(const cell_strips *s, int row, double *const pushed[2]);
 /* N: the forces of a row of nodes, in planes of the layout; `more`: beside those that are there. */

@@ -14,6 +14,8 @@ static void open_flags(mesh *m) {
   m->cut = must_calloc(cells, 1);
   m->cell = must_alloc(cells);
   m->element_gauss = must_alloc(cells);
+  m->mean_dilatation = must_calloc(cells, 1);
+  m->hourglass = must_calloc(cells, sizeof *m->hourglass);
   memset(m->element_free, 1, count);
   memset(m->cell, CELL_ELEMENT_FREE, cells);
   memset(m->element_gauss, 2, cells);
@@ -58,6 +60,8 @@ void mesh_close(mesh *m) {
   free(m->cut);
   free(m->cell);
   free(m->element_gauss);
+  free(m->mean_dilatation);
+  free(m->hourglass);
   crack_lines_close(&m->cracks);
   holes_close(&m->holes);
 }

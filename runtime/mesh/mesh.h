@@ -54,6 +54,10 @@ typedef struct mesh {
   unsigned char *moving;        /* [nodes] 1: has a moving least squares function */
   unsigned char *cell;          /* [cells] mesh_cell */
   unsigned char *element_gauss; /* [cells] rule of a bilinear element: 1 or 2 */
+  /* [cells] of elements (element_modes.h): 1: with 2 x 2 points their dilatation is the mean; with one
+     point they resist hourglass modes by that part of their stiffness */
+  unsigned char *mean_dilatation;
+  double *hourglass;
 } mesh;
 
 /* A mesh all of whose nodes are element-free, with 4 x 4 points a cell, without cracks. Memory is

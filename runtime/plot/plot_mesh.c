@@ -18,6 +18,7 @@ enum { CORNERS = 4, MOST_NODES = 6, MOST_NEAR = 256 };
 void plot_meshes_free(plot_meshes *m) {
   for (int k = 0; k < m->count; k++) {
     free(m->items[k].cells);
+    free(m->items[k].first);
     crack_lines_close(&m->items[k].lines);
   }
   for (int k = 0; k < m->crack_count; k++)
@@ -79,9 +80,14 @@ static double mean_size(const plot_mesh *m, const double *reference) {
 static void take_lists(plot_mesh *m, int columns) {
   int32_t *given = m->cells;
   long count = 0;
-  m->cells = must_calloc(CORNERS * CORNERS * (size_t)m->cell_count + 1, sizeof *m->cells);
-  for (long c = 0; c < m->cell_count; c++)
-    count += split(given + columns * c, columns, (int32_t(*)[CORNERS])m->cells + count);
+  const size_t most = CORNERS * (size_t)m->cell_count + 1; /* parts */
+  m->cells = must_calloc(CORNERS * most, sizeof *m->cells);
+  m->first = must_alloc(most * sizeof *m->first);
+  for (long c = 0; c < m->cell_count; c++) {
+    const int parts = split(given + columns * c, columns, (int32_t(*)[CORNERS])m->cells + count);
+    for (int k = 0; k < parts; k++)
+      m->first[count++] = k == 0 ? given[columns * c] : -1;
+  }
   m->cell_count = count;
   free(given);
 }
@@ -101,6 +107,8 @@ static bool read_mesh(plot_mesh *m, result_file *f, const char *name, const doub
   if (!names_particles(m->cells, m->cell_count, particles - (long)first)) return false;
   for (long k = 0; k < CORNERS * m->cell_count; k++)
     m->cells[k] += (int32_t)first;
+  for (long k = 0; m->first && k < m->cell_count; k++)
+    if (m->first[k] >= 0) m->first[k] += (int32_t)first;
   m->all_count = m->cell_count;
   if (columns != CORNERS) {
     m->size = mean_size(m, reference);
@@ -184,10 +192,11 @@ static void bury(plot_mesh *m, const double *dead, long particles) {
   unsigned char *begun = must_calloc((size_t)particles + 1, 1);
   int32_t *gone = must_calloc(CORNERS * (size_t)m->cell_count + 1, sizeof *gone);
   long left = 0, died = 0;
+  bool dies = false;
   for (long c = 0; c < m->cell_count; c++) {
-    const int32_t *cell = m->cells + CORNERS * c;
-    int32_t *to = mesh_cell_died(dead[cell[0]], begun[cell[0]]++) ? gone + CORNERS * died++
-                                                                  : m->cells + CORNERS * left++;
+    const int32_t *cell = m->cells + CORNERS * c, first = m->first ? m->first[c] : cell[0];
+    if (first >= 0) dies = mesh_cell_died(dead[first], begun[first]++);
+    int32_t *to = dies ? gone + CORNERS * died++ : m->cells + CORNERS * left++;
     memmove(to, cell, CORNERS * sizeof *cell);
   }
   memcpy(m->cells + CORNERS * left, gone, CORNERS * (size_t)died * sizeof *gone);

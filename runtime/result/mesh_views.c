@@ -73,16 +73,16 @@ static bool is_whole(const mesh_views *v, const result_header *h, const result_m
   return true;
 }
 
-static bool has_died(const mesh_views *v, unsigned char *begun, long corner, long frame) {
-  return mesh_cell_died(v->dead[frame * v->particles + corner], begun[corner]++);
-}
-
 static void add_cell(mesh_cells *c, long first_particle, const int32_t *cell, int columns) {
   int nodes = 0;
   for (; nodes < columns && cell[nodes] >= 0; nodes++)
     c->corners[c->corner_count++] = (int32_t)first_particle + cell[nodes];
   c->alike = c->count == 0 || c->alike == nodes ? nodes : 0;
   c->nodes[c->count++] = (unsigned char)nodes;
+}
+
+static bool has_died(const mesh_views *v, unsigned char *begun, long corner, long frame) {
+  return mesh_cell_died(v->dead[frame * v->particles + corner], begun[corner]++);
 }
 
 /* Without frames nothing is known of cracks. */
@@ -100,8 +100,9 @@ static mesh_cells cells_of(const mesh_views *v, const result_header *h, long fra
     for (long c = 0; c < h->meshes[n].cell_count; c++) {
       const result_mesh *m = &h->meshes[n];
       const int32_t *cell = m->cells + m->columns * c;
-      if (!all && v->dead && has_died(v, begun, m->first_particle + cell[0], frame)) continue;
-      if (all || is_whole(v, h, m, cell, frame)) add_cell(&shown, m->first_particle, cell, m->columns);
+      const bool died = !all && v->dead && has_died(v, begun, m->first_particle + cell[0], frame);
+      if (!died && (all || is_whole(v, h, m, cell, frame)))
+        add_cell(&shown, m->first_particle, cell, m->columns);
     }
   free(begun);
   return shown;

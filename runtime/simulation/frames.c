@@ -224,8 +224,8 @@ static void values_of_dead_cells(const frames_of *of, const frame_source *from, 
   (void)from;
   memset(values, 0, (size_t)count * sizeof *values);
   for (int cell = 0; c && cell < mesh_cell_count(&c->mesh); cell++) {
-    int corner[4];
-    mesh_corners(&c->mesh, cell, corner);
+    int corner[ELEMENT_MOST_NODES];
+    mesh_cell_nodes(&c->mesh, cell, corner);
     const int32_t first = cells_particle(c, corner[0]);
     if (c->mesh.cell[cell] == CELL_ABSENT || first < 0) continue;
     values[first] += cells_dead(c, cell) ? ldexp(1, begun[first]) : 0;

@@ -10,7 +10,9 @@
 #include "dsl/base/elementary.h"
 #include "runtime/analysis/material.h"
 #include "runtime/analysis/stability.h"
+#include "runtime/continuum/cell_sizes.h"
 #include "runtime/continuum/line_load.h"
+#include "runtime/continuum/side_load.h"
 #include "runtime/continuum/tip_laws.h"
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/filling/lattice.h"
@@ -178,7 +180,18 @@ static bool cracks_suit_laws(const run_body *b, const deck *k, diagnostics *d) {
                       is_isotropic(b, d));
 }
 
+static bool cells_suit_laws(const run_body *b, diagnostics *d) {
+  for (int n = 0; n < b->law_count; n++) {
+    const run_law *l = &b->laws[n];
+    if (!cell_sizes_fit(&b->cells->mesh, cell_laws_own(&b->cells->where, n), l->law, l->parameters,
+                        deck_where(&l->from->material->item, "model"), d))
+      return false;
+  }
+  return true;
+}
+
 static bool find_limit_of_cells(run_body *b, const deck *k, diagnostics *d) {
+  if (!cells_suit_laws(b, d)) return false;
   give_laws(b);
   if (!cracks_suit_laws(b, k, d)) return false;
   unsigned char *held = held_freedoms(b);
@@ -366,6 +379,40 @@ static void take_point(void *context, const double at[2], double area, const poi
                           t->number, area * s->n[n]);
 }
 
+/* Adds a share along x and y; the direction may turn along the edge. */
+static void take_side(void *context, const double at[2], const double normal[2], double area,
+                      const point_shape *s) {
+  taken_traction *t = context;
+  const double here[3] = {at[0], at[1], 0};
+  const double way[4][2] = {{1, 0}, {0, 1}, {normal[0], normal[1]}, {-normal[1], normal[0]}};
+  const double *along = way[t->from->component];
+  if (!t->share && t->good) t->good = loads_add_place(t->b->loads, here, t->number, t->d);
+  for (int n = 0; n < s->count && t->good; n++)
+    for (int a = 0; a < 2; a++) {
+      const double share = area * s->n[n] * along[a];
+      if (t->share)
+        t->share[2 * s->node[n] + a] += share;
+      else if (share != 0)
+        loads_add_share_there(t->b->loads, cells_particle(t->b->cells, s->node[n]), a, t->number,
+                              share);
+    }
+}
+
+/* On lines of the mesh's file. */
+static bool add_edge(run_body *b, const deck *k, int number, diagnostics *d) {
+  const deck_traction *f = &k->forces[number];
+  const gmsh_mesh *file = k->lattices[b->lattice].gmsh;
+  const int nodes = mesh_node_count(&b->cells->mesh);
+  taken_traction t = {.b = b, .from = f, .number = number, .good = true, .d = d};
+  if (!time_function_varies(&f->force)) t.share = must_calloc(2 * (size_t)nodes, sizeof(double));
+  sides_visit(&b->cells->mesh, file, gmsh_mesh_group(file, f->edge), take_side, &t);
+  for (int n = 0; n < 2 * nodes && t.share; n++)
+    if (t.share[n] != 0)
+      loads_add_share(b->loads, cells_particle(b->cells, n / 2), n % 2, number, t.share[n]);
+  free(t.share);
+  return t.good;
+}
+
 static void warn_of_part(const deck_traction *f, double loaded, const char *name, diagnostics *d) {
   const double length = pl_hypot(f->to[0] - f->from[0], f->to[1] - f->from[1]);
   if (!(loaded > 0) || loaded > (1 - 1e-6) * length) return;
@@ -397,7 +444,7 @@ static bool add_tractions(run_body *b, const deck *k, diagnostics *d) {
   bool good = true;
   for (int n = 0; n < k->force_count && b->loads; n++)
     if (k->forces[n].mesh && strcmp(k->forces[n].mesh, b->name) == 0)
-      good = add_traction(b, k, n, d) && good;
+      good = (k->forces[n].edge ? add_edge : add_traction)(b, k, n, d) && good;
   if (b->loads) loads_links_added(b->loads);
   return good;
 }
@@ -411,7 +458,7 @@ static bool is_tied_to_mesh(const run_body *b, const deck *k) {
 }
 
 /* What a tied particle bears of its own bonds is known; of a family it would be the mesh's, too. */
-static bool can_be_tied(const run_body *b, const deck *k, diagnostics *d) {
+static bool can_be_tied(const run_body *b, diagnostics *d) {
   for (int n = 0; n < b->law_count; n++) {
     const pl_law *law = b->laws[n].law;
     if (law->kind != PL_STATE || law->pairwise) continue;
@@ -421,16 +468,12 @@ static bool can_be_tied(const run_body *b, const deck *k, diagnostics *d) {
     diag_hint(d, "take a law of bonds, such as `elastic_micropolar` or `mplm_bilinear`");
     return false;
   }
-  if (!k->relaxation.solved) return true;
-  diag_report(d, DIAG_NOT_SUPPORTED, k->at_rest.item.where,
-              "a lattice that is tied to a mesh has no static solution");
-  diag_hint(d, "use `&relaxation` in place of `&static`");
-  return false;
+  return true;
 }
 
 static bool open_ties(run_body *b, const deck *k, diagnostics *d) {
   if (!is_tied_to_mesh(b, k)) return true;
-  if (!can_be_tied(b, k, d)) return false;
+  if (!can_be_tied(b, d)) return false;
   const bool halves = b->law_count == 1 && b->law->kind != PL_STATE;
   b->ties = mesh_ties_new(k, b->lattice, b->lattice_rows, halves, &b->tie_count, d);
   return b->ties != NULL;

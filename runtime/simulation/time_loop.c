@@ -160,7 +160,7 @@ static void look_at_ties(simulation *s) {
   int n = 0;
   for (int b = 0; b < s->body_count; b++)
     for (int k = 0; k < s->bodies[b].tie_count; k++)
-      tie_steps_look(&s->ties[n++], &s->bodies[b].look);
+      tie_steps_look(&s->ties[n++], &s->bodies[b].look, (long)s->clock.at.step);
 }
 
 /* --- steps ------------------------------------------------------------------------------------ */

@@ -9,7 +9,7 @@ syntax case match
 " words that begin a line
 syntax match perilatFirst "^\s*\h\w*" contains=perilatStatement,perilatName
 syntax match perilatName "\h\w*" contained
-syntax keyword perilatStatement contained model end law for parameter constant option state damage function force moment energy stress strain yield flow output nonconservative include crack grow toward speed failed
+syntax keyword perilatStatement contained model end law for parameter constant option state damage function force moment energy stress strain yield flow output nonconservative include crack grow toward speed failed require
 " words that are never names
 syntax keyword perilatReserved when otherwise jump in and or not by along returned on
 syntax keyword perilatQuantity stretch stretch_rate theta_i theta_j twist length s spacing t V m m_i m_j area shell horizon weight n resolved direction slip gap slip_rate strain strain_rate h K_I K_II energy_release angle_now speed_now rayleigh_speed shear_speed dilatational_speed

@@ -1,0 +1,111 @@
+/* A deck of a lattice between two meshes, wrong in one place at a time, and the exact text that a user
+   sees: bad_ties/strip.nml, and a text for each fault. */
+#define _GNU_SOURCE
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "tests/generator/command_tools.h"
+
+#define FOLDER SOURCE_DIR "/tests/generator/run/bad_ties/"
+
+typedef struct fault {
+  const char *name, *right, *wrong;
+  bool warns; /* the deck runs all the same */
+} fault;
+
+static const fault faults[] = {
+    {"nothing_in_mesh", "corner = '-40 mm', 0", "corner = '-60 mm', 0", false},
+    {"all_in_mesh", "corner = '-40 mm', 0  size = '40 mm', '40 mm'",
+     "corner = '-40 mm', '-1 mm'  size = '100 mm', '50 mm'", false},
+    {"element_free",
+     "size = '40 mm', '40 mm'  nodes = 5, 5  thickness = '10 mm'\n           method = "
+     "'finite_elements'",
+     "size = '40 mm', '40 mm'  nodes = 5, 5  thickness = '10 mm'\n           method = "
+     "'element_free'",
+     false},
+    {"two_meshes", "corner = '43.30127 mm', 0  size", "corner = '-20 mm', 0  size", false},
+    {"held", "name = 'end'  lattice = 'left'  shape = 'rectangle'  corner = '-41 mm', 0",
+     "name = 'end'  lattice = 'core'  shape = 'rectangle'  corner = '-1 mm', 0", false},
+    {"driven",
+     "name = 'end'  lattice = 'left'  shape = 'rectangle'  corner = '-41 mm', 0  size = '2 mm', "
+     "'40 mm' "
+     "/\n&support   region = 'end'  fix = 'x', 'y'",
+     "name = 'end'  lattice = 'core'  shape = 'rectangle'  corner = '-1 mm', 0  size = '2 mm', '40 "
+     "mm' "
+     "/\n&drive   region = 'end'  component = 'x' velocity = 1",
+     false},
+    {"thinner", "thickness = '10 mm'  rotation", "thickness = '12 mm'  rotation", true},
+    {"plane_strain", "'10 mm'  rotation", "'10 mm'  setting = 'plane_strain'  rotation", true},
+    {"families", "'elastic_micropolar'  E = '30 GPa'  nu = 0.2", "'lps'  E = '30 GPa'  nu = 0.2",
+     false},
+    {"to_itself", "lattice = 'core'  mesh = 'left'", "lattice = 'left'  mesh = 'left'", false},
+    {"no_mesh", "lattice = 'core'  mesh = 'left'", "lattice = 'core'  mesh = 'core'", false},
+    {"twice", "mesh = 'right' /\n\n", "mesh = 'left' /\n\n", false},
+    {"beside", "'43.30127 mm', '40 mm'", "'39 mm', '40 mm'", false},
+    {"zigzag", "rotation = 90", "rotation = 0", false},
+    {"over_the_edge", "corner = '43.30127 mm', 0  size", "corner = '41 mm', 0  size", true},
+    {"static", "&output ", "&static /\n&output ", false},
+};
+enum { FAULTS = sizeof faults / sizeof *faults };
+
+static char *file_text(const char *path) {
+  FILE *in = fopen(path, "rb");
+  if (!in) return NULL;
+  char *text = calloc(SAID_SIZE, 1);
+  assert_non_null(text);
+  assert_true(fread(text, 1, SAID_SIZE - 1, in) < SAID_SIZE - 1);
+  fclose(in);
+  return text;
+}
+
+/* The deck with one part of it replaced. */
+static void write_wrong(const workplace *w, const char *deck, const fault *f) {
+  const char *at = strstr(deck, f->right);
+  char text[SAID_SIZE];
+  assert_non_null(at);
+  snprintf(text, sizeof text, "%.*s%s%s", (int)(at - deck), deck, f->wrong, at + strlen(f->right));
+  write_text(w, "strip.nml", text);
+}
+
+static bool as_expected(const fault *f, const char *said) {
+  char path[400];
+  snprintf(path, sizeof path, FOLDER "%s.txt", f->name);
+  if (getenv("PERILAT_BLESS")) {
+    FILE *out = fopen(path, "wb");
+    assert_non_null(out);
+    fputs(said, out);
+    fclose(out);
+  }
+  char *expected = file_text(path);
+  const bool same = expected && strcmp(expected, said) == 0;
+  if (!same)
+    print_message("%s\n--- expected\n%s--- got\n%s", path, expected ? expected : "(no file)\n",
+                  said);
+  free(expected);
+  return same;
+}
+
+static void test_faults(void **state) {
+  workplace *w = *state;
+  char *deck = file_text(FOLDER "strip.nml");
+  int different = 0;
+  assert_non_null(deck);
+  for (int k = 0; k < FAULTS; k++) {
+    write_wrong(w, deck, &faults[k]);
+    assert_int_equal(shell(w, "$P check strip.nml 2>&1 >/dev/null"), faults[k].warns ? 0 : 1);
+    different += !as_expected(&faults[k], w->said);
+  }
+  free(deck);
+  assert_int_equal(different, 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test_setup_teardown(test_faults, set_up_workplace, tear_down_workplace)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
