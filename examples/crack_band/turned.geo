@@ -72,5 +72,5 @@ EndFor
 Transfinite Curve {:} = 2;
 Physical Curve("bottom") = low[];
 Physical Curve("top") = high[];
-Physical Surface("concrete") = all[];
+Physical Surface(10) = all[];
 Physical Surface("weak") = weak[];

@@ -19,4 +19,4 @@ Transfinite Surface {1} = {1, 2, 5, 6};
 Recombine Surface {1};
 Physical Curve("bottom") = {1};
 Physical Curve("top") = {5};
-Physical Surface("concrete") = {1};
+Physical Surface(10) = {1};

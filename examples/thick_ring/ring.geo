@@ -11,7 +11,6 @@ Plane Surface(1) = {1};
 Transfinite Surface {1};
 Recombine Surface {1};
 Physical Curve("along_x") = {1};
-Physical Curve("outer") = {2};
 Physical Curve("along_y") = {3};
 Physical Curve("inner") = {4};
-Physical Surface("ring") = {1};
+Physical Surface(10) = {1};

@@ -54,63 +54,59 @@ static double *block_of(node_matrix *k, int node, int32_t other) {
   return k->block[at - k->other];
 }
 
-/* Adds w B_a^T D B_b. */
-static void add_pair(double block[4], const double D[3][3], double w, const double a[2],
-                     const double b[2]) {
-  const double left[2][3] = {{a[0], 0, a[1]}, {0, a[1], a[0]}},
-               right[2][3] = {{b[0], 0, b[1]}, {0, b[1], b[0]}};
-  for (int i = 0; i < 2; i++)
-    for (int j = 0; j < 2; j++) {
+enum { MOST_MOTIONS = 2 * ELEMENT_MOST_NODES };
+
+/* Strains xx, yy, xy (of engineers) by the motions of the nodes; `mean`: with that dilatation, or
+   NULL. */
+static void strains_of(const point_shape *s, double (*mean)[2], double B[3][MOST_MOTIONS]) {
+  if (mean) {
+    element_mean_strains(s, (const double(*)[2])mean, B);
+    return;
+  }
+  for (int q = 0; q < s->count; q++) {
+    B[0][2 * q] = B[2][2 * q + 1] = s->nx[q];
+    B[1][2 * q + 1] = B[2][2 * q] = s->ny[q];
+    B[0][2 * q + 1] = B[1][2 * q] = 0;
+  }
+}
+
+/* Of the nodes a and b of a point. */
+static void add_pair(double block[4], const double D[3][3], double w,
+                     const double B[3][MOST_MOTIONS], int a, int b) {
+  for (int p = 0; p < 2; p++)
+    for (int q = 0; q < 2; q++) {
       double sum = 0;
-      for (int r = 0; r < 3; r++)
-        for (int s = 0; s < 3; s++)
-          sum += left[i][r] * D[r][s] * right[j][s];
-      block[2 * i + j] += w * sum;
+      for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+          sum += B[i][2 * a + p] * D[i][j] * B[j][2 * b + q];
+      block[2 * p + q] += w * sum;
     }
 }
 
-static void add_plain(node_matrix *k, const plane_stiffness *law, const point_shape *s, double w) {
-  for (int a = 0; a < s->count; a++)
-    for (int b = 0; b < s->count; b++) {
-      const double left[2] = {s->nx[a], s->ny[a]}, right[2] = {s->nx[b], s->ny[b]};
-      add_pair(block_of(k, s->node[a], s->node[b]), law->D, w, left, right);
-    }
-}
-
-/* The same with the mean dilatation of the cell. */
-static void add_mean(node_matrix *k, const plane_stiffness *law, const point_shape *s,
-                     const double mean[ELEMENT_MOST_NODES][2], double w) {
-  double B[3][2 * ELEMENT_MOST_NODES];
-  element_mean_strains(s, mean, B);
-  for (int i = 0; i < 2 * s->count; i++)
-    for (int j = 0; j < 2 * s->count; j++) {
-      double sum = 0;
-      for (int a = 0; a < 3; a++)
-        for (int b = 0; b < 3; b++)
-          sum += B[a][i] * law->D[a][b] * B[b][j];
-      block_of(k, s->node[i / 2], s->node[j / 2])[2 * (i % 2) + j % 2] += w * sum;
-    }
+static void add_cell(node_matrix *k, const mesh *m, const integration_points *p,
+                     const plane_stiffness *law, int cell) {
+  double mean[ELEMENT_MOST_NODES][2];
+  const bool means = element_takes_mean(m, cell);
+  if (means) element_mean_gradient(m, p, cell, mean);
+  for (int n = p->first[cell]; n < p->first[cell + 1]; n++) {
+    point_shape s;
+    double B[3][MOST_MOTIONS];
+    shape_functions(m, cell, p->at[n], &s);
+    strains_of(&s, means ? mean : NULL, B);
+    for (int a = 0; a < s.count; a++)
+      for (int b = 0; b < s.count; b++)
+        add_pair(block_of(k, s.node[a], s.node[b]), law->D, m->thickness * p->area[n],
+                 (const double(*)[MOST_MOTIONS])B, a, b);
+  }
 }
 
 void node_matrix_open(node_matrix *k, const mesh *m, const integration_points *p,
                       const plane_stiffness *laws, const unsigned char *law_of_cell) {
   *k = (node_matrix){.layout = node_layout_of(m->nodes, m->support), .nodes = m->lists->node_count};
   find_partners(k, m);
-  for (int n = 0; n < p->count; n++) {
-    const int cell = p->cell[n];
+  for (int cell = 0; cell < mesh_cell_count(m); cell++) {
     const int number = law_of_cell ? law_of_cell[cell] : 0;
-    if (number == NO_LINEAR_LAW) continue;
-    const plane_stiffness *law = &laws[number];
-    point_shape s;
-    shape_functions(m, cell, p->at[n], &s);
-    const double w = m->thickness * p->area[n];
-    if (!element_takes_mean(m, cell)) {
-      add_plain(k, law, &s, w);
-      continue;
-    }
-    double mean[ELEMENT_MOST_NODES][2];
-    element_mean_gradient(m, p, cell, mean);
-    add_mean(k, law, &s, (const double(*)[2])mean, w);
+    if (number != NO_LINEAR_LAW) add_cell(k, m, p, &laws[number], cell);
   }
 }
 

@@ -136,8 +136,7 @@ static void for_each_cell(point_forces *p, take_cell *take) {
   for (int row = 0; row < p->strips.rows; row++)
     for (int n = p->strips.first_group[row]; n < p->strips.first_group[row + 1]; n++)
       for (int lane = 0; lane < p->strips.groups[n].count; lane++)
-        take(p, n, lane,
-             cell_strips_cell(&p->strips, p->of, row, &p->strips.groups[n], lane));
+        take(p, n, lane, cell_strips_cell(&p->strips, p->of, row, &p->strips.groups[n], lane));
 }
 
 static void open_mean(point_forces *p, int group, int lane, int cell) {
@@ -432,8 +431,7 @@ static void push_hourglass(const point_forces *p, const strip *s, int g, int axi
   const long stride = p->strips.layout.stride;
   const double *gamma = p->hourglass + (long)g * HOURGLASS * PL_LANES,
                *C = gamma + CORNERS * PL_LANES;
-  double *force =
-      cell_strips_row(&p->strips, s->row, p->pushed[axis]) + p->strips.groups[g].first;
+  double *force = cell_strips_row(&p->strips, s->row, p->pushed[axis]) + p->strips.groups[g].first;
   for (int corner = 0; corner < CORNERS; corner++) {
     double *to = force + corner / 2 * stride + corner % 2;
     for (int lane = 0; lane < PL_LANES; lane++)

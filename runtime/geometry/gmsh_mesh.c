@@ -582,6 +582,31 @@ static void warn_of_twins(const maker *k) {
   free(at[1]);
 }
 
+/* A side that is so short rules how long a step may be, and is seldom meant. */
+static void warn_of_short_side(const maker *k, const cell_side *sides, int count) {
+  const gmsh_mesh *m = k->m;
+  const double mean = sqrt(m->area / m->cell_count);
+  int shortest = -1;
+  double length = 0.02 * mean;
+  for (int n = 0; n < count; n++) {
+    const double *a = m->at[sides[n].low], *b = m->at[sides[n].high],
+                 here = pl_hypot(a[0] - b[0], a[1] - b[1]);
+    if (!(here < length)) continue;
+    length = here;
+    shortest = n;
+  }
+  if (shortest < 0) return;
+  const cell_side *s = &sides[shortest];
+  diag_report(
+      k->d, DIAG_DECK_WARNING, line_of_cell(k, s->cell),
+      "the side from node %lld to %lld at (%.6g, %.6g) mm is only %.3g mm long, cells are %.3g "
+      "mm wide in the mean",
+      (long long)m->tag[s->low], (long long)m->tag[s->high], 1e3 * m->at[s->low][0],
+      1e3 * m->at[s->low][1], 1e3 * length, 1e3 * mean);
+  diag_hint(k->d, "steps are as short as the smallest cell asks for; is a short curve in the "
+                  "drawing meant?");
+}
+
 /* No node has more cells than there is room for. */
 static bool is_not_crowded(const maker *k) {
   int *around = must_calloc((size_t)k->m->node_count + 1, sizeof *around), bad = -1;
@@ -620,6 +645,7 @@ static bool make(maker *k, span where) {
     take_sides(k, sides, count, line);
     take_groups(k, line);
     warn_of_twins(k);
+    warn_of_short_side(k, sides, count);
   }
   free(sides);
   free(line);
@@ -633,6 +659,7 @@ const gmsh_mesh *gmsh_mesh_read(arena *a, char *path, double unit, span where, d
   if (good) {
     const size_t nodes = (size_t)t.node_count + 1;
     m->path = arena_text(a, path, strlen(path));
+    gmsh_text_line(&t, 0, d); /* it is a source from now on: groups point into it */
     maker k = {.t = &t,
                .m = m,
                .memory = a,

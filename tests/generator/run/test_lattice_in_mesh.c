@@ -1,5 +1,5 @@
-/* A lattice tied to meshes on either side: a uniform strain and a rigid turn through the edge, what it
-   throws back of a pulse, momentum, energies, the stable step, the same bits. */
+/* A lattice tied to meshes on either side: a uniform strain and a rigid turn through the edge, what
+   it throws back of a pulse, momentum, energies, the stable step, the same bits. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,6 +8,8 @@
 
 #include <cmocka.h>
 
+#include "runtime/continuum/mesh_ties.h"
+#include "runtime/interaction/half_bonds.h"
 #include "runtime/loads/tie_steps.h"
 #include "runtime/simulation/simulation_save.h"
 #include "runtime/simulation/simulation_state.h"
@@ -21,6 +23,7 @@ typedef struct strip {
   int columns;
   double height, length, cell; /* m: of all; of each mesh; of its cells, about */
   const char *law;
+  int beyond; /* columns of the lattice inside the right mesh */
 } strip;
 
 static double width_of(const strip *s) {
@@ -43,7 +46,8 @@ static void write_strip(const strip *s, const char *head, char *text, size_t siz
       "&material mesh = 'left' model = 'elastic' E = 30e9 nu = 0.2 rho = 2400 /\n"
       "&material mesh = 'right' model = 'elastic' E = 30e9 nu = 0.2 rho = 2400 /\n"
       "&tie lattice = 'core' mesh = 'left' /\n&tie lattice = 'core' mesh = 'right' /\n",
-      head, s->law, w, h, l, l, h, nx, ny, w, l, h, nx, ny);
+      head, s->law, w + 1e3 * s->beyond * spacing * sqrt(3) / 2, h, l, l, h, nx, ny, w, l, h, nx,
+      ny);
 }
 
 #define MICROPOLAR "model = 'elastic_micropolar' E = 30e9 nu = 0.2"
@@ -56,6 +60,101 @@ static void open_strip(deck_case *c, const strip *s, const char *head) {
 
 static body *body_of(const deck_case *c, int number) {
   return simulation_state(c->simulation, number)->body;
+}
+
+/* --- what is tied ----------------------------------------------------------------------------- */
+
+/* Two columns of the lattice stand inside the right mesh, and one on the edge of either. */
+static void particles_and_bonds_are_sorted(void **state) {
+  (void)state;
+  const strip s = {6, 0.08, 0.04, 10e-3, MICROPOLAR, 2};
+  int count;
+  deck_case c;
+  open_strip(&c, &s, "&simulation end_time = '1 us' /\n&output frames = 0 /\n");
+  const mesh_tie *ties = simulation_ties(c.simulation, CORE, &count);
+  const rows *g = simulation_rows(c.simulation, CORE);
+  assert_int_equal(count, 2);
+  assert_int_equal(ties[0].count, 17);
+  assert_int_equal(ties[1].count, 17 + 16 + 17);
+  assert_int_equal(ties[0].half_count, 16);
+  assert_int_equal(ties[1].half_count, 16);
+  assert_int_equal(ties[0].left_out, 0);
+  assert_int_equal(ties[1].left_out, 2 * 32 + 15 + 16);
+  for (int n = 0; n < 2; n++)
+    for (long p = 0; p < ties[n].count; p++) {
+      const tied_particle *of = &ties[n].particles[p];
+      const long site = g->particle_site[of->particle];
+      const bool inside = n == 1 && g->x[site] > width_of(&s) + 1e-6,
+                 corner = g->y[site] < 1e-6 || g->y[site] > s.height - 1e-6;
+      double sum = 0;
+      for (int k = 0; k < of->count; k++)
+        sum += of->weight[k];
+      assert_true(fabs(sum - 1) < 1e-12);
+      if (inside)
+        assert_true(of->outside <= (corner ? 0.5 : 0) + 1e-12);
+      else
+        assert_true(fabs(of->outside - (corner ? 0.75 : 0.5)) < 0.01);
+    }
+  assert_true(fabs(mesh_tie_mass(&ties[0], g) / g->mass - (15 * 0.5 + 2 * 0.75)) < 0.05);
+  deck_case_close(&c);
+}
+
+/* Of each direction in turn, all bonds by halves: half of what the lattice's bonds exert and store.
+   */
+static void halves_are_half_of_a_bond(void **state) {
+  (void)state;
+  deck_case c;
+  deck_case_open(
+      &c, "&simulation end_time = '1 us' /\n&output frames = 0 /\n"
+          "&lattice name = 'l' kind = 'hexagonal' spacing = '5 mm' thickness = '10 mm' /\n"
+          "&material lattice = 'l' model = 'elastic_micropolar' E = 30e9 nu = 0.2 rho = 2400 /\n"
+          "&body lattice = 'l' shape = 'rectangle' corner = 0, 0 size = '40 mm', '30 mm' /\n");
+  sweep *w = simulation_state(c.simulation, 0);
+  const rows *g = w->lattice;
+  double *plane[4], *found[PL_MAX_DOF];
+  for (int k = 0; k < 4; k++)
+    plane[k] = calloc((size_t)(g->directions * g->size), sizeof(double));
+  for (long p = 0; p < g->particle_count; p++)
+    for (int d = 0; d < 3; d++)
+      w->body->displacement[d][g->particle_site[p]] = 1e-6 * sin(1.7 * (double)p + 2 * d);
+  all_bond_forces(w, plane);
+  half_bond *bonds = calloc((size_t)g->bond_count, sizeof *bonds);
+  for (int k = 0; k < g->directions; k++) {
+    long count = 0;
+    double most = 0;
+    for (long p = 0; p < g->particle_count; p++) {
+      const long i = g->particle_site[p];
+      if (rows_has_bond(g, i, k))
+        bonds[count++] = (half_bond){i, k, {(int32_t)p, g->site_particle[rows_partner(g, i, k)]}};
+    }
+    half_bonds *h = half_bonds_new(w, c.law.parameters, bonds, count);
+    for (int d = 0; d < 3; d++)
+      found[d] = calloc((size_t)g->particle_count, sizeof(double));
+    half_bonds_find(h, false);
+    half_bonds_add(h, found);
+    for (long n = 0; n < count; n++) {
+      const long at = k * g->size + bonds[n].site;
+      for (int d = 0; d < 2; d++) {
+        found[d][bonds[n].end[0]] -= 0.5 * plane[d][at];
+        found[d][bonds[n].end[1]] += 0.5 * plane[d][at];
+        most = fmax(most, fabs(plane[d][at]));
+      }
+      found[2][bonds[n].end[0]] += 0.5 * plane[2][at];
+      found[2][bonds[n].end[1]] += 0.5 * plane[3][at];
+    }
+    assert_true(count > 0 && most > 0);
+    for (long p = 0; p < g->particle_count; p++)
+      for (int d = 0; d < 3; d++)
+        assert_true(fabs(found[d][p]) < 1e-12 * most);
+    assert_true(half_bonds_stored(h) > 0 && half_bonds_taken(h) == 0);
+    half_bonds_free(h);
+    for (int d = 0; d < 3; d++)
+      free(found[d]);
+  }
+  for (int k = 0; k < 4; k++)
+    free(plane[k]);
+  free(bonds);
+  deck_case_close(&c);
 }
 
 /* --- patches ---------------------------------------------------------------------------------- */
@@ -73,7 +172,8 @@ static void strain_all(const deck_case *c, double a[2][2]) {
   }
 }
 
-/* Something lies around the particle on all sides, so that nothing should act on it: in y, and in x. */
+/* Something lies around the particle on all sides, so that nothing should act on it: in y, and in
+   x. */
 static bool is_inside(const strip *s, int number, double x, double y) {
   const double away = 1.01 * (number == CORE ? spacing : fmax(s->cell, spacing));
   if (y < away || y > s->height - away) return false;
@@ -118,7 +218,7 @@ static void a_uniform_strain_goes_through(void **state) {
   static const double sizes[] = {5e-3, 10e-3, 15e-3};
   for (int n = 0; n < 3; n++)
     for (int k = 0; k < 4; k++) {
-      const strip s = {6, 0.12, 0.06, sizes[n], MICROPOLAR};
+      const strip s = {6, 0.12, 0.06, sizes[n], MICROPOLAR, 0};
       double a[2][2] = {{0, 0}, {0, 0}}, moment;
       a[k / 2][k % 2] = 1e-6;
       const double scale = E * 1e-6 * spacing * thickness, worst = worst_force(&s, a, &moment);
@@ -131,7 +231,7 @@ static void a_uniform_strain_goes_through(void **state) {
 /* However far all has turned, the lattice asks nothing of the nodes; a mesh is for small turns. */
 static void a_rigid_turn_asks_nothing_of_the_mesh(void **state) {
   (void)state;
-  const strip s = {6, 0.08, 0.04, 10e-3, MICROPOLAR};
+  const strip s = {6, 0.08, 0.04, 10e-3, MICROPOLAR, 0};
   const double angle = 0.7, turned = cos(angle) - 1, sine = sin(angle);
   double a[2][2] = {{turned, -sine}, {sine, turned}};
   deck_case c;
@@ -155,8 +255,8 @@ static void a_rigid_turn_asks_nothing_of_the_mesh(void **state) {
 
 /* --- waves ------------------------------------------------------------------------------------ */
 
-/* One raised cosine as long as `length`, from the left. Of a strip with lattice what differs from one that
-   is mesh alone, at the middle of the left mesh, over the largest of the pulse. */
+/* One raised cosine as long as `length`, from the left. Of a strip with lattice what differs from
+   one that is mesh alone, at the middle of the left mesh, over the largest of the pulse. */
 #define PULSE                                                                                      \
   "&simulation end_time = '130 us' step = '0.25 us' threads = 2 /\n"                               \
   "&output frames = 0 energy = F sample = '0.25 us' /\n"                                           \
@@ -201,7 +301,7 @@ static double thrown_back(const strip *s, double length) {
 static void little_of_a_pulse_is_thrown_back(void **state) {
   (void)state;
   for (int ratio = 1; ratio <= 3; ratio++) {
-    const strip s = {36, pulse_height, 0.3, ratio * spacing, MICROPOLAR};
+    const strip s = {36, pulse_height, 0.3, ratio * spacing, MICROPOLAR, 0};
     const double length = 12 * ratio * spacing, part = thrown_back(&s, length);
     print_message("cells of %d spacings, a pulse of %d: %.2f %% thrown back\n", ratio, 12 * ratio,
                   100 * part);
@@ -230,8 +330,8 @@ static void open_flying(deck_case *c, const strip *s, double us, double safety, 
   "model = 'mplm_bilinear' E = 30e9 nu = 0.2 S_t = 1e-4 zeta = 0.05 alpha1 = 0.13 alpha2 = 20 "    \
   "alpha3 = 415 beta = 0.1 rate_0 = 10"
 
-/* Momenta of all, and angular momentum about the origin, of places at the instant and velocities half a
-   step before. */
+/* Momenta of all, and angular momentum about the origin, of places at the instant and velocities
+   half a step before. */
 static double momenta_of(const deck_case *c, double sum[3]) {
   double scale = 0;
   sum[0] = sum[1] = sum[2] = 0;
@@ -258,7 +358,7 @@ static void momentum_is_kept(void **state) {
   (void)state;
   double lost[2];
   for (int n = 0; n < 2; n++) {
-    const strip s = {7, 0.08, 0.04, 10e-3, MICROPOLAR};
+    const strip s = {7, 0.08, 0.04, 10e-3, MICROPOLAR, 0};
     deck_case c;
     double before[3], after[3];
     open_flying(&c, &s, 300, 0.5, 1, n == 0 ? 1e-3 : 1e-4);
@@ -276,8 +376,8 @@ static void momentum_is_kept(void **state) {
   assert_true(lost[0] < 1e-6 && lost[1] < 0.2 * lost[0]);
 }
 
-/* All that the ledger has; with the step's square it closes better, where bonds break with the step. What ties
-   give and take goes out. */
+/* All that the ledger has; with the step's square it closes better, where bonds break with the
+   step. What ties give and take goes out. */
 static void energies_balance(void **state) {
   (void)state;
   static const struct {
@@ -287,7 +387,7 @@ static void energies_balance(void **state) {
   for (int k = 0; k < 3; k++) {
     double imbalance[2];
     for (int n = 0; n < 2; n++) {
-      const strip s = {7, 0.08, 0.04, 10e-3, cases[k].law};
+      const strip s = {7, 0.08, 0.04, 10e-3, cases[k].law, 0};
       deck_case c;
       open_flying(&c, &s, 100, n == 0 ? 0.8 : 0.1, 1, cases[k].speed);
       assert_int_equal(deck_case_go(&c), STEP_END);
@@ -311,7 +411,7 @@ static void the_step_is_stable(void **state) {
   (void)state;
   static const double sizes[] = {2.5e-3, 5e-3, 20e-3};
   for (int n = 0; n < 3; n++) {
-    const strip s = {5, 0.04, 0.02, sizes[n], MICROPOLAR};
+    const strip s = {5, 0.04, 0.02, sizes[n], MICROPOLAR, 0};
     deck_case c;
     open_flying(&c, &s, 6000, 0.999, 1, 1e-6);
     assert_int_equal(deck_case_go(&c), STEP_END);
@@ -339,7 +439,7 @@ static void same_histories(const deck_case *a, const deck_case *b) {
 
 static void threads_do_not_show(void **state) {
   (void)state;
-  const strip s = {24, 0.2, 0.1, 10e-3, BREAKS};
+  const strip s = {24, 0.2, 0.1, 10e-3, BREAKS, 0};
   deck_case one, more;
   open_flying(&one, &s, 60, 0.5, 1, 2);
   assert_int_equal(deck_case_go(&one), STEP_END);
@@ -354,7 +454,7 @@ static void threads_do_not_show(void **state) {
 
 static void a_run_goes_on_as_if_never_stopped(void **state) {
   (void)state;
-  const strip s = {8, 0.08, 0.04, 10e-3, BREAKS};
+  const strip s = {8, 0.08, 0.04, 10e-3, BREAKS, 0};
   const char *path = "lattice_in_mesh.checkpoint";
   char error[1024];
   frame_mark none = {0};
@@ -375,7 +475,9 @@ static void a_run_goes_on_as_if_never_stopped(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_uniform_strain_goes_through),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(particles_and_bonds_are_sorted),
+                                     cmocka_unit_test(halves_are_half_of_a_bond),
+                                     cmocka_unit_test(a_uniform_strain_goes_through),
                                      cmocka_unit_test(a_rigid_turn_asks_nothing_of_the_mesh),
                                      cmocka_unit_test(little_of_a_pulse_is_thrown_back),
                                      cmocka_unit_test(momentum_is_kept),
