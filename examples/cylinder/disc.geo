@@ -1,5 +1,6 @@
 // Disc, 150 mm in diameter, flat over a sixth of that above and below, where the platens press.
 // gmsh -2 -format msh41 disc.geo -o disc.msh
+// gmsh -2 -format msh41 -setnumber flat 2 -setnumber round 4 -setnumber deep 5 disc.geo -o disc_coarse.msh
 DefineConstant[ flat = 4, round = 7, deep = 8 ];
 R = 75;  w = 12.5;  h = Sqrt(R*R - w*w);
 a = R*Sqrt(0.5);  b = 0.52*R*Sqrt(0.5);   // corners of the outer and of the inner blocks
