@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Runs what is missing and draws the curves of both profiles, thesis.png and objective.png, and the crack of each
 # disc. Another program than ../../build/perilat: PERILAT=path bash plot_all.sh
+# Then finite elements beside the lattice: beside.png.
 set -euo pipefail
 cd "$(dirname "$0")"
 perilat=${PERILAT:-../../build/perilat}
@@ -17,3 +18,10 @@ draw() { # ending of the names, picture, title
 
 draw ""         thesis.png    "Brazilian disc, law as published"
 draw _objective objective.png "Brazilian disc, objective profile"
+for deck in rot0_continuum rot0_brittle; do
+  [[ -s $deck.h5 ]] || "$perilat" run "$deck.nml"
+done
+"$perilat" plot rot0_continuum.h5 --map damage_t --factor 20 -o rot0_continuum_damage.png
+"$perilat" plot rot0_brittle.h5 --map crack_opening --factor 20 -o rot0_brittle_crack.png
+"$perilat" plot rot0.h5 rot0_continuum.h5 rot0_brittle.h5 --x displacement --y load --title "Brazilian disc" \
+  --label lattice --label "plastic damage" --label "brittle cracking" --line "theory = 193 kN" -o beside.png

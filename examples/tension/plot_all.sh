@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Runs what is missing and draws the curves of all rotations, curves.png, the crack of each, and the quasi-static curve
-# beside the dynamic one, quasi_static.png. Another program than ../../build/perilat: PERILAT=path bash plot_all.sh
+# beside the dynamic one, quasi_static.png, and that of finite elements beside the lattice's, beside.png. Another program
+# than ../../build/perilat: PERILAT=path bash plot_all.sh
 set -euo pipefail
 cd "$(dirname "$0")"
 perilat=${PERILAT:-../../build/perilat}
@@ -14,3 +15,11 @@ done
 [[ -s rot0_quasi_static.h5 ]] || "$perilat" run rot0_quasi_static.nml
 "$perilat" plot rot0.h5 rot0_quasi_static.h5 --x displacement --y load --label dynamic --label quasi-static \
   -o quasi_static.png
+for deck in rot0_continuum rot0_brittle; do
+  [[ -s $deck.h5 ]] || "$perilat" run "$deck.nml"
+done
+"$perilat" plot rot0_continuum.h5 --map damage_now --factor 50 -o rot0_continuum_damage.png
+"$perilat" plot rot0_brittle.h5 --map crack_opening --frame 20 --factor 50 -o rot0_brittle_crack.png
+"$perilat" plot rot0.h5 rot0_continuum.h5 rot0_brittle.h5 --x displacement --y load --title "Prism in tension" \
+  --label lattice --label "finite elements, Mazars" --label "finite elements, brittle cracking" \
+  --line "f_t A = 58.88 kN" -o beside.png
