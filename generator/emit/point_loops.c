@@ -56,10 +56,6 @@ static const char *array_of_root(emitter *e, const segment_root *r) {
   return spell(e, members[r->target], numeral(e, r->index));
 }
 
-static bool stays(emitter *e, const segment_root *r) {
-  return r->target == TO_FIELD && ir_is_number(e->graph, r->node, 0);
-}
-
 static void write_program(emitter *e, const segment *a, const char *name) {
   expression_open_segment(e, &of_points, a);
   kernel_function_begin(&e->parts, e->out, "PL_PASS", name,
@@ -67,12 +63,12 @@ static void write_program(emitter *e, const segment *a, const char *name) {
   say(e, SAY_POINTS_HEAD);
   expression_declare(e);
   for (int k = 0; k < a->root_count; k++)
-    if (!stays(e, &a->roots[k])) say(e, SAY_DECLARE, "  ", spell(e, SAY_WRITTEN), spell(e, SAY_RESULT_ARRAY, numeral(e, k)),
+    say(e, SAY_DECLARE, "  ", spell(e, SAY_WRITTEN), spell(e, SAY_RESULT_ARRAY, numeral(e, k)),
         array_of_root(e, &a->roots[k]));
   say(e, SAY_OVER_BONDS);
   expression_lines(e);
   for (int k = 0; k < a->root_count; k++)
-    if (!stays(e, &a->roots[k])) say(e, segment_is_loss(&a->roots[k]) ? SAY_ADD : SAY_STORE, "    ",
+    say(e, segment_is_loss(&a->roots[k]) ? SAY_ADD : SAY_STORE, "    ",
         spell(e, SAY_HERE, spell(e, SAY_RESULT_ARRAY, numeral(e, k))),
         expression_whole(e, a->roots[k].node));
   say(e, SAY_END, "  ");

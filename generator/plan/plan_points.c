@@ -126,10 +126,10 @@ static ir_node strain_without_stress(planner *p, ir_node sigma_zz, ir_node sigma
 static ir_node unless_free(planner *p, ir_node sigma_zz, ir_node z) {
   static const double FREE = 1e-9; /* of what is added up to it */
   ir *g = p->graph;
-  ir_node here;
-  ir_substitute(g, &sigma_zz, 1, &p->z, &z, 1, &here);
-  const ir_node most = ir_mul(g, ir_constant(g, FREE), rewrite_size(g, here)),
-                is_free = ir_binary(g, IR_LE, ir_unary(g, IR_ABS, here), most);
+  ir_node both[2] = {sigma_zz, rewrite_size(g, sigma_zz)}; /* of z itself, not of the way to it */
+  ir_substitute(g, both, 2, &p->z, &z, 1, both);
+  const ir_node most = ir_mul(g, ir_constant(g, FREE), both[1]),
+                is_free = ir_binary(g, IR_LE, ir_unary(g, IR_ABS, both[0]), most);
   return ir_unary(g, IR_SQRT, ir_select(g, is_free, ir_constant(g, 0), ir_constant(g, -1)));
 }
 

@@ -17,6 +17,7 @@
 #include "runtime/base/whole_file.h"
 #include "runtime/continuum/cells.h"
 #include "runtime/deck/lattice_kind.h"
+#include "runtime/geometry/gmsh_mesh.h"
 #include "runtime/lattice/parameter_planes.h"
 #include "runtime/lattice/rows_select.h"
 #include "runtime/lattice/shape_matrix.h"
@@ -356,7 +357,10 @@ static result_mesh mesh_of(run *r, int number, const mesh *m, long first_particl
   for (int c = 0; c < mesh_cell_count(m); c++)
     if (corners_of(m, w, &l, c, columns, corners + columns * count))
       method[count++] = (int32_t)m->cell[c];
+  const gmsh_mesh *of = r->deck->lattices[number].gmsh;
   return (result_mesh){.name = r->deck->lattices[number].name,
+                       .node_numbers = of ? of->tag : NULL,
+                       .cell_numbers = of ? of->cell_tag : NULL,
                        .first_particle = first_particle,
                        .node_count = w->particle_count,
                        .cell_count = count,

@@ -12,8 +12,8 @@
 #include "runtime/mesh/shape_functions.h"
 
 /* In spacings of the lattice: how far outside of the mesh a particle is still on its edge, as decks
-   are written with a few digits; and how far from a bond's middle it is looked on which side the mesh
-   is. */
+   are written with a few digits; and how far from a bond's middle it is looked on which side the
+   mesh is. */
 static const double ON_EDGE = 2e-3, ASIDE = 0.05;
 /* From which distance on, in spacings, a free particle next to the mesh is as it should be. */
 static const double BESIDE = 0.7;
@@ -154,8 +154,8 @@ static void sort_bonds(tier *t, bool halves) {
   rows_count_bonds(g);
 }
 
-/* Tied particles that lie deeper than on the edge, with bonds to free ones: in between there are bonds and
-   cells. */
+/* Tied particles that lie deeper than on the edge, with bonds to free ones: in between there are
+   bonds and cells. */
 static void warn_of_overlap(const tier *t) {
   const double on_the_edge = 0.45;
   const rows *g = t->lattice;
@@ -294,13 +294,16 @@ double mesh_tie_mass(const mesh_tie *t, const rows *w) {
   return sum;
 }
 
+/* Of functions that are negative somewhere, too: (sum N u)^2 <= sum |N| sum |N| u^2. */
 void mesh_tie_add(const mesh_tie *t, const rows *w, tied_node *node) {
   for (long n = 0; n < t->count; n++) {
     const tied_particle *p = &t->particles[n];
+    double size = 0;
+    for (int k = 0; k < p->count; k++)
+      size += fabs(p->weight[k]);
     for (int k = 0; k < p->count; k++) {
-      const double part = pl_fmax(p->weight[k], 0) * mass_of(w, p);
-      node[p->node[k]].added += p->outside * part;
-      node[p->node[k]].whole += part;
+      node[p->node[k]].added += p->outside * p->weight[k] * mass_of(w, p);
+      node[p->node[k]].whole += size * fabs(p->weight[k]) * mass_of(w, p);
     }
   }
 }

@@ -9,10 +9,10 @@
          o   o   o   o |   |   |  along the edge stand for half of a row, as the mesh
        o   o   o   o   #---+---+  has the other half; those inside the mesh are left out.
 
-   So a uniform strain is borne exactly through an edge that is a row of the lattice: what the bonds on
-   one side of a particle exert, with half of those along the row, is the traction on its part of the
-   edge. A tied particle's mass goes to the nodes, as far as its cell lies outside of the mesh; its
-   rotation stays free, and is in balance in a uniform strain for the same reason. */
+   So a uniform strain is borne exactly through an edge that is a row of the lattice: what the bonds
+   on one side of a particle exert, with half of those along the row, is the traction on its part of
+   the edge. A tied particle's mass goes to the nodes, as far as its cell lies outside of the mesh;
+   its rotation stays free, and is in balance in a uniform strain for the same reason. */
 #ifndef PERILAT_RUNTIME_MESH_TIES_H
 #define PERILAT_RUNTIME_MESH_TIES_H
 
@@ -57,8 +57,8 @@ void mesh_ties_free(mesh_tie *ties, int count);
 double mesh_tie_mass(const mesh_tie *t, const rows *w);
 
 /* What is known of the highest frequencies of a mesh and of what is tied to it. Kinetic and elastic
-   energies of both are sums, so that with M_I of the mesh's own mass, a_I of what ties add, and A_I of
-   what the whole mass of tied particles would add,
+   energies of both are sums, so that with M_I of the mesh's own mass, a_I of what ties add, and A_I
+   of what the whole mass of tied particles would add,
 
      omega^2 <= max over I of (omega_mesh^2 M_I + omega_lattice^2 A_I)/(M_I + a_I), omega_lattice^2;
 

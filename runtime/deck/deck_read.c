@@ -185,6 +185,8 @@ static bool all_names_known(const deck *k, const namelist *n) {
   bool known = !n->broken;
   for (int i = 0; i < k->lattice_count; i++)
     known &= k->lattices[i].name != NULL;
+  for (int i = 0; i < k->lattice_count; i++) /* whose groups are regions */
+    known &= !deck_lattice_is_mesh(&k->lattices[i]) || !k->lattices[i].file || k->lattices[i].gmsh;
   for (int i = 0; i < k->region_count; i++)
     known &= k->regions[i].name != NULL;
   for (int i = 0; i < k->monitor_count; i++)
@@ -252,13 +254,15 @@ static void list_file(deck_reader *r, const namelist_value *v) {
   free(name);
 }
 
-/* That of loads, and of parameters of materials, which are keys of no name that the deck knows. */
+/* That of loads and meshes, and of parameters of materials, which are keys of no name that the deck
+   knows. */
 static bool is_read_with_the_deck(int kind, const namelist_key *key) {
   const int known = deck_key_find(deck_groups[kind], key->name);
   if (key->value_count != 1 || key->values[0].kind != NAMELIST_TEXT) return false;
   if (known < 0)
     return deck_groups[kind] == &deck_group_material && deck_is_place_file(&key->values[0]);
-  return strcasecmp(key->name, "file") == 0 && deck_groups[kind]->keys[known].type == DECK_LATER;
+  return strcasecmp(key->name, "file") == 0 &&
+         (deck_groups[kind]->keys[known].type == DECK_LATER || kind == DECK_GROUP_mesh);
 }
 
 static void list_files(deck_reader *r, const namelist *n) {

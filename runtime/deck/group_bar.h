@@ -1,5 +1,5 @@
-/* Groups of bars: the line of a bar, and the link that joins it to the lattice around it; and of what
-   ties a lattice to a mesh. */
+/* Groups of bars: the line of a bar, and the link that joins it to the lattice around it; and of
+   what ties a lattice to a mesh. */
 #ifndef PERILAT_RUNTIME_GROUP_BAR_H
 #define PERILAT_RUNTIME_GROUP_BAR_H
 

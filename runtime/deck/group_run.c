@@ -159,7 +159,8 @@ static const deck_key_info output_keys[] = {
      .doc = "stored in each frame: displacement, velocity, rotation, force, damage (all of the "
             "law's, and their mean per particle), dissipated (energy lost, per particle), stress "
             "and strain (all components) or one of these (stress_xx), or a state, damage, output "
-            "or random parameter of the law"},
+            "or random parameter of the law; dead_cells (of a mesh, which have died) comes by "
+            "itself"},
     {.name = "energy",
      .type = DECK_LOGICAL,
      .fallback = ".true.",

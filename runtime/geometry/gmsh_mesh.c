@@ -659,6 +659,7 @@ const gmsh_mesh *gmsh_mesh_read(arena *a, char *path, double unit, span where, d
   if (good) {
     const size_t nodes = (size_t)t.node_count + 1;
     m->path = arena_text(a, path, strlen(path));
+    gmsh_text_line(&t, 0, d); /* it is a source from now on: groups point into it */
     maker k = {.t = &t,
                .m = m,
                .memory = a,

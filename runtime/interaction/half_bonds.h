@@ -1,6 +1,6 @@
 /* Bonds that a body has not, but stands for by halves: those of a lattice along the edge of a mesh
-   that it is tied to (mesh_ties.h), whose other half the mesh is. Their law is the lattice's with half of the
-   thickness, and half of the masses. They do not break: each is as if it was new. */
+   that it is tied to (mesh_ties.h), whose other half the mesh is. Their law is the lattice's with
+   half of the thickness, and half of the masses. They do not break: each is as if it was new. */
 #ifndef PERILAT_RUNTIME_HALF_BONDS_H
 #define PERILAT_RUNTIME_HALF_BONDS_H
 
@@ -19,8 +19,8 @@ half_bonds *half_bonds_new(const sweep *w, const double *parameters, const half_
                            long count);
 void half_bonds_free(half_bonds *h);
 
-/* Finds forces and moments of the present state; `stepped`: what rate terms took in the state before
-   is booked, as a step has been done since. */
+/* Finds forces and moments of the present state; `stepped`: what rate terms took in the state
+   before is booked, as a step has been done since. */
 void half_bonds_find(half_bonds *h, bool stepped);
 /* Adds those found (N, N m) to force[dof][number of the end]. */
 void half_bonds_add(const half_bonds *h, double *const force[PL_MAX_DOF]);

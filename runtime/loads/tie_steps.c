@@ -54,11 +54,15 @@ static void become_loads(tie_steps *t, const cells *c) {
     loads_add_tie(t->lattice.loads, t->site[p], 2, t->number, 1, &t->half[2][p]);
 }
 
+/* A point mass that a particle carries goes to the nodes as a whole. */
 static void give_masses(const tie_steps *t, const cells *c) {
   body *lattice = t->lattice.body;
+  const rows *g = lattice->lattice;
   for (long p = 0; p < t->of->count; p++) {
     const tied_particle *from = &t->of->particles[p];
-    const double mass = from->outside * body_mass(lattice, 0, t->site[p]);
+    const double own = g->site_mass ? g->site_mass[t->site[p]] : g->mass,
+                 carried = body_mass(lattice, 0, t->site[p]) - own,
+                 mass = from->outside * own + carried;
     body_give_away(lattice, t->site[p]);
     for (int k = 0; k < from->count; k++)
       body_add_mass(t->mesh.body, cells_site(c, from->node[k]), from->weight[k] * mass, 0);
@@ -171,7 +175,8 @@ void tie_steps_see(tie_steps *t, long step) {
 
 static void look_ahead(const tie_steps *t, int d, long step) {
   for (int n = 0; n < t->node_count; n++)
-    t->node_ahead[n] = load_steps_velocities(t->mesh.loads, t->mesh.body, d, t->node[n], step).after;
+    t->node_ahead[n] =
+        load_steps_velocities(t->mesh.loads, t->mesh.body, d, t->node[n], step).after;
   for (long p = 0; p < t->of->count; p++) {
     const tied_particle *of = &t->of->particles[p];
     double sum = 0;

@@ -1,6 +1,6 @@
-/* What a tie between a lattice and a mesh (mesh_ties.h) does in a step. Both move their particles as if they
-   were free; then the tied ones tell what has kicked them, the nodes are put right by that as by any
-   applied force, in the same step, and the tied particles go where the mesh is.
+/* What a tie between a lattice and a mesh (mesh_ties.h) does in a step. Both move their particles
+   as if they were free; then the tied ones tell what has kicked them, the nodes are put right by
+   that as by any applied force, in the same step, and the tied particles go where the mesh is.
 
      lattice   kicks and moves all its particles --.          .--> tied ones put on the mesh
                                                     f, N^T f /
@@ -41,8 +41,9 @@ typedef struct tie_steps {
   double work;           /* J: that it has done on loads of both, up to the state seen */
 } tie_steps;
 
-/* The bodies' state must be set up, at rest. Its forces become loads of both; masses go to the nodes. The
-   last one is to be followed by loads_links_added. `halves`: of the lattice's law. */
+/* The bodies' state must be set up, at rest. Its forces become loads of both; masses go to the
+   nodes. The last one is to be followed by loads_links_added. `law`,
+   `parameters`: the lattice's, for bonds that are borne by halves. */
 void tie_steps_open(tie_steps *t, const mesh_tie *of, int number, tied_body lattice,
                     tied_body of_mesh, const cells *c, const sweep *law, const double *parameters);
 void tie_steps_close(tie_steps *t);

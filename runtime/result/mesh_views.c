@@ -169,6 +169,20 @@ static bool tell_of_mesh(hid_t file, const char *name, const result_mesh *m) {
   return good;
 }
 
+/* What nodes and cells are called in the file that they come from. */
+static bool write_numbers(hid_t file, const char *group, const result_mesh *m) {
+  char name[NAME + 16];
+  const hsize_t nodes[1] = {(hsize_t)m->node_count}, cells[1] = {(hsize_t)m->cell_count};
+  if (!m->node_numbers) return true;
+  snprintf(name, sizeof name, "%s/node_numbers", group);
+  if (!h5_write_list(file, name, m->node_numbers, 1, nodes) ||
+      !describe(file, name, "numbers of the nodes in the mesh's file", "1"))
+    return false;
+  snprintf(name, sizeof name, "%s/cell_numbers", group);
+  return h5_write_list(file, name, m->cell_numbers, 1, cells) &&
+         describe(file, name, "numbers of the cells in the mesh's file", "1");
+}
+
 static bool write_mesh(hid_t file, const result_header *h, const result_mesh *m) {
   char group[NAME], name[NAME + 16];
   const hsize_t nodes[2] = {(hsize_t)m->node_count, 2},
@@ -188,7 +202,8 @@ static bool write_mesh(hid_t file, const result_header *h, const result_mesh *m)
                "1");
   snprintf(name, sizeof name, "%s/method", group);
   return good && h5_write_integers(file, name, m->method, 1, cells) &&
-         describe(file, name, "of each cell: 1 a finite element, 2 blended, 3 element-free", "1");
+         describe(file, name, "of each cell: 1 a finite element, 2 blended, 3 element-free", "1") &&
+         write_numbers(file, group, m);
 }
 
 bool mesh_views_write_meshes(hid_t file, const result_header *h) {

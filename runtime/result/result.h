@@ -27,7 +27,8 @@
                             with what has grown at either end, NaN beyond; P as many as it has had;
                             attribute mesh
      /meshes/<mesh>/        nodes [N, 2] m, cells [C, 4] their nodes counter-clockwise, method [C]
-                            of cells (1 a finite element, 2 blended, 3 element-free); attributes
+                            of cells (1 a finite element, 2 blended, 3 element-free); of a file
+                            node_numbers [N], cell_numbers [C] there; attributes
                             first_particle (of its nodes in /particles) and thickness (m)
      /VTKHDF, /xdmf         the same for other programs (views.h)
 
@@ -96,6 +97,7 @@ typedef struct result_mesh {
                             the sides; -1 behind the last */
   const int32_t *method; /* [cell_count] 1, 2, 3 as /meshes says */
   double thickness;      /* m */
+  const int64_t *node_numbers, *cell_numbers; /* of its file; NULL: it has none */
 } result_mesh;
 
 typedef struct result_crack { /* whose points are a path */

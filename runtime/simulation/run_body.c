@@ -479,6 +479,28 @@ static bool open_ties(run_body *b, const deck *k, diagnostics *d) {
   return b->ties != NULL;
 }
 
+static void refuse_load(const run_body *b, int64_t site, span where, const char *what,
+                        diagnostics *d) {
+  double at[3];
+  char text[ROWS_PLACE_TEXT];
+  rows_place(b->lattice_rows, site, at);
+  diag_report(d, DIAG_CONFLICT, where, "the particle of `%s` at %s is %s, but tied to a mesh",
+              b->name, rows_place_text(2, at, text), what);
+  diag_hint(d, "let it be done to nodes of the mesh there, or to particles that are not tied");
+}
+
+/* The support that holds it. */
+static span support_at(const run_body *b, const deck *k, int64_t site) {
+  for (int n = 0; n < k->support_count; n++) {
+    const int region = deck_find_region(k, k->supports[n].region);
+    const region_sites *at = region >= 0 ? &b->loads->regions[region] : NULL;
+    for (long p = 0; at && p < at->count; p++)
+      if (b->lattice_rows->particle_site[at->particles[p]] == site)
+        return deck_where(&k->supports[n].item, "region");
+  }
+  return b->ties[0].from->item.where;
+}
+
 /* What loads do to tied particles they would do to the mesh. */
 static bool ties_are_free(const run_body *b, const deck *k, diagnostics *d) {
   unsigned char *tied = must_calloc((size_t)b->lattice_rows->size, 1);
@@ -488,17 +510,20 @@ static bool ties_are_free(const run_body *b, const deck *k, diagnostics *d) {
       tied[b->lattice_rows->particle_site[b->ties[n].particles[p].particle]] = 1;
   for (long n = 0; n < b->loads->constraint_count && good; n++) {
     const constraint *c = &b->loads->constraints[n];
-    if (!tied[c->site]) continue;
-    double at[3];
-    char text[ROWS_PLACE_TEXT];
-    rows_place(b->lattice_rows, c->site, at);
-    diag_report(d, DIAG_CONFLICT,
-                c->drive >= 0 ? deck_where(&k->drives[c->drive].item, "region")
-                              : b->ties[0].from->item.where,
-                "the particle of `%s` at %s is held or driven, but tied to a mesh", b->name,
-                rows_place_text(2, at, text));
-    diag_hint(d, "hold or drive nodes of the mesh there, or particles that are not tied");
-    good = false;
+    good = !tied[c->site];
+    if (!good)
+      refuse_load(b, c->site,
+                  c->drive >= 0 ? deck_where(&k->drives[c->drive].item, "region")
+                                : support_at(b, k, c->site),
+                  c->drive >= 0 ? "driven" : "held", d);
+  }
+  for (long n = 0; n < b->loads->force_count && good; n++) {
+    const applied *f = &b->loads->forces[n];
+    const deck_item *from = f->cause < k->force_count
+                                ? &k->forces[f->cause].item
+                                : &k->end_moments[f->cause - k->force_count].item;
+    good = !tied[f->site];
+    if (!good) refuse_load(b, f->site, deck_where(from, "region"), "loaded", d);
   }
   free(tied);
   return good;

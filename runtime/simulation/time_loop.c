@@ -54,8 +54,8 @@ static void sample_laws(simulation *s) {
     }
 }
 
-/* Above which a body of the state observed has no frequency; where only the virgin one is known, that
-   of this. */
+/* Above which a body of the state observed has no frequency; where only the virgin one is known,
+   that of this. */
 static double highest_frequency(const run_body *of) {
   return of->limit.omega_max * (of->cells ? sqrt(pl_fmax(1, of->cells->stiffened.now)) : 1);
 }
@@ -129,8 +129,8 @@ static void find_contacts(simulation *s) {
 
 /* --- ties ------------------------------------------------------------------------------------- */
 
-/* Lattices tell what acts on their tied particles, then all loads of tied bodies act, and tied particles
-   follow. */
+/* Lattices tell what acts on their tied particles, then all loads of tied bodies act, and tied
+   particles follow. */
 static void tie_bodies(simulation *s) {
   const long step = (long)s->clock.at.step;
   for (int n = 0; n < s->tie_count; n++)

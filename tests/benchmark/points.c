@@ -12,7 +12,7 @@
 #include "tests/benchmark/measure.h"
 #include "tests/benchmark/trial.h"
 
-enum { ROUNDS = 7, STEPS = 100, SIDE = 151, TEXT = 2048 };
+enum { ROUNDS = 5, STEPS = 100, SIDE = 151, TEXT = 2048 };
 #define WIDTH     0.1 /* m */
 #define THICKNESS 1.0
 

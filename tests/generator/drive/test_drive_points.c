@@ -93,6 +93,20 @@ static void a_table_drives_a_stress(void **state) {
         0, "2 of 2");
 }
 
+/* --- flows ------------------------------------------------------------------------------------ */
+
+/* The return of a tensor whose limit rises with its own length: as that of one number. */
+static void tensors_flow_with_their_length(void **state) {
+  workplace *w = *state;
+  drive(w,
+        "&material model = '" SOURCE_DIR "/tests/generator/laws/coupled_point.plm' /\n"
+        "&simulation steps = 7 /\n&point setting = 'space' test = 'uniaxial stress' /\n"
+        "&path quantity = 'strain_xx' value = 0.02 rise = '1 s' /\n"
+        "&expect quantity = 'stress_xx' formula = 'f_y + E*H/(E + H)*(0.02 - f_y/E)'" EXACT
+        "&expect quantity = 'eps_bar' formula = '0.02 - sigma[x,x]/E'" EXACT,
+        0, "2 of 2");
+}
+
 /* --- rates ------------------------------------------------------------------------------------ */
 
 static const char kelvin_law[] =
@@ -337,6 +351,7 @@ static void results_can_be_read(void **state) {
 int main(void) {
 #define T(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
   const struct CMUnitTest tests[] = {
+      T(tensors_flow_with_their_length),
       T(hooke_in_every_test),
       T(strains_and_stresses_mix),
       T(a_table_drives_a_stress),

@@ -1,5 +1,5 @@
-/* A deck of a lattice between two meshes, wrong in one place at a time, and the exact text that a user
-   sees: bad_ties/strip.nml, and a text for each fault. */
+/* A deck of a lattice between two meshes, wrong in one place at a time, and the exact text that a
+   user sees: bad_ties/strip.nml, and a text for each fault. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
@@ -38,6 +38,14 @@ static const fault faults[] = {
      "name = 'end'  lattice = 'core'  shape = 'rectangle'  corner = '-1 mm', 0  size = '2 mm', '40 "
      "mm' "
      "/\n&drive   region = 'end'  component = 'x' velocity = 1",
+     false},
+    {"loaded",
+     "name = 'end'  lattice = 'left'  shape = 'rectangle'  corner = '-41 mm', 0  size = '2 mm', "
+     "'40 mm' "
+     "/\n&support   region = 'end'  fix = 'x', 'y'",
+     "name = 'end'  lattice = 'core'  shape = 'rectangle'  corner = '-1 mm', 0  size = '2 mm', '40 "
+     "mm' "
+     "/\n&force   region = 'end'  component = 'x' total = 1",
      false},
     {"thinner", "thickness = '10 mm'  rotation", "thickness = '12 mm'  rotation", true},
     {"plane_strain", "'10 mm'  rotation", "'10 mm'  setting = 'plane_strain'  rotation", true},

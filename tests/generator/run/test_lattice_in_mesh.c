@@ -1,5 +1,5 @@
-/* A lattice tied to meshes on either side: a uniform strain and a rigid turn through the edge, what it
-   throws back of a pulse, momentum, energies, the stable step, the same bits. */
+/* A lattice tied to meshes on either side: a uniform strain and a rigid turn through the edge, what
+   it throws back of a pulse, momentum, energies, the stable step, the same bits. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
@@ -99,7 +99,8 @@ static void particles_and_bonds_are_sorted(void **state) {
   deck_case_close(&c);
 }
 
-/* Of each direction in turn, all bonds by halves: half of what the lattice's bonds exert and store. */
+/* Of each direction in turn, all bonds by halves: half of what the lattice's bonds exert and store.
+   */
 static void halves_are_half_of_a_bond(void **state) {
   (void)state;
   deck_case c;
@@ -171,7 +172,8 @@ static void strain_all(const deck_case *c, double a[2][2]) {
   }
 }
 
-/* Something lies around the particle on all sides, so that nothing should act on it: in y, and in x. */
+/* Something lies around the particle on all sides, so that nothing should act on it: in y, and in
+   x. */
 static bool is_inside(const strip *s, int number, double x, double y) {
   const double away = 1.01 * (number == CORE ? spacing : fmax(s->cell, spacing));
   if (y < away || y > s->height - away) return false;
@@ -253,8 +255,8 @@ static void a_rigid_turn_asks_nothing_of_the_mesh(void **state) {
 
 /* --- waves ------------------------------------------------------------------------------------ */
 
-/* One raised cosine as long as `length`, from the left. Of a strip with lattice what differs from one that
-   is mesh alone, at the middle of the left mesh, over the largest of the pulse. */
+/* One raised cosine as long as `length`, from the left. Of a strip with lattice what differs from
+   one that is mesh alone, at the middle of the left mesh, over the largest of the pulse. */
 #define PULSE                                                                                      \
   "&simulation end_time = '130 us' step = '0.25 us' threads = 2 /\n"                               \
   "&output frames = 0 energy = F sample = '0.25 us' /\n"                                           \
@@ -328,8 +330,8 @@ static void open_flying(deck_case *c, const strip *s, double us, double safety, 
   "model = 'mplm_bilinear' E = 30e9 nu = 0.2 S_t = 1e-4 zeta = 0.05 alpha1 = 0.13 alpha2 = 20 "    \
   "alpha3 = 415 beta = 0.1 rate_0 = 10"
 
-/* Momenta of all, and angular momentum about the origin, of places at the instant and velocities half a
-   step before. */
+/* Momenta of all, and angular momentum about the origin, of places at the instant and velocities
+   half a step before. */
 static double momenta_of(const deck_case *c, double sum[3]) {
   double scale = 0;
   sum[0] = sum[1] = sum[2] = 0;
@@ -374,8 +376,8 @@ static void momentum_is_kept(void **state) {
   assert_true(lost[0] < 1e-6 && lost[1] < 0.2 * lost[0]);
 }
 
-/* All that the ledger has; with the step's square it closes better, where bonds break with the step. What ties
-   give and take goes out. */
+/* All that the ledger has; with the step's square it closes better, where bonds break with the
+   step. What ties give and take goes out. */
 static void energies_balance(void **state) {
   (void)state;
   static const struct {

@@ -11,6 +11,7 @@
 #include "runtime/base/random_number.h"
 #include "runtime/continuum/node_matrix.h"
 #include "runtime/kernel.h"
+#include "runtime/mesh/cell_lists.h"
 
 enum { MIXED = 34 }; /* triangles of 3 nodes, and quadrilaterals */
 

@@ -383,6 +383,32 @@ static void stresses_are_of_both_sides(void **state) {
   }
 }
 
+/* Hooke's law that breaks down. */
+static void poisoned_step(const pl_law *law, const double *uniforms, const pl_points *p) {
+  hooke_step(law, uniforms, p);
+  for (long q = 0; q < p->count; q++)
+    if (p->strain[0][q] > 1e-5) p->stress[0][q] = NAN;
+}
+
+static void a_bad_point_is_of_its_law(void **state) {
+  (void)state;
+  pl_law poisoned = bent;
+  poisoned.point_step = poisoned_step;
+  const pl_law *const laws[] = {&bent, &hooke_law, &poisoned};
+  laws_run c;
+  laws_open(&c, laws,
+            RUN FREE HOOKE "&material mesh = 'plate' region = 'right' model = 'hooke' nu = 0.3 /\n"
+                           "&material mesh = 'plate' region = 'disc' model = 'hooke' nu = 0.3 /\n");
+  assert_non_null(c.r.simulation);
+  assert_int_equal(small_go(&c.r), STEP_BAD);
+  const bad_state bad = simulation_bad(c.r.simulation);
+  assert_int_equal(bad.interaction, 2);
+  assert_non_null(bad.point);
+  assert_true(hypot(bad.point->at[0] - 0.1, bad.point->at[1] - 0.05) < 0.03);
+  assert_true(isnan(bad.point->stress[0]) && bad.point->strain[0] > 1e-5);
+  small_close(&c.r);
+}
+
 /* --- cracks ----------------------------------------------------------------------------------- */
 
 #define CRACKED                                                                                    \
@@ -449,6 +475,7 @@ int main(void) {
                                      cmocka_unit_test(a_resumed_run_is_the_same),
                                      cmocka_unit_test(nodes_show_their_laws),
                                      cmocka_unit_test(stresses_are_of_both_sides),
+                                     cmocka_unit_test(a_bad_point_is_of_its_law),
                                      cmocka_unit_test(a_crack_runs_beside_another_law),
                                      cmocka_unit_test(cracks_want_linear_laws)};
   return cmocka_run_group_tests(tests, set_up, NULL);

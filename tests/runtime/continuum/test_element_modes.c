@@ -15,7 +15,9 @@
 #include "mesh_cases.h"
 #include "runtime/base/random_number.h"
 #include "runtime/continuum/cells.h"
+#include "runtime/continuum/node_matrix.h"
 #include "runtime/continuum/point_forces.h"
+#include "runtime/mesh/cell_lists.h"
 #include "runtime/mesh/element_modes.h"
 #include "runtime/simulation/simulation_save.h"
 #include "softening_law.h"
@@ -140,6 +142,76 @@ static void both_ways_agree(void **state) {
     assert_true(fabs(stored - half_work) < 1e-12 * half_work);
     close_both(&b);
   }
+}
+
+/* The cells of a grid as lists. */
+static void open_listed(mesh *m, const mesh *grid) {
+  const int nodes = mesh_node_count(grid), count = mesh_cell_count(grid);
+  double(*at)[2] = must_calloc((size_t)nodes, sizeof *at);
+  unsigned char *of_cell = must_calloc((size_t)count, 1);
+  cell_nodes *cell = must_calloc((size_t)count, sizeof *cell);
+  for (int n = 0; n < nodes; n++)
+    mesh_place(grid, n, at[n]);
+  for (int c = 0; c < count; c++) {
+    int node[ELEMENT_MOST_NODES];
+    of_cell[c] = (unsigned char)mesh_cell_nodes(grid, c, node);
+    for (int q = 0; q < of_cell[c]; q++)
+      cell[c][q] = node[q];
+  }
+  mesh_open_lists(
+      m, grid->nodes,
+      cell_lists_new(nodes, (const double(*)[2])at, count, of_cell, (const cell_nodes *)cell), 0.01,
+      0.02, 2.1);
+  memcpy(m->element_gauss, grid->element_gauss, (size_t)count);
+  memcpy(m->mean_dilatation, grid->mean_dilatation, (size_t)count);
+  free(at);
+  free(of_cell);
+  free(cell);
+}
+
+/* Of quadrilaterals in lists, whose stiffness is assembled in another way. */
+static void lists_do_as_grids(void **state) {
+  (void)state;
+  both b;
+  mesh listed;
+  integration_points points;
+  node_matrix of;
+  open_mesh(&b.m, true);
+  choose(&b.m, 2, 0);
+  open_both(&b);
+  open_listed(&listed, &b.m);
+  integration_points_open(&points, &listed);
+  node_matrix_open(&of, &listed, &points, &b.law, NULL);
+  point_forces *by_points = point_forces_new(&listed, NULL, &points, &bent, values, 1, true);
+  double *f[2], *g[2];
+  for (int d = 0; d < 2; d++) {
+    f[d] = pool_doubles(b.memory, b.K.layout.size);
+    g[d] = pool_doubles(b.memory, b.K.layout.size);
+    for (int n = 0; n < mesh_node_count(&b.m); n++)
+      b.u[d][node_layout_at(&b.K.layout, n)] =
+          1e-4 * (random_unit(random_mix((uint64_t)(2 * n + d))) - 0.5);
+  }
+  const double *const u[2] = {b.u[0], b.u[1]};
+  const point_motion at = {u, u, 0, 1};
+  find_both(&b);
+  node_matrix_multiply(&of, u, f, 0, listed.nodes[1]);
+  point_forces_find(by_points, 0, 0, listed.nodes[1], &at, false);
+  for (int row = 0; row < listed.nodes[1]; row++)
+    point_forces_take(by_points, row, false, g);
+  double most = 0;
+  for (int n = 0; n < mesh_node_count(&b.m); n++)
+    for (int d = 0; d < 2; d++) {
+      const long site = node_layout_at(&b.K.layout, n);
+      most = fmax(most, fabs(f[d][site] - b.by_stencil[d][site]));
+      most = fmax(most, fabs(g[d][site] - b.by_stencil[d][site]));
+    }
+  assert_true(by_points->mean != NULL);
+  assert_true(most <= 1e-10 * largest(&b, b.by_stencil, false));
+  point_forces_free(by_points);
+  node_matrix_close(&of);
+  integration_points_close(&points);
+  mesh_close(&listed);
+  close_both(&b);
 }
 
 /* A linear field leaves the nodes inside alone: the patch test. */
@@ -435,7 +507,8 @@ static void what_makes_no_sense_is_refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(both_ways_agree),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(lists_do_as_grids),
+                                     cmocka_unit_test(both_ways_agree),
                                      cmocka_unit_test(linear_fields_are_exact),
                                      cmocka_unit_test(only_rigid_motions_are_free),
                                      cmocka_unit_test(a_square_bends_as_a_beam),

@@ -131,6 +131,28 @@ static void the_outline_is_what_one_cell_has_alone(void **state) {
   free(sides);
 }
 
+/* Triangles have their last corner twice. */
+static void triangles_are_filled_and_outlined(void **state) {
+  (void)state;
+  small_plot p;
+  long count;
+  begin(&p);
+  const int32_t two[] = {0, 1, ALONG + 1, ALONG + 1, 0, ALONG + 1, ALONG, ALONG};
+  memcpy(p.cells, two, sizeof two);
+  p.mesh.cell_count = 2;
+  for (int n = 0; n < NODES; n++) {
+    p.moved[2 * n] += 0.1 * p.reference[2 * n + 1];
+    p.values[n] = 3 * p.reference[2 * n] - p.reference[2 * n + 1];
+  }
+  for (int whole = 1; whole <= 4; whole++) {
+    seen s = {.area = 0};
+    plot_mesh_parts(&p.mesh, &p.view, whole, 7, look, &s);
+    assert_true(fabs(s.area - 0.125) < 1e-15 && s.worst < 1e-14);
+  }
+  free(plot_mesh_outline(&p.mesh, &count));
+  assert_int_equal(count, 4);
+}
+
 static void levels_are_round(void **state) {
   (void)state;
   double levels[CONTOURS_MOST];
@@ -178,6 +200,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(parts_are_the_mesh_and_linear_fields_exact),
                                      cmocka_unit_test(a_crack_keeps_its_sides_apart),
                                      cmocka_unit_test(the_outline_is_what_one_cell_has_alone),
+                                     cmocka_unit_test(triangles_are_filled_and_outlined),
                                      cmocka_unit_test(levels_are_round),
                                      cmocka_unit_test(pixels_have_the_values_between),
                                      cmocka_unit_test(paths_need_a_result)};

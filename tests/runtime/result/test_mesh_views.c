@@ -28,7 +28,7 @@ static const double reference[2 * ALL] = {9, 9, 0, 0, 1, 0, 2, 0, 0, 1,
                                           1, 1, 2, 1, 0, 2, 1, 2, 2, 2};
 static const int32_t cells[4 * CELLS] = {0, 1, 4, 3, 1, 2, 5, 4, 3, 4, 7, 6, 4, 5, 8, 7};
 static const int32_t method[CELLS] = {1, 2, 2, 3};
-static const result_mesh plate = {"plate", 1, NODES, CELLS, 4, cells, method, 0.5};
+static const result_mesh plate = {"plate", 1, NODES, CELLS, 4, cells, method, 0.5, NULL, NULL};
 static const result_field fields[] = {{"displacement", "m", NULL, 2, ALL, "other", "displacement"},
                                       {"slit/points", "m", NULL, 2, MOST, "path", "its points"}};
 static const result_crack cracks[] = {{"slit/points", "plate"}};
@@ -98,6 +98,33 @@ static void cells_that_a_crack_crosses_are_left_out(void **state) {
   v = views(&h, points, 0); /* nothing is known of cracks */
   assert_int_equal(v.sets[0].count, CELLS);
   close_views(&v);
+}
+
+/* Of a file: a triangle, a quadrilateral, a triangle of 6 nodes; and triangles alone. */
+static void cells_of_several_kinds(void **state) {
+  (void)state;
+  static const int32_t several[] = {0, 1, 3, -1, -1, -1, 1, 2, 5, 4, -1, -1, 3, 5, 8, 4, 7, 6},
+                       alike[] = {0, 1, 3, 1, 4, 3};
+  static const result_mesh mixed = {"plate", 1, NODES, 3, 6, several, method, 0.5, NULL, NULL},
+                           triangles = {"plate", 1, NODES, 2, 3, alike, method, 0.5, NULL, NULL};
+  static const unsigned char nodes[] = {3, 4, 6};
+  result_header h = header("m.h5");
+  mesh_views v = {.path_count = 0};
+  h.meshes = &mixed;
+  mesh_views_find(&v, &h, 1);
+  assert_int_equal(v.sets[0].count, 3);
+  assert_int_equal(v.sets[0].corner_count, 13);
+  assert_int_equal(v.sets[0].alike, 0);
+  assert_memory_equal(v.sets[0].nodes, nodes, sizeof nodes);
+  for (int k = 0, at = 0; k < 18; k++)
+    if (several[k] >= 0) assert_int_equal(v.sets[0].corners[at++], 1 + several[k]);
+  mesh_views_free(&v);
+  v = (mesh_views){.path_count = 0};
+  h.meshes = &triangles;
+  mesh_views_find(&v, &h, 1);
+  assert_int_equal(v.sets[0].alike, 3);
+  assert_int_equal(v.sets[0].corner_count, 6);
+  mesh_views_free(&v);
 }
 
 /* Of a node the first bit is of the cell that begins with it. */
@@ -219,7 +246,7 @@ static void the_sidecar_has_cells_and_cracks_in_every_frame(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(cells_that_a_crack_crosses_are_left_out),
-      cmocka_unit_test(cells_that_have_died_are_left_out),
+      cmocka_unit_test(cells_of_several_kinds), cmocka_unit_test(cells_that_have_died_are_left_out),
       cmocka_unit_test(what_is_written_is_read_back),
       cmocka_unit_test(the_sidecar_has_cells_and_cracks_in_every_frame)};
   return cmocka_run_group_tests(tests, NULL, NULL);

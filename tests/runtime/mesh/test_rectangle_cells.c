@@ -1,0 +1,109 @@
+/* Cells by their edges: strains of a field that is bilinear, work of forces, cells beside the last. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "runtime/kernel.h"
+#include "runtime/mesh/rectangle_cells.h"
+
+enum { CELLS = 2 * PL_LANES + 3, GROUPS = 3, STRIDE = 4 * PL_LANES, POINTS = 4 * PL_LANES };
+
+static const double wide = 0.3, high = 0.2, root = 0.57735026918962576451;
+
+static double xi_of(int k) {
+  return k % 2 ? 1 : -1;
+}
+static double eta_of(int k) {
+  return k / 2 ? 1 : -1;
+}
+
+/* Shape functions (1 + xi_n xi)(1 + eta_n eta)/4 (Hughes 1987, 3.2). */
+static void slopes_at_points(double slope[4][4][2]) {
+  for (int p = 0; p < 4; p++)
+    for (int n = 0; n < 4; n++) {
+      slope[p][n][0] = xi_of(n) * (1 + eta_of(n) * root * eta_of(p)) / (2 * wide);
+      slope[p][n][1] = eta_of(n) * (1 + xi_of(n) * root * xi_of(p)) / (2 * high);
+    }
+}
+
+static rectangle_slopes slopes(void) {
+  double slope[4][4][2];
+  rectangle_slopes r;
+  slopes_at_points(slope);
+  assert_true(rectangle_slopes_find(&r, (const double(*)[4][2])slope, 1e-12));
+  return r;
+}
+
+/* u_x = x y, u_y = 2 x - 3 y + x y: eps_xx = y, eps_yy = x - 3, eps_xy = (x + 2 + y)/2. */
+static void strains_are_those_of_the_field(void **state) {
+  (void)state;
+  const rectangle_slopes r = slopes();
+  double plane[2][2 * STRIDE], strain[3][POINTS];
+  for (int j = 0; j < 2; j++)
+    for (int i = 0; i < STRIDE; i++) {
+      const double x = i * wide, y = j * high;
+      plane[0][j * STRIDE + i] = x * y;
+      plane[1][j * STRIDE + i] = 2 * x - 3 * y + x * y;
+    }
+  rectangle_cells_strain(&r, (const double *const[]){plane[0], plane[1]}, STRIDE,
+                         (double *const[]){strain[0], strain[1], strain[2]});
+  for (int p = 0; p < 4; p++)
+    for (int lane = 0; lane < PL_LANES; lane++) {
+      const double x = wide * (lane + 0.5 * (1 + root * xi_of(p))),
+                   y = high * 0.5 * (1 + root * eta_of(p));
+      const int at = p * PL_LANES + lane;
+      assert_true(fabs(strain[0][at] - y) < 1e-13);
+      assert_true(fabs(strain[1][at] - (x - 3)) < 1e-13);
+      assert_true(fabs(strain[2][at] - 0.5 * (x + 2 + y)) < 1e-13);
+    }
+}
+
+/* Each node has sum B^T stress volume over the cells that are there. */
+static void forces_are_those_of_the_stress(void **state) {
+  (void)state;
+  const rectangle_slopes r = slopes();
+  const double volume = 0.7;
+  double slope[4][4][2], stress[3][GROUPS * POINTS], force[2][2 * STRIDE], right[2][2 * STRIDE];
+  slopes_at_points(slope);
+  for (int c = 0; c < 3; c++)
+    for (int k = 0; k < GROUPS * POINTS; k++)
+      stress[c][k] = sin(1 + 0.7 * k + 2 * c);
+  for (int k = 0; k < 2 * STRIDE; k++)
+    force[0][k] = force[1][k] = right[0][k] = right[1][k] = 0.01 * k;
+  for (int cell = 0; cell < CELLS; cell++)
+    for (int p = 0; p < 4; p++)
+      for (int n = 0; n < 4; n++) {
+        const int k = cell / PL_LANES * POINTS + p * PL_LANES + cell % PL_LANES,
+                  at = n / 2 * STRIDE + cell + n % 2;
+        const double *s = slope[p][n];
+        right[0][at] += volume * (s[0] * stress[0][k] + s[1] * stress[2][k]);
+        right[1][at] += volume * (s[1] * stress[1][k] + s[0] * stress[2][k]);
+      }
+  rectangle_cells_push(&r, CELLS, (const double *const[]){stress[0], stress[1], stress[2]}, volume,
+                       (double *const[]){force[0], force[1]}, STRIDE);
+  for (int d = 0; d < 2; d++)
+    for (int k = 0; k < 2 * STRIDE; k++)
+      assert_true(fabs(force[d][k] - right[d][k]) < 1e-12);
+}
+
+static void other_slopes_are_no_rectangle(void **state) {
+  (void)state;
+  for (int at = 0; at < 32; at++) {
+    double slope[4][4][2];
+    rectangle_slopes r;
+    slopes_at_points(slope);
+    slope[at / 8][at / 2 % 4][at % 2] += 1e-6;
+    assert_false(rectangle_slopes_find(&r, (const double(*)[4][2])slope, 1e-9));
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(strains_are_those_of_the_field),
+                                     cmocka_unit_test(forces_are_those_of_the_stress),
+                                     cmocka_unit_test(other_slopes_are_no_rectangle)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
