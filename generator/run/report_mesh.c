@@ -47,7 +47,10 @@ static void announce_lists(const cells *c, const deck_mesh *k) {
              n == 4   ? "quadrilaterals"
              : n == 3 ? "triangles of 3 nodes"
                       : "triangles of 6 nodes");
-  printf(", %.6g mm between neighbours at least; %d points\n", 1e3 * k->spacing, c->points.count);
+  printf(", %.6g mm between neighbours at least; %d points", 1e3 * k->spacing, c->points.count);
+  if (count[4] < l->count && k->dilatation == DILATATION_MEAN)
+    fputs("; quadrilaterals alone take the mean dilatation", stdout);
+  putchar('\n');
 }
 
 /* "mesh       beam: 74 x 25 nodes, 3.13151 x 3.175 mm apart, 1752 cells: ...; 24048 points" */
@@ -138,6 +141,13 @@ void announce_mesh(const run *r, int lattice) {
       announce_crack(r, c->tips, &k->cracks[n]);
 }
 
+static long count_cells(const cells *c) {
+  long all = 0;
+  for (int cell = 0; cell < mesh_cell_count(&c->mesh); cell++)
+    all += c->mesh.cell[cell] != CELL_ABSENT;
+  return all;
+}
+
 /* "cells      plate: 12 of 400 have died, the first at t = 0.31 ms" */
 void conclude_deaths(const run *r) {
   for (int b = 0; b < simulation_bodies(r->simulation); b++) {
@@ -146,11 +156,25 @@ void conclude_deaths(const run *r) {
     char when[MOMENT_TEXT];
     const long died = c && cells_can_die(c) ? cells_deaths(c, &first) : 0;
     if (died == 0) continue;
-    long all = 0;
-    for (int cell = 0; cell < mesh_cell_count(&c->mesh); cell++)
-      all += c->mesh.cell[cell] != CELL_ABSENT;
-    printf("  cells      %s: %ld of %ld have died", r->deck->lattices[b].name, died, all);
+    printf("  cells      %s: %ld of %ld have died", r->deck->lattices[b].name, died,
+           count_cells(c));
     if (isfinite(first)) printf(", the first at %s", moment(r, first, when));
     putchar('\n');
   }
+}
+
+void put_deaths(json *w, const run *r) {
+  json_put_array(w, "deaths");
+  for (int b = 0; b < simulation_bodies(r->simulation); b++) {
+    const cells *c = simulation_cells(r->simulation, b);
+    double first;
+    if (!c || !cells_can_die(c)) continue;
+    json_object(w);
+    json_put_text(w, "mesh", r->deck->lattices[b].name);
+    json_put_integer(w, "cells", count_cells(c));
+    json_put_integer(w, "died", cells_deaths(c, &first));
+    json_put_number(w, "first_time", first);
+    json_object_end(w);
+  }
+  json_array_end(w);
 }

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "generator/run/bad_bond.h"
+#include "generator/run/report_mesh.h"
 #include "generator/run/run_cracks.h"
 
 static double last_of(const double *values, long samples) {
@@ -89,5 +90,6 @@ void put_run(json *w, const run *r) {
   put_energy(w, r, samples);
   put_monitors(w, r, samples);
   put_cracks(w, r);
+  put_deaths(w, r);
   put_files(w, r);
 }

@@ -172,7 +172,10 @@ void cells_take_laws(cells *c, const cells_law *laws) {
   for (int n = 0; n < c->where.count; n++)
     c->stiffness[n] = tangent_at_rest(c, n, false);
   find_linear(c);
-  if (c->has_matrix) node_matrix_open(&c->matrix, &c->mesh, &c->points, c->stiffness, c->linear);
+  if (c->has_matrix) {
+    node_matrix_open(&c->matrix, &c->mesh, &c->points, c->stiffness, c->linear);
+    node_matrix_resist_hourglass(&c->matrix, &c->mesh, c->stiffness, c->linear);
+  }
   if (!c->has_stencil) return;
   node_stencil_open(&c->stencil, &c->mesh, &c->points, c->stiffness, c->linear);
   node_stencil_resist_hourglass(&c->stencil);
@@ -215,12 +218,14 @@ static double highest(const cells *c, const plane_stiffness *laws, const double 
   if (c->mesh.lists) {
     node_matrix of;
     node_matrix_open(&of, &c->mesh, &c->points, laws, c->where.of_cell);
+    if (laws == c->stiffness) /* rates are not resisted so */
+      node_matrix_resist_hourglass(&of, &c->mesh, laws, c->where.of_cell);
     const double omega = frequency_limit_of_matrix(&of, mass, held);
     node_matrix_close(&of);
     return omega;
   }
   node_stencil_open(&k, &c->mesh, &c->points, laws, c->where.of_cell);
-  if (laws == c->stiffness) node_stencil_resist_hourglass(&k); /* rates are not resisted so */
+  if (laws == c->stiffness) node_stencil_resist_hourglass(&k);
   const double omega = frequency_limit(&k, mass, held);
   node_stencil_close(&k);
   return omega;
@@ -540,8 +545,8 @@ void cells_mean_dilatation(const cells *c, int cell, const double *const displac
   strain[1] += shift;
 }
 
-/* Of a linear law a point remembers nothing: asked for, it is looked at. */
-static double output_at(const cells_part *of, int number, int point) {
+/* Of a linear law a point remembers nothing: asked for, it is looked at. J/m^3 stored, then outputs. */
+static const double *look_at(const cells_part *of, int point) {
   const cells *c = of->engine->of;
   const double *at = c->points.at[point];
   point_shape s;
@@ -552,7 +557,7 @@ static double output_at(const cells_part *of, int number, int point) {
   mesh_strain(gradient, strain);
   cells_mean_dilatation(c, c->points.cell[point], motion_of(of->state).displacement, strain);
   point_law_observe(of->one, strain, mesh_cell_size(&c->mesh, c->points.cell[point]), of->observed);
-  return of->observed[1 + number];
+  return of->observed;
 }
 
 /* Means over the points of the law's cells around the nodes. */
@@ -564,7 +569,7 @@ static void show_linear(const cells_part *of, int number, double *values) {
   for (int n = 0; n < c->points.count; n++) {
     int corner[ELEMENT_MOST_NODES];
     if (cell_laws_at(&c->where, c->points.cell[n]) != of->number) continue;
-    const double value = output_at(of, number, n);
+    const double value = look_at(of, n)[1 + number];
     const int corners = mesh_cell_nodes(&c->mesh, c->points.cell[n], corner);
     for (int k = 0; k < corners; k++) {
       const long site = node_layout_at(&l, corner[k]);
@@ -822,6 +827,40 @@ long cells_deaths(const cells *c, double *first) {
   return count;
 }
 
+/* J, in its hourglass modes. */
+static double stored_in_modes(const cells_part *of, int cell) {
+  const cells *c = of->engine->of;
+  const double *const *u = motion_of(of->state).displacement;
+  int node[ELEMENT_MOST_NODES];
+  double gamma[4], sum = 0;
+  const double part = element_hourglass(&c->mesh, cell, gamma);
+  if (!(part > 0)) return 0;
+  if (c->mesh.lists)
+    mesh_cell_nodes(&c->mesh, cell, node);
+  else
+    mesh_corners(&c->mesh, cell, node);
+  for (int d = 0; d < 2; d++) {
+    double mode = 0;
+    for (int q = 0; q < 4; q++)
+      mode += gamma[q] * u[d][cells_site(c, node[q])];
+    sum += mode * mode;
+  }
+  return 0.5 * c->mesh.thickness * part * element_strip_stiffness(c->stiffness[of->number].D) * sum;
+}
+
+/* Of a linear law beside others. */
+static double stored_in_its_cells(const cells_part *of) {
+  const cells *c = of->engine->of;
+  double sum = 0;
+  for (int cell = 0; cell < mesh_cell_count(&c->mesh); cell++) {
+    if (cell_laws_at(&c->where, cell) != of->number) continue;
+    for (int n = c->points.first[cell]; n < c->points.first[cell + 1]; n++)
+      sum += c->mesh.thickness * c->points.area[n] * look_at(of, n)[0];
+    sum += stored_in_modes(of, cell);
+  }
+  return sum;
+}
+
 double cells_stored_by(const sweep *law) {
   const cells_part *part = law->engine.own;
   const cells_engine *e = part->engine;
@@ -833,9 +872,10 @@ double cells_stored_by(const sweep *law) {
   if (p) return sum;
   for (int n = 0; n < e->of->where.count; n++)
     linear += e->of->laws[n].law->linear;
+  if (linear > 1) return stored_in_its_cells(part);
   for (int row = 0; row < law->lattice->row_count; row++)
     sum += stored_in_row(e->parts[0].state, row);
-  return linear == 1 ? sum : NAN;
+  return sum;
 }
 
 bool cells_states_near(const cells *c, const double at[2], double *field) {

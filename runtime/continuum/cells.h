@@ -99,8 +99,7 @@ bool cells_mean_stress(const cells *c, int law, int node, double stress[4]);
 bool cells_can_die(const cells *c);
 bool cells_dead(const cells *c, int cell);
 long cells_deaths(const cells *c, double *first);
-/* J stored in the cells of a law in the state observed last, where it has others beside it; of one of
-   several linear laws it is not known: NaN. */
+/* J stored in the cells of a law in the state observed last, where it has others beside it. */
 double cells_stored_by(const sweep *law);
 /* The law of a cell. */
 static inline const cells_law *cells_law_at(const cells *c, int cell) {

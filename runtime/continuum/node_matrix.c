@@ -110,6 +110,28 @@ void node_matrix_open(node_matrix *k, const mesh *m, const integration_points *p
   }
 }
 
+static void resist_in_cell(node_matrix *k, const mesh *m, const plane_stiffness *law, int cell) {
+  double gamma[4];
+  const double part = element_hourglass(m, cell, gamma);
+  const int32_t *node = m->lists->cell[cell];
+  if (!(part > 0)) return;
+  const double C = m->thickness * part * element_strip_stiffness(law->D);
+  for (int a = 0; a < 4; a++)
+    for (int b = 0; b < 4; b++) {
+      double *block = block_of(k, node[a], node[b]);
+      block[0] += C * gamma[a] * gamma[b];
+      block[3] += C * gamma[a] * gamma[b];
+    }
+}
+
+void node_matrix_resist_hourglass(node_matrix *k, const mesh *m, const plane_stiffness *laws,
+                                  const unsigned char *law_of_cell) {
+  for (int cell = 0; cell < mesh_cell_count(m); cell++) {
+    const int number = law_of_cell ? law_of_cell[cell] : 0;
+    if (number != NO_LINEAR_LAW) resist_in_cell(k, m, &laws[number], cell);
+  }
+}
+
 void node_matrix_close(node_matrix *k) {
   free(k->first);
   free(k->other);

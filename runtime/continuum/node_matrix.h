@@ -16,6 +16,9 @@ typedef struct node_matrix {
 /* K = t sum B^T D B over the points; laws as in node_stencil.h. Nothing is kept of what is pointed at. */
 void node_matrix_open(node_matrix *k, const mesh *m, const integration_points *p,
                       const plane_stiffness *laws, const unsigned char *law_of_cell);
+/* Adds what quadrilaterals resist their hourglass modes by (element_modes.h). */
+void node_matrix_resist_hourglass(node_matrix *k, const mesh *m, const plane_stiffness *laws,
+                                  const unsigned char *law_of_cell);
 void node_matrix_close(node_matrix *k);
 
 /* f = K u for the rows of nodes from <= j < to. u, f: [2][layout.size]. */

@@ -404,18 +404,6 @@ static void push(const point_forces *p, const strip *s, const point_scratch *own
   (p->mean ? push_mean : push_even)(p, s, own, stress);
 }
 
-/* gamma . u of the cells of a group along an axis. */
-static void find_hourglass(const point_forces *p, const strip *s, int g, const double *nodes,
-                           double q[PL_LANES]) {
-  const node_layout *l = &p->strips.layout;
-  const double *gamma = p->hourglass + (long)g * HOURGLASS * PL_LANES,
-               *at = nodes + l->origin + s->row * l->stride + p->strips.groups[g].first;
-  for (int lane = 0; lane < PL_LANES; lane++)
-    q[lane] = gamma[lane] * at[lane] + gamma[PL_LANES + lane] * at[1 + lane] +
-              gamma[2 * PL_LANES + lane] * at[l->stride + lane] +
-              gamma[3 * PL_LANES + lane] * at[l->stride + 1 + lane];
-}
-
 /* alive[PL_LANES] 0 in cells of a group that are dead by these states, else 1. */
 static void find_alive(const point_forces *p, int g, const double *fields, double alive[PL_LANES]) {
   const cell_group *group = &p->strips.groups[g];
@@ -426,37 +414,27 @@ static void find_alive(const point_forces *p, int g, const double *fields, doubl
     alive[lane] = 1 - dead[lane];
 }
 
-static void push_hourglass(const point_forces *p, const strip *s, int g, int axis,
-                           const double q[PL_LANES], const double alive[PL_LANES]) {
-  const long stride = p->strips.layout.stride;
-  const double *gamma = p->hourglass + (long)g * HOURGLASS * PL_LANES,
-               *C = gamma + CORNERS * PL_LANES;
-  double *force = cell_strips_row(&p->strips, s->row, p->pushed[axis]) + p->strips.groups[g].first;
-  for (int corner = 0; corner < CORNERS; corner++) {
-    double *to = force + corner / 2 * stride + corner % 2;
-    for (int lane = 0; lane < PL_LANES; lane++)
-      to[lane] += gamma[corner * PL_LANES + lane] * (alive[lane] * C[lane] * q[lane]);
-  }
-}
-
 /* What elements resist their hourglass modes by. Of the point that each of them has, J/m^3: `stored` is
    added to; and what cells that die in this step had stored so is `lost`, with the term that is due to
    forces halfway (ledger.h). Either may be NULL. */
 static void resist_hourglass(const point_forces *p, const strip *s, const point_motion *at,
                              double *lost, double *stored) {
   for (int g = s->first; g < s->last && p->hourglass; g++) {
-    const double *C = p->hourglass + ((long)g * HOURGLASS + CORNERS) * PL_LANES;
-    const double *volume = p->strips.volume + p->strips.groups[g].at;
-    const long point = p->strips.groups[g].at - s->at;
+    const cell_group *group = &p->strips.groups[g];
+    const double *gamma = p->hourglass + (long)g * HOURGLASS * PL_LANES,
+                 *C = gamma + CORNERS * PL_LANES, *volume = p->strips.volume + group->at;
+    const long point = group->at - s->at;
     double before[PL_LANES], after[PL_LANES];
-    if (p->strips.groups[g].points > 1) continue;
+    if (!cell_strips_single(&p->strips, group)) continue;
     find_alive(p, g, p->old_field, before);
     find_alive(p, g, p->new_field, after);
     for (int axis = 0; axis < 2; axis++) {
-      double q[PL_LANES], rate[PL_LANES] = {0};
-      find_hourglass(p, s, g, at->displacement[axis], q);
-      if (lost) find_hourglass(p, s, g, at->velocity[axis], rate);
-      push_hourglass(p, s, g, axis, q, after);
+      double q[PL_LANES], rate[PL_LANES] = {0}, by[PL_LANES];
+      cell_strips_mode(&p->strips, s->row, group, gamma, at->displacement[axis], q);
+      if (lost) cell_strips_mode(&p->strips, s->row, group, gamma, at->velocity[axis], rate);
+      for (int lane = 0; lane < PL_LANES; lane++)
+        by[lane] = after[lane] * C[lane] * q[lane];
+      cell_strips_push_mode(&p->strips, s->row, group, gamma, by, p->pushed[axis]);
       for (int lane = 0; lane < PL_LANES && (stored || lost); lane++) {
         if (!(C[lane] > 0)) continue;
         const double half = 0.5 * C[lane] * q[lane] / volume[lane];

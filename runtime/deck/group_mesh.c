@@ -291,9 +291,8 @@ static void check_elements_of(deck_reader *r, const namelist_group *from, const 
 /* A mesh of a file has what stands there, and finite elements. */
 static void refuse_keys_of_grids(deck_reader *r, const namelist_group *from,
                                  const deck_mesh *item) {
-  static const char *const others[] = {"corner",          "size",     "corners", "nodes",
-                                       "support",         "parts",    "basis",   "ramp",
-                                       "enriched_radius", "hourglass"};
+  static const char *const others[] = {"corner", "size",  "corners", "nodes",          "support",
+                                       "parts",  "basis", "ramp",    "enriched_radius"};
   for (size_t k = 0; k < sizeof others / sizeof *others; k++)
     deck_refuse_both(r, from, "file", others[k]);
   if (!namelist_find(from, "method") || item->method == MESH_FINITE_ELEMENTS) return;
@@ -301,6 +300,26 @@ static void refuse_keys_of_grids(deck_reader *r, const namelist_group *from,
               "element-free nodes stand on a rectangle: the mesh of a `file` is one of finite "
               "elements");
   diag_hint(r->d, "leave `method` away");
+}
+
+/* What quadrilaterals alone have, of a file without any. */
+static void refuse_keys_of_quadrilaterals(deck_reader *r, const deck_mesh *item) {
+  const gmsh_mesh *m = item->gmsh;
+  int count = 0;
+  for (int c = 0; c < m->cell_count; c++)
+    count += m->nodes[c] == 4;
+  if (count > 0) return;
+  if (item->dilatation == DILATATION_MEAN) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "dilatation"),
+                "quadrilaterals alone take the mean dilatation, and `%s` has triangles only",
+                item->file);
+    diag_hint(r->d, "leave it out, with triangles of 6 nodes (gmsh -order 2), which do not lock; "
+                    "or draw quadrilaterals: `Recombine Surface{:};`");
+  }
+  if (!(item->hourglass > 0)) return;
+  diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "hourglass"),
+              "triangles have no hourglass modes, and `%s` has nothing else", item->file);
+  diag_hint(r->d, "leave it out");
 }
 
 static double unit_of(const char *name) {
@@ -368,6 +387,7 @@ static void take_file(deck_reader *r, const namelist_group *from, deck_mesh *ite
   item->gmsh = gmsh_mesh_read(r->memory, deck_file_path(r->k->name, item->file),
                               unit_of(item->unit), deck_where(&item->item, "file"), r->d);
   if (!item->gmsh) return;
+  refuse_keys_of_quadrilaterals(r, item);
   find_box(item->gmsh, NULL, item->gmsh->node_count, item->corner, item->size);
   item->spacing = item->gmsh->least;
   item->origin[0] = item->corner[0];

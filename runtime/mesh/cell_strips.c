@@ -455,8 +455,36 @@ void cell_strips_push(const cell_strips *s, int row, const cell_group *g,
     push_group(g->table, PL_LANES, traction, pushed[0] + at, pushed[1] + at);
 }
 
-double *cell_strips_row(const cell_strips *s, int row, double *pushed) {
-  return pushed + row * plane_of(s) - s->low * s->layout.stride;
+bool cell_strips_single(const cell_strips *s, const cell_group *g) {
+  return g->points == 1 && (!s->elements || s->elements->groups[g->first].nodes == 4);
+}
+
+void cell_strips_mode(const cell_strips *s, int row, const cell_group *g, const double *gamma,
+                      const double *u, double mode[PL_LANES]) {
+  if (s->elements) {
+    element_strips_mode(s->elements, g->first, gamma, u, mode);
+    return;
+  }
+  const long stride = s->layout.stride;
+  const double *at = u + s->layout.origin + row * stride + g->first;
+  for (int lane = 0; lane < PL_LANES; lane++)
+    mode[lane] = gamma[lane] * at[lane] + gamma[PL_LANES + lane] * at[1 + lane] +
+                 gamma[2 * PL_LANES + lane] * at[stride + lane] +
+                 gamma[3 * PL_LANES + lane] * at[stride + 1 + lane];
+}
+
+void cell_strips_push_mode(const cell_strips *s, int row, const cell_group *g, const double *gamma,
+                           const double by[PL_LANES], double *pushed) {
+  if (s->elements) {
+    element_strips_push_mode(s->elements, g->first, gamma, by, pushed);
+    return;
+  }
+  double *force = pushed + row * plane_of(s) - s->low * s->layout.stride + g->first;
+  for (int corner = 0; corner < 4; corner++) {
+    double *to = force + corner / 2 * s->layout.stride + corner % 2;
+    for (int lane = 0; lane < PL_LANES; lane++)
+      to[lane] += gamma[corner * PL_LANES + lane] * by[lane];
+  }
 }
 
 void cell_strips_push_even(const cell_strips *s, int row, const cell_group *g, int count,

@@ -72,9 +72,15 @@ void cell_strips_strain(const cell_strips *s, int row, const cell_group *g,
 void cell_strips_push(const cell_strips *s, int row, const cell_group *g,
                       const double *const traction[3], double *const pushed[2]);
 long cell_strips_pushed(const cell_strips *s);
-/* Where what a row of cells pushes at its lower left node stands in a plane of `pushed`, the other
-   nodes as in the layout; of a grid. */
-double *cell_strips_row(const cell_strips *s, int row, double *pushed);
+/* The part gamma of quadrilaterals of a group in their nodes' motion along an axis, m, and forces along it
+   that it adds: gamma[4][PL_LANES] in the order of element_hourglass, 0 where a cell has none; u: a
+   plane of the layout; by[PL_LANES], N; pushed: one of cell_strips_push, which comes first. */
+void cell_strips_mode(const cell_strips *s, int row, const cell_group *g, const double *gamma,
+                      const double *u, double mode[PL_LANES]);
+void cell_strips_push_mode(const cell_strips *s, int row, const cell_group *g, const double *gamma,
+                           const double by[PL_LANES], double *pushed);
+/* Whether all cells of a group are quadrilaterals with one point. */
+bool cell_strips_single(const cell_strips *s, const cell_group *g);
 /* Before a row of cells pushes. */
 void cell_strips_clear(const cell_strips *s, int row, double *const pushed[2]);
 /* N: the forces of a row of nodes, in planes of the layout; `more`: beside those that are there. */

@@ -4,9 +4,14 @@
 
 #include "dsl/base/elementary.h"
 
+/* Of lists, too, 0, 1, 3, 2 around the cell. */
 static void corners_of(const mesh *m, int cell, double at[4][2]) {
   int corner[4];
-  mesh_corners(m, cell, corner);
+  if (m->lists)
+    for (int q = 0; q < 4; q++)
+      corner[q] = m->lists->cell[cell][q < 2 ? q : 5 - q];
+  else
+    mesh_corners(m, cell, corner);
   for (int q = 0; q < 4; q++)
     mesh_place(m, corner[q], at[q]);
 }
@@ -26,10 +31,10 @@ static double of_quadrilateral(double at[4][2], double mean[4][2]) {
   return area;
 }
 
-/* At the point of an element with one, of a grid; returns the area, m^2. */
+/* At the point of an element with one; returns the area, m^2. */
 static double middle_gradient(const mesh *m, int cell, double mean[4][2]) {
   double at[4][2];
-  if (m->mapped) {
+  if (m->mapped || m->lists) {
     corners_of(m, cell, at);
     return of_quadrilateral(at, mean);
   }
@@ -69,20 +74,28 @@ void element_mean_strains(const point_shape *s, const double mean[ELEMENT_MOST_N
   }
 }
 
+static bool resists(const mesh *m, int cell) {
+  return m->hourglass[cell] > 0 && m->cell[cell] == CELL_ELEMENT && m->element_gauss[cell] == 1 &&
+         (!m->lists || m->lists->nodes[cell] == 4);
+}
+
 double element_hourglass(const mesh *m, int cell, double gamma[4]) {
   static const double h[4] = {1, -1, -1, 1};
   double at[4][2], mean[4][2], sum = 0, along[2] = {0, 0};
-  if (m->lists || !(m->hourglass[cell] > 0) || m->cell[cell] != CELL_ELEMENT ||
-      m->element_gauss[cell] != 1)
-    return 0;
+  if (!resists(m, cell)) return 0;
   const double area = middle_gradient(m, cell, mean);
   corners_of(m, cell, at);
   for (int q = 0; q < 4; q++)
-    for (int a = 0; a < 2 && m->mapped; a++) /* 0 in a rectangle */
+    for (int a = 0; a < 2 && (m->mapped || m->lists); a++) /* 0 in a rectangle */
       along[a] += h[q] * (at[q][a] - at[0][a]);
   for (int q = 0; q < 4; q++) {
     gamma[q] = 0.25 * (h[q] - along[0] * mean[q][0] - along[1] * mean[q][1]);
     sum += mean[q][0] * mean[q][0] + mean[q][1] * mean[q][1];
+  }
+  if (m->lists) {
+    const double last = gamma[2];
+    gamma[2] = gamma[3];
+    gamma[3] = last;
   }
   return 4 * m->hourglass[cell] * area * sum;
 }

@@ -21,11 +21,11 @@
 #include "runtime/mesh/mesh.h"
 #include "runtime/mesh/shape_functions.h"
 
-/* Whether the cell is an element with 2 x 2 points, or a triangle with 3, whose dilatation is the
-   mean. */
+/* Whether the cell is a quadrilateral with 2 x 2 points, whose dilatation is the mean. Triangles are never
+   so: with one point they have one dilatation anyhow, with three they do not lock. */
 static inline bool element_takes_mean(const mesh *m, int cell) {
   return m->mean_dilatation[cell] && m->cell[cell] == CELL_ELEMENT && m->element_gauss[cell] == 2 &&
-         (!m->lists || m->lists->nodes[cell] > 3);
+         (!m->lists || m->lists->nodes[cell] == 4);
 }
 /* The mean over the points of such a cell of the gradients of its nodes' functions, 1/m, in the order of
    these at every point. */
@@ -35,7 +35,8 @@ void element_mean_gradient(const mesh *m, const integration_points *p, int cell,
 void element_mean_strains(const point_shape *s, const double mean[ELEMENT_MOST_NODES][2],
                           double B[3][2 * ELEMENT_MOST_NODES]);
 
-/* Of a grid: gamma by the order of mesh_corners, and C/(t D), 1; 0 where nothing resists such motions. */
+/* gamma of a quadrilateral's nodes, in a grid by the order of mesh_corners, in lists as they stand there,
+   and C/(t D), 1; 0 where nothing resists such motions. */
 double element_hourglass(const mesh *m, int cell, double gamma[4]);
 /* D of a tangent xx, yy, xy by xx, yy, xy, Pa: the larger one of both axes. */
 double element_strip_stiffness(const double tangent[3][3]);

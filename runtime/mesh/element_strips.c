@@ -199,6 +199,22 @@ void element_strips_push(const element_strips *s, int group, const double *const
   memcpy(pushed[1] + g->slot, fy, size);
 }
 
+void element_strips_mode(const element_strips *s, int group, const double *gamma, const double *u,
+                         double mode[PL_LANES]) {
+  const int32_t *site = s->site + s->groups[group].slot;
+  for (int lane = 0; lane < PL_LANES; lane++)
+    mode[lane] = gamma[lane] * u[site[lane]] + gamma[PL_LANES + lane] * u[site[PL_LANES + lane]] +
+                 gamma[2 * PL_LANES + lane] * u[site[2 * PL_LANES + lane]] +
+                 gamma[3 * PL_LANES + lane] * u[site[3 * PL_LANES + lane]];
+}
+
+void element_strips_push_mode(const element_strips *s, int group, const double *gamma,
+                              const double by[PL_LANES], double *pushed) {
+  double *to = pushed + s->groups[group].slot;
+  for (int k = 0; k < 4 * PL_LANES; k++)
+    to[k] += gamma[k] * by[k % PL_LANES];
+}
+
 void element_strips_take(const element_strips *s, int row, double *const pushed[2], bool more,
                          double *const force[2]) {
   const node_layout *l = &s->layout;

@@ -46,6 +46,12 @@ void element_strips_strain(const element_strips *s, int group, const double *con
                            double *const strain[3]);
 void element_strips_push(const element_strips *s, int group, const double *const traction[3],
                          double *const pushed[2]);
+/* sum_q gamma_q u_q of the elements of a group of quadrilaterals, m; and what this adds to the forces that
+   the group pushes by: gamma[4][PL_LANES], 1; by[PL_LANES], N. */
+void element_strips_mode(const element_strips *s, int group, const double *gamma, const double *u,
+                         double mode[PL_LANES]);
+void element_strips_push_mode(const element_strips *s, int group, const double *gamma,
+                              const double by[PL_LANES], double *pushed);
 /* The forces of a row of nodes; `more`: beside those that are there. */
 void element_strips_take(const element_strips *s, int row, double *const pushed[2], bool more,
                          double *const force[2]);

@@ -164,24 +164,25 @@ static void open_listed(mesh *m, const mesh *grid) {
       0.02, 2.1);
   memcpy(m->element_gauss, grid->element_gauss, (size_t)count);
   memcpy(m->mean_dilatation, grid->mean_dilatation, (size_t)count);
+  memcpy(m->hourglass, grid->hourglass, (size_t)count * sizeof *m->hourglass);
   free(at);
   free(of_cell);
   free(cell);
 }
 
 /* Of quadrilaterals in lists, whose stiffness is assembled in another way. */
-static void lists_do_as_grids(void **state) {
-  (void)state;
+static void list_does_as_grid(int gauss, double hourglass) {
   both b;
   mesh listed;
   integration_points points;
   node_matrix of;
   open_mesh(&b.m, true);
-  choose(&b.m, 2, 0);
+  choose(&b.m, gauss, hourglass);
   open_both(&b);
   open_listed(&listed, &b.m);
   integration_points_open(&points, &listed);
   node_matrix_open(&of, &listed, &points, &b.law, NULL);
+  node_matrix_resist_hourglass(&of, &listed, &b.law, NULL);
   point_forces *by_points = point_forces_new(&listed, NULL, &points, &bent, values, 1, true);
   double *f[2], *g[2];
   for (int d = 0; d < 2; d++) {
@@ -195,23 +196,34 @@ static void lists_do_as_grids(void **state) {
   const point_motion at = {u, u, 0, 1};
   find_both(&b);
   node_matrix_multiply(&of, u, f, 0, listed.nodes[1]);
-  point_forces_find(by_points, 0, 0, listed.nodes[1], &at, false);
+  point_forces_find(by_points, 0, 0, listed.nodes[1], &at, true);
   for (int row = 0; row < listed.nodes[1]; row++)
     point_forces_take(by_points, row, false, g);
-  double most = 0;
+  double most = 0, half_work = 0, stored = 0;
   for (int n = 0; n < mesh_node_count(&b.m); n++)
     for (int d = 0; d < 2; d++) {
       const long site = node_layout_at(&b.K.layout, n);
       most = fmax(most, fabs(f[d][site] - b.by_stencil[d][site]));
       most = fmax(most, fabs(g[d][site] - b.by_stencil[d][site]));
+      half_work += 0.5 * u[d][site] * f[d][site];
     }
-  assert_true(by_points->mean != NULL);
+  for (int row = 0; row < by_points->strips.rows; row++)
+    stored += by_points->rows[row].stored;
+  assert_true(by_points->mean && (!(hourglass > 0) || by_points->hourglass));
   assert_true(most <= 1e-10 * largest(&b, b.by_stencil, false));
+  assert_true(fabs(stored - half_work) < 1e-12 * half_work);
   point_forces_free(by_points);
   node_matrix_close(&of);
   integration_points_close(&points);
   mesh_close(&listed);
   close_both(&b);
+}
+
+static void lists_do_as_grids(void **state) {
+  (void)state;
+  list_does_as_grid(2, 0);
+  list_does_as_grid(2, 0.05);
+  list_does_as_grid(1, 0.05);
 }
 
 /* A linear field leaves the nodes inside alone: the patch test. */
@@ -293,11 +305,44 @@ static int free_motions_of(int gauss, double hourglass) {
   return free_motions(a);
 }
 
+/* The same of a single cell in a list, which begins with any of its corners. */
+static int free_motions_in_a_list(int first, double hourglass) {
+  static const double around[4][2] = {{0, 0}, {1, 0.1}, {1.2, 0.9}, {-0.1, 0.7}};
+  double at[4][2], a[8][8] = {{0}};
+  const unsigned char nodes = 4;
+  const cell_nodes cell = {0, 1, 2, 3};
+  const plane_stiffness law = isotropic(E, nu, true);
+  mesh m;
+  integration_points points;
+  node_matrix k;
+  for (int q = 0; q < 4; q++)
+    memcpy(at[q], around[(first + q) % 4], sizeof at[q]);
+  mesh_open_lists(&m, (int[2]){PL_LANES, 2},
+                  cell_lists_new(4, (const double(*)[2])at, 1, &nodes, &cell), 0.7, 0.5, 1);
+  m.element_gauss[0] = 1;
+  m.hourglass[0] = hourglass;
+  integration_points_open(&points, &m);
+  node_matrix_open(&k, &m, &points, &law, NULL);
+  node_matrix_resist_hourglass(&k, &m, &law, NULL);
+  for (int i = 0; i < 8; i++)
+    for (int32_t e = k.first[i / 2]; e < k.first[i / 2 + 1]; e++)
+      for (int d = 0; d < 2; d++)
+        a[i][2 * k.other[e] + d] = k.block[e][2 * (i % 2) + d];
+  node_matrix_close(&k);
+  integration_points_close(&points);
+  mesh_close(&m);
+  return free_motions(a);
+}
+
 static void only_rigid_motions_are_free(void **state) {
   (void)state;
   assert_int_equal(free_motions_of(1, 0), 5);
   assert_int_equal(free_motions_of(1, 0.05), 3);
   assert_int_equal(free_motions_of(2, 0), 3); /* with the mean dilatation */
+  for (int first = 0; first < 4; first++) {
+    assert_int_equal(free_motions_in_a_list(first, 0), 5);
+    assert_int_equal(free_motions_in_a_list(first, 0.05), 3);
+  }
 }
 
 /* A square element that bends: with 1/6 it has the energy of a beam, E I kappa^2 l/2. */

@@ -134,13 +134,21 @@ static void take_means(solved *s) {
   node_matrix_open(&s->K, &s->of.m, &s->of.points, &s->law, NULL);
 }
 
+/* The same with one point and what resists hourglass modes. */
+static void resist_modes(solved *s) {
+  for (int c = 0; c < mesh_cell_count(&s->of.m); c++)
+    s->of.m.hourglass[c] = 0.3;
+  node_matrix_resist_hourglass(&s->K, &s->of.m, &s->law, NULL);
+}
+
 static void patches_are_exact(void **state) {
   (void)state;
-  for (int k = 0; k < 8; k++) {
+  for (int k = 0; k < 12; k++) {
     solved s;
     double of_u, of_energy;
-    open_case(&s, 5, kinds[k % 4], 0.4, 2);
-    if (k >= 4) take_means(&s);
+    open_case(&s, 5, kinds[k % 4], 0.4, k < 8 ? 2 : 1);
+    if (k / 4 == 1) take_means(&s);
+    if (k / 4 == 2) resist_modes(&s);
     const static_result r = solve(&s, linear);
     errors(&s, linear, &of_u, &of_energy);
     assert_true(r.solved && r.residual < 1e-13);
@@ -252,9 +260,11 @@ static void points_and_matrix_agree(void **state) {
   (void)state;
   static const double values[] = {30e9, 0.2, 2400};
   for (int k = 0; k < 4; k++)
-    for (int way = 0; way < 3; way++) { /* 1 x 1, 2 x 2, and these with the mean dilatation */
+    for (int way = 0; way < 4; way++) { /* 1 x 1, 2 x 2, with the mean, hourglass */
       list_mesh l;
-      list_open(&l, 7, kinds[k], 0.4, way == 0 ? 1 : 2);
+      list_open(&l, 7, kinds[k], 0.4, way % 3 == 0 ? 1 : 2);
+      for (int c = 0; c < mesh_cell_count(&l.m); c++)
+        l.m.hourglass[c] = way == 3 ? 0.05 : 0;
       memset(l.m.mean_dilatation, way == 2, (size_t)mesh_cell_count(&l.m));
       const plane_stiffness law = isotropic(30e9, 0.2, false);
       const int cells = mesh_cell_count(&l.m);
@@ -263,6 +273,7 @@ static void points_and_matrix_agree(void **state) {
         own[c % 3 == 0][c] = 1;
       node_matrix K;
       node_matrix_open(&K, &l.m, &l.points, &law, NULL);
+      node_matrix_resist_hourglass(&K, &l.m, &law, NULL);
       pool *memory = pool_new();
       double *u[2], *by_points[2], *by_matrix[2], most = 0, largest = 0;
       for (int d = 0; d < 2; d++) {
