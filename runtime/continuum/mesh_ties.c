@@ -75,6 +75,16 @@ static bool tie_particle(tier *t, int32_t particle, const double at[3], int cell
               t->from->mesh);
     return false;
   }
+  if (t->mesh.lists && t->mesh.lists->nodes[cell] == 6) {
+    char text[ROWS_PLACE_TEXT];
+    diag_report(
+        t->d, DIAG_NOT_SUPPORTED, t->from->item.where,
+        "the particle of `%s` at %s lies in a triangle of 6 nodes of `%s`: it cannot be tied, "
+        "as its mass would be negative at corners",
+        t->from->lattice, rows_place_text(2, at, text), t->from->mesh);
+    diag_hint(t->d, "mesh the body with triangles of 3 nodes (Mesh.ElementOrder = 1)");
+    return false;
+  }
   shape_functions(&t->mesh, cell, at, &s);
   *p = (tied_particle){.particle = particle, .outside = part_outside(t, at)};
   for (int k = 0; k < s.count && p->count < TIED_MOST_NODES; k++) {

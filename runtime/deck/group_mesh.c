@@ -105,7 +105,7 @@ static const deck_key_info mesh_keys[] = {
      .fallback = "'point'",
      DECK_AT(mesh, dilatation),
      .doc =
-         "of finite elements with 2 x 2 points in plane strain: each point has its own change of "
+         "of quadrilaterals with 2 x 2 points in plane strain: each point has its own change of "
          "volume, or all that of the cell in the mean, so that nothing locks where volumes hardly "
          "change"},
     {.name = "hourglass",
@@ -114,7 +114,7 @@ static const deck_key_info mesh_keys[] = {
      .bound = BOUND_NOT_NEGATIVE,
      .fallback = "0",
      DECK_AT(mesh, hourglass),
-     .doc = "of finite elements with one point: how stiffly they resist motions that do not strain "
+     .doc = "of quadrilaterals with one point: how stiffly they resist motions that do not strain "
             "it, in parts of their largest stiffness, such as 0.05"},
     {.name = "basis",
      .type = DECK_WORD,

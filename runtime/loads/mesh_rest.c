@@ -165,9 +165,12 @@ void mesh_rest_work(mesh_rest *r) {
 
 /* --- before a run ----------------------------------------------------------------------------- */
 
+/* Quadrilaterals with motions that nothing resists. */
 static bool has_single_points(const mesh *m) {
   for (int c = 0; c < mesh_cell_count(m); c++)
-    if (m->cell[c] == CELL_ELEMENT && m->element_gauss[c] == 1) return true;
+    if (m->cell[c] == CELL_ELEMENT && m->element_gauss[c] == 1 && !(m->hourglass[c] > 0) &&
+        (!m->lists || m->lists->nodes[c] == 4))
+      return true;
   return false;
 }
 
@@ -182,7 +185,8 @@ static bool is_stiff(mesh_rest *r, const char *name, span where, diagnostics *d)
               name, 1e3 * at[0], 1e3 * at[1], found.loose_axis ? "y" : "x");
   diag_hint(d, has_single_points(&r->c->mesh)
                    ? "elements with one point of integration have motions without stiffness: give "
-                     "`gauss = 2`, or `hourglass = 0.05`; and hold the mesh so that it can neither slide nor turn"
+                     "`gauss = 2`, or `hourglass = 0.05`; and hold the mesh so that it can neither "
+                     "slide nor turn"
                    : "hold it by a `&support` so that it can neither slide nor turn: both "
                      "directions of one node, and one of another");
   return false;

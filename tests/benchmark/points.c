@@ -249,12 +249,17 @@ typedef struct point_case {
   double strain; /* of the last step: part of the points yield or break */
 } point_case;
 
-static const point_case cases[] = {
-    {"elastic", "plane_strain", 1e-4},          {"stiffening", "plane_strain", 1e-2},
-    {"von_mises", "plane_strain", 4e-3},        {"von_mises", "plane_stress", 4e-3},
-    {"drucker_prager", "plane_strain", 8e-4},   {"drucker_prager", "plane_stress", 8e-4},
-    {"brittle_cracking", "plane_strain", 2e-4}, {"brittle_cracking", "plane_stress", 2e-4},
-    {"mazars", "plane_strain", 2e-4},           {"mazars", "plane_stress", 2e-4}};
+static const point_case cases[] = {{"elastic", "plane_strain", 1e-4},
+                                   {"stiffening", "plane_strain", 1e-2},
+                                   {"von_mises", "plane_strain", 4e-3},
+                                   {"von_mises", "plane_stress", 4e-3},
+                                   {"drucker_prager", "plane_strain", 8e-4},
+                                   {"drucker_prager", "plane_stress", 8e-4},
+                                   {"brittle_cracking", "plane_strain", 2e-4},
+                                   {"brittle_cracking", "plane_stress", 2e-4},
+                                   {"mazars", "plane_strain", 2e-4},
+                                   {"mazars", "plane_stress", 2e-4},
+                                   {"concrete_damage_plasticity", "plane_strain", 1e-3}};
 
 /* Seconds a step, mean of a loading. */
 static double seconds_of_loading(loaded *l, double strain, int threads, double (*clock_of)(void),
@@ -285,7 +290,7 @@ static void measure_law(figures *f, const point_case *c) {
                faster = median_of(wall, ROUNDS) / median_of(two, ROUNDS),
                bytes = (double)point_forces_bytes(l.points) / points;
   const pl_law *of = l.trial->law.law;
-  printf("  %-16s %-13s %7.1f %7.2f %7.2f %6.0f %7.0f %5.0f %6.0f %%\n", c->law, c->setting,
+  printf("  %-26s %-13s %7.1f %7.2f %7.2f %6.0f %7.0f %5.0f %6.0f %%\n", c->law, c->setting,
          1e-6 * points / by_one, 1e9 * by_one / points, faster, bytes, of->flops_per_bond,
          of->divisions_per_bond, 100 * changes);
   figures_add(f, 1e-6 * points / by_one, "points_%s_%s_million_per_second", c->law, c->setting);
@@ -297,7 +302,7 @@ static void measure_law(figures *f, const point_case *c) {
 bool benchmark_points(figures *f) {
   puts("\nPoints");
   const bool fair = measure_beside(f);
-  printf("  %-30s %7s %7s %7s %6s %7s %5s %8s\n", "", "10^6/s", "ns", "2 by 1", "bytes", "flops",
+  printf("  %-40s %7s %7s %7s %6s %7s %5s %8s\n", "", "10^6/s", "ns", "2 by 1", "bytes", "flops",
          "div.", "changed");
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
     measure_law(f, &cases[k]);

@@ -10,8 +10,8 @@
 
 #include "tests/verification/crack_band.h"
 
-static double measured(const char *law, const char *nu, int size, bool turned) {
-  const band b = {law, nu, size, turned};
+static double measured(const char *name, const char *nu, int size, bool turned) {
+  const band b = {name, nu, size, turned};
   const double ratio = band_work(&b);
   band_page(&b, ratio);
   return ratio;
@@ -41,9 +41,9 @@ static void held_sideways_it_costs_more(void **state) {
 static void across_corners_the_band_is_wider(void **state) {
   (void)state;
   const double coarse = measured("mazars", "0.2", 20, true),
-               fine = measured("mazars", "0.2", 10, true), band = sqrt(2) / (1 - 0.2 * 0.2);
-  assert_true(fabs(fine - band) < 0.7 * fabs(coarse - band));
-  assert_true(fabs(fine / band - 1) < 0.03);
+               fine = measured("mazars", "0.2", 10, true), wide = sqrt(2) / (1 - 0.2 * 0.2);
+  assert_true(fabs(fine - wide) < 0.7 * fabs(coarse - wide));
+  assert_true(fabs(fine / wide - 1) < 0.03);
 }
 
 int main(void) {

@@ -71,8 +71,25 @@ static void the_plate_with_holes(void **state) {
   says("| stored energy", "| %.3f |", three.energy);
 }
 
+/* The sections through the large hole and through both small ones have 80 mm x 10 mm: they flow at 250 MPa
+   times that, and harden by a few per cent. */
+static void the_plate_that_yields(void **state) {
+  (void)state;
+  deck_case c;
+  assert_true(deck_case_run(&c, PLATE "plate_yield.nml", NULL, 0));
+  assert_int_equal(deck_case_go(&c), STEP_END);
+  const double load = deck_case_last(&c, "load"), limit = 250e6 * 80e-3 * 10e-3,
+               external = deck_case_last(&c, "energy/external");
+  assert_true(load > limit && load < 1.12 * limit);
+  assert_true(deck_case_last(&c, "energy/dissipated_damage") > 0.5 * external);
+  assert_true(fabs(deck_case_last(&c, "energy/imbalance")) < 1e-9 * external);
+  says("| load, kN", "| %.1f |", 1e-3 * load);
+  deck_case_close(&c);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_hole_is_as_kirsch_says),
-                                     cmocka_unit_test(the_plate_with_holes)};
+                                     cmocka_unit_test(the_plate_with_holes),
+                                     cmocka_unit_test(the_plate_that_yields)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,7 +18,8 @@ static double intensity(double stress) {
   return stress * sqrt(M_PI * half / cos(M_PI * half / width));
 }
 
-/* 2.5 %: 6 cells along the crack. What hardens after yield is 2 GPa of the strain of the ends. */
+/* 2.5 %: 6 cells along the crack. After yield the ends harden by 2 GPa of their strain, and the elastic
+   zone holds them sideways. */
 static void the_ends_limit_the_crack(void **state) {
   (void)state;
   static const char *const overrides[] = {"simulation.threads=1", "output.frames=0"};
@@ -41,8 +42,8 @@ static void the_ends_limit_the_crack(void **state) {
   }
   const double slope = K[9] / opening[9], later = (K[20] - K[12]) / (opening[20] - opening[12]);
   assert_true(fabs(load[9] / load[1] / 9 - 1) < 1e-3);
-  assert_true(later < 0.03 * slope);
-  assert_true(load[12] > 248e3 && load[20] < 257e3);
+  assert_true(later < 0.05 * slope);
+  assert_true(load[12] > 248e3 && load[20] < 265e3);
   assert_true(deck_case_last(&c, "plate.above/dissipated_damage") > 20);
   deck_case_close(&c);
 }
