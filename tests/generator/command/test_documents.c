@@ -319,6 +319,37 @@ static void the_reference_tells_of_every_key(void **state) {
   }
 }
 
+static const char torn[] =
+    "&simulation end_time = '0.1 ms' step_safety = 0.7 /\n"
+    "&mesh name = 'plate' size = 0.2, 0.1 nodes = 9, 5 thickness = 0.01 method = 'finite_elements' "
+    "/\n"
+    "&material mesh = 'plate' model = 'brittle_cracking' G_f = 50 /\n"
+    "&region name = 'left' shape = 'segment' from = 0, 0 to = 0, 0.1 /\n"
+    "&region name = 'right' shape = 'segment' from = 0.2, 0 to = 0.2, 0.1 /\n"
+    "&support region = 'left' fix = 'x', 'y' /\n"
+    "&drive region = 'right' component = 'x' velocity = '2 m/s' /\n"
+    "&monitor name = 'load' kind = 'reaction' region = 'left' component = 'x' /\n"
+    "&output result = 'torn.h5' /\n";
+
+/* As many as in the words for people; there is no time before any did. */
+static void dead_cells_are_counted(void **state) {
+  workplace *w = *state;
+  write_text(w, "torn.nml", torn);
+  char *text = document_of(w, "run torn.nml --json", 0);
+  assert_holds(text, "\"mesh\": \"plate\",\n      \"cells\": 32,");
+  const long died = (long)number_after(text, "died");
+  const double first = number_after(text, "first_time");
+  assert_true(died > 0 && died < 32 && first > 0 && first < 0.1e-3);
+  char command[200];
+  snprintf(command, sizeof command, "grep -q 'plate: %ld of 32 have died, the first at' words",
+           died);
+  assert_int_equal(shell(w, command), 0);
+  expect_keys(section_of_reference(), text);
+  free(text);
+  expect_document(w, "run torn.nml --json --set simulation.end_time=3e-5", 0,
+                  "\"died\": 0,\n      \"first_time\": null");
+}
+
 /* The same text; numbers to six digits, but for the time that it took. */
 static void expect_like(const char *example, const char *found) {
   static const char wall[] = "\"wall\": ";
@@ -440,6 +471,7 @@ int main(void) {
       IN_WORKPLACE(comparisons_tell_where_and_by_what),
       IN_WORKPLACE(bounds_are_numbers),
       IN_WORKPLACE(the_reference_tells_of_every_key),
+      IN_WORKPLACE(dead_cells_are_counted),
       IN_WORKPLACE(the_example_of_the_reference_is_real),
       IN_WORKPLACE(texts_come_through_pipes),
       IN_WORKPLACE(alone_it_helps_on_the_error_stream),

@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "brittle_law.h"
 #include "hooke_law.h"
 #include "runtime/continuum/cells.h"
 #include "runtime/continuum/side_load.h"
@@ -184,6 +185,159 @@ static void threads_have_the_same_bits(void **state) {
   assert_true(found[0] != 0 && found[0] == found[1] && found[0] == found[2]);
 }
 
+/* --- quadrilaterals with one point ------------------------------------------------------------ */
+
+enum { ALONG = 21, UP = 11, MOST_TEXT = 40000 };
+#define PANEL_CORNERS "0, 0, 0.2, 0.02, 0.19, 0.12, -0.01, 0.1"
+static const double panel_corners[4][2] = {{0, 0}, {0.2, 0.02}, {0.19, 0.12}, {-0.01, 0.1}};
+
+__attribute__((format(printf, 2, 3))) static void put(char *text, const char *format, ...) {
+  const size_t used = strlen(text);
+  va_list rest_of;
+  va_start(rest_of, format);
+  vsnprintf(text + used, MOST_TEXT - used, format, rest_of);
+  va_end(rest_of);
+  assert_true(strlen(text) < MOST_TEXT - 1);
+}
+
+/* The file of a panel, a parallelogram, whose nodes are those of a grid between its corners. */
+static void put_panel(char *text) {
+  const int nodes = ALONG * UP, count = (ALONG - 1) * (UP - 1), sides = UP - 1;
+  put(text,
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 1 \"left\"\n1 2 \"right\"\n2 3 "
+      "\"all\"\n$EndPhysicalNames\n$Entities\n0 2 1 0\n1 0 0 0 1 1 0 1 1 0\n2 0 0 0 1 1 0 1 2 0\n"
+      "1 0 0 0 1 1 0 1 3 0\n$EndEntities\n$Nodes\n1 %d 1 %d\n2 1 0 %d\n",
+      nodes, nodes, nodes);
+  for (int n = 1; n <= nodes; n++)
+    put(text, "%d\n", n);
+  for (int n = 0; n < nodes; n++) {
+    const double u = n % ALONG / (ALONG - 1.0), v = n / ALONG / (UP - 1.0);
+    double at[2];
+    for (int a = 0; a < 2; a++)
+      at[a] = (1 - v) * ((1 - u) * panel_corners[0][a] + u * panel_corners[1][a]) +
+              v * ((1 - u) * panel_corners[3][a] + u * panel_corners[2][a]);
+    put(text, "%.17g %.17g 0\n", at[0], at[1]);
+  }
+  put(text, "$EndNodes\n$Elements\n3 %d 1 %d\n", count + 2 * sides, count + 2 * sides);
+  for (int edge = 0; edge < 2; edge++) {
+    put(text, "1 %d 1 %d\n", edge + 1, sides);
+    for (int k = 0; k < sides; k++)
+      put(text, "%d %d %d\n", edge * sides + k + 1, k * ALONG + 1 + edge * (ALONG - 1),
+          (k + 1) * ALONG + 1 + edge * (ALONG - 1));
+  }
+  put(text, "2 1 3 %d\n", count);
+  for (int c = 0; c < count; c++) {
+    const int n = c / (ALONG - 1) * ALONG + c % (ALONG - 1) + 1, first = c % 4;
+    const int around[4] = {n, n + 1, n + ALONG + 1, n + ALONG}; /* from any corner on */
+    put(text, "%d %d %d %d %d\n", 2 * sides + c + 1, around[first], around[(first + 1) % 4],
+        around[(first + 2) % 4], around[(first + 3) % 4]);
+  }
+  put(text, "$EndElements\n");
+}
+
+/* The panel as a file or as a grid, bent by a shear on its end. */
+static void open_panel(small_run *r, const pl_law *law, bool file, const char *keys) {
+  char text[4096];
+  char *msh = must_calloc(MOST_TEXT, 1);
+  put_panel(msh);
+  memset(r, 0, sizeof *r);
+  r->memory = arena_new();
+  diag_begin(&r->said, &r->sources);
+  snprintf(
+      text, sizeof text,
+      "&simulation end_time = '0.2 ms' step = '0.7 us' threads = 2 /\n&mesh name = 'panel' %s "
+      "thickness = '10 mm' gauss = 1 %s /\n&material mesh = 'panel' model = 'hooke' /\n%s"
+      "&support region = 'left' fix = 'x', 'y' /\n&traction mesh = 'panel' %s component = 'y' "
+      "stress = '1 MPa' /\n&monitor name = 'u' kind = 'displacement' region = 'right' component = "
+      "'y' /\n&output sample = '1.4 us' /\n",
+      file ? "file = 'panel.msh'"
+           : "corners = " PANEL_CORNERS " nodes = 21, 11 method = 'finite_elements'",
+      keys,
+      file ? ""
+           : "&region name = 'left' shape = 'segment' from = 0, 0 to = -0.01, 0.1 /\n"
+             "&region name = 'right' shape = 'segment' from = 0.2, 0.02 to = 0.19, 0.12 /\n",
+      file ? "edge = 'right'" : "from = 0.2, 0.02 to = 0.19, 0.12");
+  const int begun = source_add(&r->sources, "deck.nml", text, strlen(text));
+  source_add(&r->sources, "panel.msh", msh, strlen(msh));
+  r->deck = deck_read(r->memory, &r->sources, begun, NULL, 0, &r->said);
+  if (!r->deck) small_print(r);
+  assert_non_null(r->deck);
+  assert_true(material_parameters(&r->deck->materials[0], law, r->parameters, &r->said));
+  if (law == &brittle_law) r->parameters[3] = 3e-5;
+  r->laws[0] = (simulation_law){.law = law, .parameters = r->parameters};
+  r->simulation = simulation_new(r->deck, r->laws, &r->said);
+  if (!r->simulation) small_print(r);
+  assert_non_null(r->simulation);
+  free(msh);
+}
+
+static void agree(const small_run *a, const small_run *b, const char *name) {
+  const double *x = small_values(a, name), *y = small_values(b, name),
+               most = small_largest(a, name);
+  const long count = simulation_history(a->simulation, NULL);
+  assert_int_equal(count, simulation_history(b->simulation, NULL));
+  assert_true(most > 0);
+  for (long k = 0; k < count; k++)
+    if (!(fabs(x[k] - y[k]) <= 1e-9 * most))
+      fail_msg("%s: %.17g, %.17g of %.3g", name, x[k], y[k], most);
+}
+
+/* As a grid does, by the matrix and point by point: motions, energies, the longest step. */
+static void resistance_to_hourglass_modes_is_that_of_grids(void **state) {
+  (void)state;
+  static const char *const names[] = {"u", "energy/stored", "energy/kinetic", "energy/external"};
+  pl_law bent = hooke_law;
+  bent.linear = 0;
+  for (int k = 0; k < 2; k++) {
+    small_run grid, file;
+    const pl_law *law = k ? &bent : &hooke_law;
+    open_panel(&grid, law, false, "hourglass = 0.7");
+    open_panel(&file, law, true, "hourglass = 0.7");
+    const double of_grid = simulation_step_limit(grid.simulation)->limit,
+                 of_file = simulation_step_limit(file.simulation)->limit;
+    assert_true(fabs(of_file / of_grid - 1) <
+                0.01); /* power iteration: half of what it keeps back */
+    assert_int_equal(small_go(&grid), STEP_END);
+    assert_int_equal(small_go(&file), STEP_END);
+    for (size_t n = 0; n < sizeof names / sizeof *names; n++)
+      agree(&grid, &file, names[n]);
+    assert_true(small_largest(&file, "energy/imbalance") <
+                1e-11 * small_largest(&file, "energy/external"));
+    small_close(&grid);
+    open_panel(&grid, law, true, "");
+    const double without = simulation_step_limit(grid.simulation)->limit;
+    print_message("longest step %.4g us, without resistance %.4g us\n", 1e6 * of_file,
+                  1e6 * without);
+    assert_true(of_file < 0.95 * without);
+    small_close(&grid);
+    small_close(&file);
+  }
+}
+
+/* What dead cells had stored so is booked, too; the same cells die as of a grid. */
+static void dead_quadrilaterals_resist_nothing(void **state) {
+  (void)state;
+  small_run grid, file;
+  double first[2];
+  open_panel(&grid, &brittle_law, false, "hourglass = 0.1");
+  open_panel(&file, &brittle_law, true, "hourglass = 0.1");
+  assert_int_equal(small_go(&grid), STEP_END);
+  assert_int_equal(small_go(&file), STEP_END);
+  const long died = cells_deaths(simulation_cells(file.simulation, 0), &first[0]);
+  print_message("%ld cells died\n", died);
+  assert_true(died > 5);
+  assert_int_equal(cells_deaths(simulation_cells(grid.simulation, 0), &first[1]), died);
+  assert_true(first[0] == first[1]);
+  agree(&grid, &file, "energy/stored");
+  agree(&grid, &file, "energy/dissipated_damage");
+  assert_true(small_largest(&file, "energy/imbalance") <
+              1e-9 * small_last(&file, "energy/dissipated_damage"));
+  small_close(&grid);
+  small_close(&file);
+}
+
+/* --- what cannot be --------------------------------------------------------------------------- */
+
 typedef struct wrong {
   const char *deck, *message;
 } wrong;
@@ -207,6 +361,12 @@ static const wrong decks[] = {
      "`file` and `size` exclude each other"},
     {"&mesh name = 'b' file = 'disc.msh' method = 'element_free' thickness = 1 /",
      "element-free nodes stand on a rectangle"},
+    {"&mesh name = 'b' file = 'disc.msh' setting = 'plane_strain' dilatation = 'mean' thickness = "
+     "1 "
+     "/",
+     "quadrilaterals alone take the mean dilatation, and `disc.msh` has triangles only"},
+    {"&mesh name = 'b' file = 'disc.msh' gauss = 1 hourglass = 0.05 thickness = 1 /",
+     "triangles have no hourglass modes, and `disc.msh` has nothing else"},
     {"&mesh name = 'b' size = 1, 1 nodes = 3, 3 method = 'finite_elements' unit = 'mm' thickness = "
      "1 /",
      "`unit` is that of places in a `file`"},
@@ -236,6 +396,8 @@ int main(void) {
       cmocka_unit_test(edges_are_loaded),
       cmocka_unit_test(materials_of_groups),
       cmocka_unit_test(threads_have_the_same_bits),
+      cmocka_unit_test(resistance_to_hourglass_modes_is_that_of_grids),
+      cmocka_unit_test(dead_quadrilaterals_resist_nothing),
       cmocka_unit_test(decks_that_do_not_suit_are_told),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
