@@ -36,6 +36,13 @@ static bool names_particles(const int32_t *cells, long count, long particles) {
   return true;
 }
 
+/* Among cells of at most four nodes; -1 is none. */
+static bool has_triangles(const plot_mesh *m) {
+  for (long c = 0; c < m->cell_count; c++)
+    if (m->cells[CORNERS * c + CORNERS - 1] < 0) return true;
+  return false;
+}
+
 /* A mesh's first particle, by its attribute. */
 static bool read_first(result_file *f, const char *group, int64_t *first) {
   const hid_t object = H5Oopen(f->file, group, H5P_DEFAULT);
@@ -103,14 +110,15 @@ static bool read_mesh(plot_mesh *m, result_file *f, const char *name, const doub
   snprintf(path, sizeof path, "%s/cells", group);
   m->cells = result_read_table(f, path, true, 3, MOST_NODES, &m->cell_count, &columns);
   if (!m->cells || !read_first(f, group, &first) || first < 0 || first > particles) return false;
-  if (columns != CORNERS) take_lists(m, columns);
+  const bool of_file = columns != CORNERS || has_triangles(m);
+  if (of_file) take_lists(m, columns);
   if (!names_particles(m->cells, m->cell_count, particles - (long)first)) return false;
   for (long k = 0; k < CORNERS * m->cell_count; k++)
     m->cells[k] += (int32_t)first;
   for (long k = 0; m->first && k < m->cell_count; k++)
     if (m->first[k] >= 0) m->first[k] += (int32_t)first;
   m->all_count = m->cell_count;
-  if (columns != CORNERS) {
+  if (of_file) {
     m->size = mean_size(m, reference);
   } else if (m->cell_count > 0) {
     const double *low = reference + 2 * m->cells[0], *high = reference + 2 * m->cells[2];

@@ -207,6 +207,18 @@ static void marks_stand_where_the_field_says(void **state) {
   assert_int_equal(marks_in(w, "displacement < 1.5"), 1);
 }
 
+/* Cells of three nodes beside cells of four: each has its colour, with or without its law's field. */
+static void triangles_among_quadrilaterals(void **state) {
+  workplace *w = *state;
+  expect(w,
+         "run " SOURCE_DIR
+         "/examples/crack_band/turned.nml --threads 1 --set relaxation.increments=1 "
+         "--set mesh.file=turned_20.msh --set output.result=turned.h5 --set output.frames=1",
+         0, "12 triangles");
+  expect(w, "plot turned.h5 --map damage_now -o damage.svg", 0, "damage.svg");
+  expect(w, "plot turned.h5 --map displacement -o moved.png", 0, "moved.png");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
 #define IN_WORKPLACE(test)                                                                         \
@@ -216,6 +228,7 @@ int main(void) {
       IN_WORKPLACE(mistakes_are_said),
       IN_WORKPLACE(marks_stand_where_the_field_says),
       IN_WORKPLACE(two_damages_have_two_colours_each),
-      IN_WORKPLACE(bars_hide_no_bonds)};
+      IN_WORKPLACE(bars_hide_no_bonds),
+      IN_WORKPLACE(triangles_among_quadrilaterals)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
