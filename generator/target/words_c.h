@@ -92,6 +92,31 @@
   X(TIP_INPUT, "points->in[$1]")                                                                   \
   X(TIP_OUT, "points->out[$1]")                                                                    \
   X(POINT_LOST, "points->lost[$1]")                                                                \
+  /* searches: block by block, all points of one as long as one goes on */                         \
+  X(SEARCH_BLOCKS, "  enum { BLOCK = $1 };\n"                                                      \
+    "  for (long begin = 0; begin < count; begin += BLOCK) {\n"                                    \
+    "  const long rest = count - begin, lanes = rest < BLOCK ? rest : BLOCK;\n"                    \
+    "  const long end = begin + lanes;\n")                                                         \
+  X(SEARCH_KEEP, "  _Alignas(PL_ALIGNMENT) double kept_$1[BLOCK];\n")                              \
+  X(SEARCH_KEPT, "kept_$1[q - begin]")                                                             \
+  X(SEARCH_FOUND, "  _Alignas(PL_ALIGNMENT) double found_$1[BLOCK];\n")                            \
+  X(SEARCH_RESULT, "found_$1[q - begin]")                                                          \
+  X(SEARCH_PLACES, "  _Alignas(PL_ALIGNMENT) double low[BLOCK], high[BLOCK], last[BLOCK], "        \
+    "going[BLOCK];\n")                                                                             \
+  X(SEARCH_START, "    const pl_search_place at_first = pl_search_from($1);\n"                     \
+    "    $2 = at_first.z, low[q - begin] = at_first.low, high[q - begin] = at_first.high;\n"       \
+    "    last[q - begin] = at_first.last, going[q - begin] = at_first.going;\n")                   \
+  X(SEARCH_STEPS, "  uint64_t some_go_on = 1;\n"                                                   \
+    "  for (int step = 0; step < PL_SEARCH_STEPS && some_go_on != 0; step++) {\n"                  \
+    "  some_go_on = 0;\n")                                                                         \
+  X(SEARCH_STEP, "    pl_search_place place = {$1, low[q - begin], high[q - begin], "              \
+    "last[q - begin], going[q - begin]};\n"                                                        \
+    "    place = pl_search(place, $2, $3);\n"                                                      \
+    "    $1 = place.z, low[q - begin] = place.low, high[q - begin] = place.high;\n"                \
+    "    last[q - begin] = place.last, going[q - begin] = place.going;\n"                          \
+    "    some_go_on |= pl_to_bits(place.going);\n")                                                \
+  X(SEARCH_BEGIN, "  {\n")                                                                         \
+  X(SEARCH_LOOP, "  PL_INDEPENDENT\n  for (long q = begin; q < end; q++) {\n")                     \
                                                                                                    \
   /* --- strips of bonds --- */                                                                    \
   X(STRIP_HEAD, "  (void)law, (void)uniforms;\n"                                                   \
