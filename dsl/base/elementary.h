@@ -422,36 +422,31 @@ PL_ELEMENTARY double pl_atan2(double y, double x) {
   return pl_copy_sign(pl_fma(quarters, 0.5 * PL_HALF_PI_HI, arc), y);
 }
 
-/* Where a search for the root of a rising function is: at z, the root between low and high, by a move of
-   the size `last` (infinite: by none); 0: it goes on no longer. */
+/* Where a search for the root of a rising function is: at z, the root between low and high, by a
+   step of Newton's of the size `last` and a move as large as `move`; going 0: it has ended. */
 typedef struct pl_search_place {
-  double z, low, high, last, going;
+  double z, low, high, last, move, going;
 } pl_search_place;
 
 #define PL_SEARCH_STEPS 100 /* at most */
 
 PL_ELEMENTARY pl_search_place pl_search_from(double z) {
-  pl_search_place at;
-  at.z = z;
-  at.low = -PL_INFINITY;
-  at.high = PL_INFINITY;
-  at.last = PL_INFINITY;
-  at.going = 1.0;
+  const pl_search_place at = {z, -PL_INFINITY, PL_INFINITY, PL_INFINITY, 0.0, 1.0};
   return at;
 }
 
-/* On by Newton's step; halfway between low and high where that leads out or is more than half the last
-   move; as long as one of them is not known, four times the last move where it is more than an
-   eighth of that (a function that is flat here). Where nothing is `open` it takes the step and
-   ends. */
+/* On by Newton's step; halfway between low and high where that leads out or is more than half the
+   last one; while one of them is not known, four times the last move where it is more than 3/4 of
+   the last one (a function that is flat here). Where nothing is `open` it takes the step and ends.
+   */
 PL_ELEMENTARY pl_search_place pl_search(pl_search_place at, double step, double open) {
   const double size = pl_abs(step), newton = at.z + step;
   const double low = step > 0.0 ? at.z : at.low, high = step < 0.0 ? at.z : at.high;
-  const double middle = 0.5 * (low + high), far = at.z + pl_copy_sign(4.0 * at.last, step);
+  const double middle = 0.5 * (low + high), far = at.z + pl_copy_sign(4.0 * at.move, step);
   const double below = newton < high ? 1.0 : 0.0, inside = newton > low ? below : 0.0;
   const double held = 2.0 * size <= at.last ? inside : 0.0;
   const double between = held != 0.0 ? newton : middle;
-  const double beyond = 8.0 * size <= at.last ? newton : far;
+  const double beyond = 4.0 * size <= 3.0 * at.last ? newton : far;
   const double next = high - low < PL_INFINITY ? between : beyond;
   const double end = inside != 0.0 ? newton : at.z;
   const double z = open != 0.0 ? next : end;
@@ -460,7 +455,8 @@ PL_ELEMENTARY pl_search_place pl_search(pl_search_place at, double step, double 
   to.z = at.going != 0.0 ? z : at.z;
   to.low = at.going != 0.0 ? low : at.low;
   to.high = at.going != 0.0 ? high : at.high;
-  to.last = at.going != 0.0 ? pl_abs(z - at.z) : at.last;
+  to.last = at.going != 0.0 ? size : at.last;
+  to.move = at.going != 0.0 ? pl_abs(z - at.z) : at.move;
   to.going = at.going != 0.0 ? goes_on : 0.0;
   return to;
 }
