@@ -109,10 +109,20 @@ static ir_node is_left(planner *p, ir_node sigma_zz, double part) {
   return ir_unary(g, IR_NOT, ir_binary(g, IR_LE, ir_unary(g, IR_ABS, sigma_zz), most));
 }
 
+/* Whether a step is not yet next to nothing beside the strain. */
+static ir_node is_far(planner *p, ir_node step) {
+  static const double NEAR = 1e-11; /* behind such a step the next one would be rounding */
+  ir *g = p->graph;
+  ir_node size = ir_unary(g, IR_ABS, p->strain[0]);
+  for (int k = 1; k < p->strains; k++)
+    size = ir_add(g, size, ir_unary(g, IR_ABS, p->strain[k]));
+  size = ir_mul(g, ir_constant(g, NEAR), ir_add(g, size, ir_unary(g, IR_ABS, p->z)));
+  return ir_unary(g, IR_NOT, ir_binary(g, IR_LE, ir_unary(g, IR_ABS, step), size));
+}
+
 /* The root of sigma_zz(z), searched from the root with the states at hand where that is found in one
    step, else from 0; z itself counts for nothing where sigma_zz does not depend on it. */
 static ir_node strain_without_stress(planner *p, ir_node sigma_zz, ir_node sigma_zz_at_hand) {
-  static const double NEAR = 1e-12; /* from here on one step more is enough */
   ir *g = p->graph;
   const along_z a = along_z_of(p, sigma_zz), at_hand = along_z_of(p, sigma_zz_at_hand);
   const ir_node sought = ir_sought(g);
@@ -120,7 +130,8 @@ static ir_node strain_without_stress(planner *p, ir_node sigma_zz, ir_node sigma
   if (ir_is_number(g, a.slope, 0)) return from;
   if (a.affine) return root_of_line(p, &a);
   if (at_hand.affine && !ir_is_number(g, at_hand.slope, 0)) from = root_of_line(p, &at_hand);
-  ir_node of[2] = {newton_step(p, &a, &at_hand), is_left(p, sigma_zz, NEAR)};
+  const ir_node step = newton_step(p, &a, &at_hand);
+  ir_node of[2] = {step, is_far(p, step)};
   ir_substitute(g, of, 2, &p->z, &sought, 1, of);
   return ir_search(g, from, of[0], of[1]);
 }
