@@ -184,8 +184,6 @@ static void load(const interpreter *p, const interpreter_inputs *in, int first, 
   }
 }
 
-static void run_steps(const step *steps, int step_count, int lanes);
-
 /* As emitted kernels do it (point_loops): all lanes as long as one goes on. */
 static void run_search(const step *of, int lanes) {
   pl_search_place at[INTERPRET_LANES];
@@ -196,7 +194,10 @@ static void run_search(const step *of, int lanes) {
     goes_on = false;
     for (int k = 0; k < lanes; k++)
       of->search->sought[k] = at[k].z;
-    run_steps(of->search->steps, of->search->step_count, lanes);
+    for (int k = 0; k < of->search->step_count; k++) {
+      const step *s = &of->search->steps[k];
+      s->apply(lanes, s->a, s->b, s->c, s->out);
+    }
     for (int k = 0; k < lanes; k++) {
       at[k] = pl_search(at[k], of->b[k], of->c[k]);
       goes_on = goes_on || at[k].going != 0;
