@@ -515,12 +515,12 @@ static void write_bad_point(const run *r, const bad_state *b) {
 }
 
 /* What its law says there, line by line. */
-static void explain_bad_point(const run *r, const bad_state *b) {
+static bool explain_bad_point(const run *r, const bad_state *b) {
   const simulation_law *l = &r->laws[b->interaction];
   const point_state *p = b->point;
   const asked_point at = {p->strain, p->field, p->size, simulation_step_limit(r->simulation)->step};
-  if (r->model_of[b->interaction])
-    explain_point(r->model_of[b->interaction]->plan, l->parameters, &at, stderr);
+  return r->model_of[b->interaction] &&
+         explain_point(r->model_of[b->interaction]->plan, l->parameters, &at, stderr);
 }
 
 static void print_fields(const pl_law *kernel, const double *values, bool on_particles) {
@@ -649,6 +649,7 @@ static void report_bad_energy(const run *r, const bad_state *b) {
 void report_bad(const run *r) {
   bad_state b = simulation_bad(r->simulation);
   char place_text[ROWS_PLACE_TEXT], when[MOMENT_TEXT];
+  bool no_return = false;
   if (b.particle < 0) {
     report_bad_energy(r, &b);
     return;
@@ -660,7 +661,7 @@ void report_bad(const run *r) {
   if (b.family) print_family(r, &b);
   if (b.point) {
     print_point(r, &b);
-    explain_bad_point(r, &b);
+    no_return = explain_bad_point(r, &b);
     write_bad_point(r, &b);
   }
   if (b.bond_particle >= 0) {
@@ -675,9 +676,12 @@ void report_bad(const run *r) {
   }
   tell_stiffness(r, true);
   tell_growth(r, true);
-  fprintf(stderr,
-          "  what was computed until then is in the result; a smaller `step_safety` or a law that "
-          "stays finite there mends it\n");
+  fputs(no_return
+            ? "  what was computed until then is in the result; no smaller step mends it, but a "
+              "law whose flow comes back\n"
+            : "  what was computed until then is in the result; a smaller `step_safety` or a "
+              "law that stays finite there mends it\n",
+        stderr);
 }
 
 /* --- stopped and resumed ---------------------------------------------------------------------- */
@@ -784,6 +788,29 @@ static void warn_of_gain(const run *r) {
             k ? ""
               : "; a law that locks energy in its states should give W (`perilat help energy`)");
   }
+}
+
+/* Where the law says that it has an energy and none of its parts may be given away. */
+static bool keeps_energy(const run *r) {
+  bool keeps = true;
+  for (int k = 0; k < r->deck->interaction_count; k++)
+    keeps = keeps && !(r->model_of[k] && r->model_of[k]->plan->law->nonconservative);
+  return keeps;
+}
+
+static void warn_of_imbalance(const run *r) {
+  static const double MUCH = 0.05; /* of the largest energy */
+  const char *unchecked;
+  simulation_imbalance(r->simulation, &unchecked);
+  const double left =
+      fabs(last_value(r, "energy/imbalance")) / simulation_largest_energy(r->simulation);
+  if (unchecked || !isfinite(left) || left <= MUCH || !keeps_energy(r)) return;
+  fprintf(stderr,
+          "perilat: warning: the energies do not add up: in the end %.2g %% of the largest energy "
+          "is missing or too much\n"
+          "  either `energy W` is not that of the law's stress or forces (`perilat check` looks), "
+          "or the step is too large:\n  run it with a smaller `step_safety`%s and compare\n",
+          100 * left, r->deck->relaxation.increments > 0 ? " and more `increments`" : "");
 }
 
 /* What the relaxation took from a body whose law remembers: its states on the way are those of a
@@ -913,6 +940,7 @@ void conclude(const run *r, double seconds, long steps) {
   conclude_deaths(r);
   fflush(stdout);
   warn_of_gain(r);
+  warn_of_imbalance(r);
   warn_of_damping(r);
   warn_of_overlap(r);
   if (!simulation_bad(r->simulation).what[0]) {
