@@ -117,8 +117,18 @@ static void test_faults(void **state) {
   assert_int_equal(different, 0);
 }
 
+/* The size shows a wrong unit; a group that the deck leaves to the base material is told, no fault. */
+static void test_file(void **state) {
+  workplace *w = *state;
+  assert_int_equal(shell(w, "$P check " SOURCE_DIR "/examples/plate_gmsh/plate.nml 2>&1"), 0);
+  assert_non_null(strstr(w->said, "plate: 240 x 120 mm, "));
+  assert_non_null(strstr(w->said, "; groups that the deck does not name: plate\n"));
+  assert_null(strstr(w->said, "warning"));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test_setup_teardown(test_file, set_up_workplace, tear_down_workplace),
       cmocka_unit_test_setup_teardown(test_faults, set_up_workplace, tear_down_workplace)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
