@@ -124,7 +124,7 @@ static void monitors_tell(void **state) {
   char text[64], error[1000];
   for (int k = 0; k < 2; k++) {
     write_block(w, second[k], "'eps_bar', 'mises', 'stress', 'strain'");
-    expect(w, "run block.nml", 0, "largest");
+    expect(w, "run block.nml --interpret", 0, "largest");
     result_file *f = open_result_of(w, "block.h5");
     for (int n = 0; n < 4; n++) {
       long samples;
@@ -140,7 +140,7 @@ static void monitors_tell(void **state) {
     result_read_close(f);
   }
   /* two large increments: the body swings, and the work is damped */
-  expect(w, "run block.nml", 0, "relaxation.increments=4");
+  expect(w, "run block.nml --interpret", 0, "relaxation.increments=4");
   expect(w, "run block.nml --set monitor[state].field=eps_bat", 1, "has no `eps_bat` at points");
 }
 
