@@ -813,21 +813,42 @@ static void warn_of_imbalance(const run *r) {
           100 * left, r->deck->relaxation.increments > 0 ? " and more `increments`" : "");
 }
 
+/* States at points, and no damage that may set energy free all at once. */
+static bool yields(const pl_law *kernel) {
+  bool some = false;
+  for (int k = 0; k < kernel->field_count; k++) {
+    if (kernel->fields[k].place != PL_ON_POINT || kernel->fields[k].kind == PL_FIELD_DAMAGE)
+      return false;
+    some = true;
+  }
+  return some;
+}
+
+/* The part of the work that may be damped without a warning. Limit loads of laws that yield are far too
+   low long before it is a tenth: under a punch on a block of `von_mises` in plane strain without
+   hardening by 59 % with a part of 0.1 (6 increments), by 7 % with 0.02 (40), by 1 % with 0.004. */
+static double part_damped(const run *r) {
+  for (int n = 0; n < r->deck->interaction_count; n++)
+    if (yields(r->laws[n].law)) return 0.01;
+  return 0.1;
+}
+
 /* What the relaxation took from a body whose law remembers: its states on the way are those of a
    body that moves. */
 static void warn_of_damping(const run *r) {
-  const double part = 0.1, external = last_value(r, "energy/external"),
+  const double part = part_damped(r), external = last_value(r, "energy/external"),
                damping = last_value(r, "energy/dissipated_damping"),
                damage = unless_nothing(last_value(r, "energy/dissipated_damage"), external);
   if (r->deck->relaxation.increments == 0 || !(damping > part * fabs(external)) || damage == 0)
     return;
   fprintf(
       stderr,
-      "perilat: warning: the relaxation damped %.3g J, %.0f %% of the work of loads and drives: "
+      "perilat: warning: the relaxation damped %.3g J, %.2g %% of the work of loads and drives: "
       "the body moved\n"
-      "  within increments, and what broke or yielded then may depend on how many there are; "
-      "run it again with\n"
-      "  `relaxation.increments=%d` and compare. What stays the same was set free by the body "
+      "  within increments, and what broke or yielded then may depend on how many there are, the "
+      "load that it bears, too;\n"
+      "  take more increments: run it again with `relaxation.increments=%d` and compare. What "
+      "stays the same was set free by the body "
       "itself, as it broke\n",
       damping, 100 * damping / fabs(external), 2 * r->deck->relaxation.increments);
 }

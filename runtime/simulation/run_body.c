@@ -190,9 +190,16 @@ static bool cells_suit_laws(const run_body *b, diagnostics *d) {
   return true;
 }
 
+static bool is_plane_strain(const deck *k, const run_body *b) {
+  return strcmp(k->lattices[b->lattice].setting, "plane_strain") == 0;
+}
+
 static bool find_limit_of_cells(run_body *b, const deck *k, diagnostics *d) {
   if (!cells_suit_laws(b, d)) return false;
   give_laws(b);
+  for (int n = 0; n < b->law_count && is_plane_strain(k, b); n++)
+    law_fits_elements(b->laws[n].law, b->cells, n,
+                      deck_where(&b->laws[n].from->material->item, "model"), d);
   if (!cracks_suit_laws(b, k, d)) return false;
   unsigned char *held = held_freedoms(b);
   cells_step_limit(b->cells, held, &b->limit);
