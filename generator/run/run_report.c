@@ -877,6 +877,18 @@ static void warn_of_overlap(const run *r) {
   fputs(": a `&contact` keeps them apart\n", stderr);
 }
 
+/* The mesh has no damage: what has come to its edge can go no further. */
+static void warn_of_damaged_ties(const run *r) {
+  for (int n = 0; n < r->deck->lattice_count; n++) {
+    const long bonds = simulation_damaged_ties(r->simulation, n);
+    if (bonds == 0) continue;
+    fprintf(stderr,
+            "perilat: warning: damage has reached the edge of the mesh that `%s` is tied to: %ld "
+            "bond%s there\n  %s damage of 0.5 or more; make the lattice larger\n",
+            r->deck->lattices[n].name, bonds, bonds == 1 ? "" : "s", bonds == 1 ? "has" : "have");
+  }
+}
+
 static double largest_of(const run *r, const char *name) {
   const double *time, *values = series_of(r, name);
   const long samples = simulation_history(r->simulation, &time);
@@ -964,6 +976,7 @@ void conclude(const run *r, double seconds, long steps) {
   warn_of_imbalance(r);
   warn_of_damping(r);
   warn_of_overlap(r);
+  warn_of_damaged_ties(r);
   if (!simulation_bad(r->simulation).what[0]) {
     tell_stiffness(r, false);
     tell_growth(r, false);

@@ -276,10 +276,30 @@ static bool has_gauges(const monitor *m) {
   return is_field_of_mesh(m->deck) && m->of[0] && m->of[0]->cells && (!m->of[1] || m->of[1]->cells);
 }
 
+/* The stress of tied particles is not known: their bonds bear a part of it. False with a diagnostic
+   where all of them are tied. */
+static bool leave_out_tied(monitor *m, diagnostics *d) {
+  const run_body *of = m->of[0];
+  long left = 0;
+  if (m->deck->kind != MONITOR_STRESS || of->tie_count == 0) return true;
+  unsigned char *tied = run_body_tied_sites(of);
+  for (long p = 0; p < m->index_count[0]; p++)
+    if (!tied[m->indices[0][p]]) m->indices[0][left++] = m->indices[0][p];
+  free(tied);
+  m->index_count[0] = left;
+  if (left > 0) return true;
+  diag_report(d, DIAG_EMPTY_REGION, deck_where(&m->deck->item, "region"),
+              "all particles of `%s` here are tied to a mesh, which bears a part of their stress",
+              of->name);
+  diag_hint(d, "watch the stress of the mesh there");
+  return false;
+}
+
 /* What watched.h watches, of a region or of all particles. */
 static void watch(monitor *m, monitors *all, diagnostics *d) {
   const run_body *of = m->of[0];
   take_sites(m, 0, all, m->deck->region);
+  if (!leave_out_tied(m, d)) return;
   damage_law *laws = run_body_damages(of);
   m->own =
       watched_new(m->deck, m->indices[0], m->index_count[0], of->state, laws, of->law_count, d);
