@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "dsl/base/elementary.h"
+#include "runtime/geometry/cell_overlap.h"
 #include "runtime/geometry/gmsh_text.h"
 #include "runtime/geometry/hilbert.h"
 
@@ -18,6 +19,8 @@ typedef struct maker {
   int32_t *number;  /* [t->node_count] in the mesh, -1 of nodes without a cell */
   int32_t *element; /* [cells] of the text */
 } maker;
+
+static const double ONE_PLACE = 1e-6; /* of the shortest side: nodes that near are twins */
 
 static span line_of(const maker *k, uint32_t at) {
   return gmsh_text_line(k->t, at, k->d);
@@ -430,6 +433,68 @@ static const cell_side *find_side(const cell_side *sides, int count, int32_t low
   return first < count && same_ends(&sides[first], &key) ? &sides[first] : NULL;
 }
 
+static void say_inside(const maker *k, const cell_overlap *o) {
+  const gmsh_mesh *m = k->m;
+  int other = o->other;
+  for (int c = 0; c < m->cell_count && other < 0; c++)
+    for (int q = 0; q < m->nodes[c]; q++)
+      if (m->cell[c][q] == o->node) other = c;
+  const long long first = (long long)m->cell_tag[o->cell], second = (long long)m->cell_tag[other];
+  if (o->node >= 0)
+    diag_report(k->d, DIAG_BAD_VALUE, line_of_cell(k, other),
+                "cells %lld and %lld lie over each other: node %lld of this one, at (%.6g, %.6g) "
+                "mm, is in cell %lld",
+                first, second, (long long)m->tag[o->node], 1e3 * m->at[o->node][0],
+                1e3 * m->at[o->node][1], first);
+  else
+    diag_report(k->d, DIAG_BAD_VALUE, line_of_cell(k, other),
+                "cells %lld and %lld lie over each other: the middle of this one is in cell "
+                "%lld",
+                first, second, first);
+  diag_hint(k->d,
+            "do surfaces lie over each other? In Gmsh: BooleanFragments, or BooleanDifference");
+  diag_note(k->d, line_of_cell(k, o->cell), "cell %lld is here", first);
+}
+
+static void say_hanging(const maker *k, const cell_overlap *o) {
+  const gmsh_mesh *m = k->m;
+  const int32_t *cell = m->cell[o->cell], from = cell[o->side],
+                to = cell[(o->side + 1) % element_corners(m->nodes[o->cell])];
+  diag_report(k->d, DIAG_BAD_VALUE, line_of_cell(k, o->cell),
+              "node %lld hangs: it lies at (%.6g, %.6g) mm on the side from node %lld to %lld of "
+              "cell %lld, which has it not",
+              (long long)m->tag[o->node], 1e3 * m->at[o->node][0], 1e3 * m->at[o->node][1],
+              (long long)m->tag[from], (long long)m->tag[to], (long long)m->cell_tag[o->cell]);
+  diag_hint(k->d, "neighbours have whole sides in common: `Coherence` or BooleanFragments in Gmsh "
+                  "before it meshes; faces of a slit have nodes at the same places");
+}
+
+/* Cells lie on both sides of it: what else lies on it lies over one of them. */
+static bool is_between(const gmsh_mesh *m, const cell_overlap *o, const cell_side *sides,
+                       int count) {
+  const int32_t a = m->cell[o->cell][o->side],
+                b = m->cell[o->cell][(o->side + 1) % element_corners(m->nodes[o->cell])];
+  const cell_side *of = find_side(sides, count, a < b ? a : b, a < b ? b : a);
+  return of && of + 1 < sides + count && same_ends(of, of + 1);
+}
+
+static bool cells_are_apart(const maker *k, const cell_side *sides, int count) {
+  const gmsh_mesh *m = k->m;
+  const overlap_cells all = {.node_count = m->node_count,
+                             .count = m->cell_count,
+                             .at = (const double(*)[2])m->at,
+                             .nodes = m->nodes,
+                             .cell = (const int32_t(*)[ELEMENT_MOST_NODES])m->cell,
+                             .same = ONE_PLACE * m->least};
+  cell_overlap found;
+  if (!cell_overlap_find(&all, &found)) return true;
+  if (found.side < 0 || is_between(m, &found, sides, count))
+    say_inside(k, &found);
+  else
+    say_hanging(k, &found);
+  return false;
+}
+
 /* The file's lines; numbers of elements that are lines: [side_count]. */
 static void take_sides(maker *k, const cell_side *sides, int count, int32_t *line) {
   gmsh_mesh *m = k->m;
@@ -475,7 +540,8 @@ static const gmsh_entity *entity_of(const gmsh_text *t, const gmsh_element *e) {
 static bool is_in(const gmsh_text *t, const gmsh_entity *e, const gmsh_name *group) {
   for (int k = 0; e && k < e->group_count; k++) {
     const int64_t tag = t->groups[e->first_group + k];
-    if (tag == group->tag || tag == -group->tag) return true;
+    /* a curve that is turned has the sign; INT64_MIN has no opposite */
+    if (tag == group->tag || (tag != INT64_MIN && -tag == group->tag)) return true;
   }
   return false;
 }
@@ -567,7 +633,7 @@ static void warn_of_twins(const maker *k) {
       at[a][n] = m->at[n][a];
   }
   const point_cloud cloud = {.dimensions = 2, .count = m->node_count, .at = {at[0], at[1]}};
-  const point_pairs twins = pairs_within(&cloud, 1e-6 * m->least, 64);
+  const point_pairs twins = pairs_within(&cloud, ONE_PLACE * m->least, 64);
   if (twins.count > 0) {
     const point_pair *p = &twins.items[0];
     diag_report(k->d, DIAG_DECK_WARNING, line_of(k, 0),
@@ -638,9 +704,12 @@ static bool make(maker *k, span where) {
   int count;
   cell_side *sides = sides_of(k->m, &count);
   int32_t *line = must_alloc(((size_t)k->t->element_count + 1) * sizeof *line);
-  const bool good = sides_fit(k, sides, count);
+  bool good = sides_fit(k, sides, count);
   if (good) {
     find_least(k->m, sides, count);
+    good = cells_are_apart(k, sides, count);
+  }
+  if (good) {
     find_area(k->m);
     take_sides(k, sides, count, line);
     take_groups(k, line);

@@ -40,8 +40,8 @@ typedef struct gmsh_mesh {
 enum { GMSH_MOST_NODES = 4000000, GMSH_MOST_AROUND = 64 /* cells around a node */ };
 
 /* Takes over `path` (malloc'ed), as gmsh_text_read. NULL after messages, also where a cell is
-   degenerate or inverted, cells lie over each other, or there is none. A surface all of whose cells are
-   clockwise is turned. */
+   degenerate or inverted, cells lie over each other (cell_overlap.h), a node hangs, or there is no
+   cell. A surface all of whose cells are clockwise is turned. */
 const gmsh_mesh *gmsh_mesh_read(arena *a, char *path, double unit, span where, diagnostics *d);
 
 /* The group of that name; NULL without. */

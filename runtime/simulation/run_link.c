@@ -78,6 +78,51 @@ static void load_bodies(const run_link *link, int number, run_body *bodies) {
   }
 }
 
+/* Of a body's particles, which a tie moves; NULL: none. */
+static unsigned char *tied_of(const run_body *b) {
+  if (b->tie_count == 0) return NULL;
+  unsigned char *tied = must_calloc((size_t)b->lattice_rows->particle_count + 1, 1);
+  for (int n = 0; n < b->tie_count; n++)
+    for (long p = 0; p < b->ties[n].count; p++)
+      tied[b->ties[n].particles[p].particle] = 1;
+  return tied;
+}
+
+static void refuse_tied(const deck *k, const run_body *link, const run_body *to, int32_t particle,
+                        diagnostics *d) {
+  const deck_item *item = &k->lattices[link->lattice].item;
+  double at[3];
+  char text[ROWS_PLACE_TEXT];
+  rows_place(to->lattice_rows, site_of(to, particle), at);
+  for (int a = 0; a < 2; a++)
+    if (fabs(at[a]) < 1e-9 * to->lattice_rows->spacing) at[a] = 0; /* rounding */
+  diag_report(d, DIAG_CONFLICT, item->where,
+              "the link `%s` reaches the particle of `%s` at %s, which is tied to a mesh",
+              link->name, to->name, rows_place_text(2, at, text));
+  diag_hint(d, "end the bar farther from the mesh, or choose other particles of it: `first`, "
+               "`every`; a smaller `within` reaches less far");
+}
+
+bool run_links_are_free(const run_body *bodies, int body_count, const deck *k, diagnostics *d) {
+  bool good = true;
+  for (int t = 0; t < body_count; t++) {
+    unsigned char *tied = tied_of(&bodies[t]);
+    for (int b = 0; b < body_count && tied; b++) {
+      const rows *g = bodies[b].lattice_rows;
+      bool free_here = true;
+      for (long p = 0; g && g->copies && p < g->particle_count && free_here; p++)
+        for (int n = 0; n < g->copies[p].count && free_here; n++) {
+          const rows_copy *c = &g->copies[p];
+          free_here = c->lattice != t || !tied[c->particle[n]];
+          if (!free_here) refuse_tied(k, &bodies[b], &bodies[t], c->particle[n], d);
+        }
+      good = good && free_here;
+    }
+    free(tied);
+  }
+  return good;
+}
+
 run_link *run_links_new(run_body *bodies, int body_count, int *count) {
   run_link *links = must_calloc((size_t)body_count + 1, sizeof *links);
   *count = 0;

@@ -27,7 +27,9 @@ static bool is_sound(simulation *s, rows *const *lattices, diagnostics *d) {
   free(built);
   for (int b = 0; b < s->body_count; b++)
     if (!s->bodies[b].fits) return false;
-  if (!bodies_fit(k, s->bodies, s->body_count, d)) return false;
+  if (!bodies_fit(k, s->bodies, s->body_count, d) ||
+      !run_links_are_free(s->bodies, s->body_count, k, d))
+    return false;
   const bool frames =
                  deck_lacks(k, "output") || frames_check(&k->output, s->bodies, s->body_count, d),
              watched = monitors_check(k, s->bodies, s->body_count, d);

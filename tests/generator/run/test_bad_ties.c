@@ -57,6 +57,12 @@ static const fault faults[] = {
     {"beside", "'43.30127 mm', '40 mm'", "'39 mm', '40 mm'", false},
     {"zigzag", "rotation = 90", "rotation = 0", false},
     {"over_the_edge", "corner = '43.30127 mm', 0  size", "corner = '41 mm', 0  size", true},
+    {"linked", "&output ",
+     "&bar  name = 'rebar'  points = 0, '21 mm', '43 mm', '21 mm'  diameter = '5 mm'  spacing = "
+     "'8.6 mm' /\n&material  bar = 'rebar'  model = 'steel_bar'  E = '200 GPa'  F_y = '400 MPa'  "
+     "rho = '7850 kg/m^3' /\n&link  name = 'bond'  bar = 'rebar'  lattice = 'core' /\n&material  "
+     "link = 'bond'  model = 'bar_bond'  E = '25 GPa'  nu = 0.2  rho = '2323 kg/m^3' /\n&output ",
+     false},
     {"static", "&output ", "&static /\n&output ", false},
 };
 enum { FAULTS = sizeof faults / sizeof *faults };

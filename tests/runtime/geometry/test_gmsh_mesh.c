@@ -144,6 +144,9 @@ typedef struct bad {
 #define SMALL(nodes, elements)                                                                     \
   HEAD "$Nodes\n1 4 1 4\n2 1 0 4\n1 2 3 4\n" nodes "\n$EndNodes\n$Elements\n" elements             \
        "\n$EndElements\n"
+#define FIVE(nodes, elements)                                                                      \
+  HEAD "$Nodes\n1 5 1 5\n2 1 0 5\n1 2 3 4 5\n" nodes "\n$EndNodes\n$Elements\n1 2 1 2\n" elements  \
+       "\n$EndElements\n"
 #define SQUARE "0 0 0 1 0 0 1 1 0 0 1 0"
 
 static const bad wrong[] = {
@@ -167,6 +170,13 @@ static const bad wrong[] = {
     {SMALL(SQUARE, "2 1 1 1\n2 1 2 1\n1 1 2 3\n2 2 2 1\n2 1 2 3"),
      "cells 1 and 2 have the same nodes", 15},
     {SMALL(SQUARE, "1 1 1 1\n2 1 2 2\n1 1 2 3\n2 1 2 4"), "cells 1 and 2 lie over each other", 14},
+    {FIVE("0 0 0 2 0 0 2 2 0 1 .5 0 0 2 0", "2 1 2 2\n1 1 2 3\n2 1 4 5"),
+     "cells 1 and 2 lie over each other: node 4 of this one, at (1000, 500) mm, is in cell 1", 14},
+    {FIVE("0 0 0 2 0 0 0 1 0 1 0 0 0 -1 0", "2 1 2 2\n1 1 2 3\n2 1 5 4"),
+     "node 4 hangs: it lies at (1000, 0) mm on the side from node 1 to 2 of cell 1", 13},
+    {HEAD "$Nodes\n1 6 1 6\n2 1 0 6\n1 2 3 4 5 6\n0 0 0 1 0 0 0 1 0 0 0 0 1 0 0 0 1 0\n"
+          "$EndNodes\n$Elements\n1 2 1 2\n2 1 2 2\n1 1 2 3\n2 4 5 6\n$EndElements\n",
+     "cells 1 and 2 lie over each other: the middle of this one is in cell 1", 14},
     {SMALL("0 0 0 1 0 0 1 1 .5 0 1 0", "1 1 1 1\n2 1 3 1\n1 1 2 3 4"), "stands at z = 500 mm", 7},
     {SMALL("0 0 0 1 0 0 2 0 0 3 0 0", "1 1 1 1\n2 1 2 1\n1 1 2 3"), "is degenerate", 13},
     {SMALL(SQUARE, "1 1 1 1\n2 1 2 1\n1 1 2 2"), "has a node twice", 13},
