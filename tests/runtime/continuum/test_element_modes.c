@@ -458,6 +458,8 @@ static void gauges_see_the_mean_dilatation(void **state) {
     print_message("strain %.9g, %.9g\n", small_last(&c.r, "x"), small_last(&c.r, "y"));
     assert_true(fabs(small_last(&c.r, "x") - (a * y * dt + shift)) < 1e-10 * a * dt);
     assert_true(fabs(small_last(&c.r, "y") - shift) < 1e-10 * a * dt);
+    const double stress = 30e9 / (1 - 0.2 * 0.2) * (shift + 0.2 * (a * y * dt + shift));
+    assert_true(fabs(small_last(&c.r, "s") / stress - 1) < 1e-9);
     small_close(&c.r);
   }
 }
