@@ -277,6 +277,42 @@ static void the_stiffer_law_limits_the_step(void **state) {
   }
 }
 
+/* Hourglass modes of either square, by the matrix and point by point. */
+static void each_law_resists_its_own_hourglass(void **state) {
+  (void)state;
+  pl_law bent = hooke_law;
+  bent.linear = 0;
+  double stored[2][2];
+  for (int k = 0; k < 4; k++) {
+    const pl_law *of = k % 2 ? &bent : &hooke_law, *const law[2] = {of, of};
+    small_run r;
+    char text[1024];
+    double values[2][8];
+    snprintf(text, sizeof text,
+             "&simulation end_time = '0.02 us' step = '0.001 us' /\n"
+             "&mesh name = 'disc' file = 'disc.msh' unit = 'mm' thickness = '10 mm' gauss = 1 "
+             "hourglass = 0.5 /\n"
+             "&material mesh = 'disc' model = 'hooke' /\n"
+             "&material mesh = 'disc' region = 'upper' model = 'hooke' E = 30e8 /\n"
+             "&region name = 'of' lattice = 'disc' shape = 'rectangle' corner = %g, -1 size = "
+             "1.8e-3, 3 /\n"
+             "&initial_velocity region = 'of' component = 'x' value = '1 [m/s]*(x/1 [mm] - %g)*"
+             "(y/1 [mm] - 0.5)' /\n",
+             k < 2 ? -0.4e-3 : 2.6e-3, k < 2 ? 0.5 : 3.5);
+    whole_deck = text;
+    open_two(&r, law, squares, "", values);
+    whole_deck = NULL;
+    assert_int_equal(small_go(&r), STEP_END);
+    stored[k / 2][k % 2] = small_last(&r, "energy/stored");
+    small_close(&r);
+  }
+  for (int k = 0; k < 2; k++)
+    assert_true(stored[k][0] > 0 && fabs(stored[k][1] / stored[k][0] - 1) < 1e-9);
+  const double ratio = stored[0][0] / stored[1][0];
+  print_message("stored in hourglass modes: %.3g J, %.3g J\n", stored[0][0], stored[1][0]);
+  assert_true(fabs(ratio - 10) < 0.2); /* as E: after the same way, nearly */
+}
+
 /* A square and a rectangle three times as wide side by side: at nodes of both, laws count by area. */
 static void laws_share_nodes_by_area(void **state) {
   (void)state;
@@ -553,6 +589,7 @@ int main(void) {
       cmocka_unit_test(normals_of_turned_curves_point_out),
       cmocka_unit_test(edges_are_loaded),
       cmocka_unit_test(the_stiffer_law_limits_the_step),
+      cmocka_unit_test(each_law_resists_its_own_hourglass),
       cmocka_unit_test(laws_share_nodes_by_area),
       cmocka_unit_test(two_cells_of_one_node_die),
       cmocka_unit_test(materials_of_groups),
