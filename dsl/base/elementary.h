@@ -422,6 +422,45 @@ PL_ELEMENTARY double pl_atan2(double y, double x) {
   return pl_copy_sign(pl_fma(quarters, 0.5 * PL_HALF_PI_HI, arc), y);
 }
 
+/* Where a search for the root of a rising function is: at z, the root between low and high, by a
+   step of Newton's of the size `last` and a move as large as `move`; going 0: it has ended. */
+typedef struct pl_search_place {
+  double z, low, high, last, move, going;
+} pl_search_place;
+
+#define PL_SEARCH_STEPS 100 /* at most */
+
+PL_ELEMENTARY pl_search_place pl_search_from(double z) {
+  const pl_search_place at = {z, -PL_INFINITY, PL_INFINITY, PL_INFINITY, 0.0, 1.0};
+  return at;
+}
+
+/* On by Newton's step; halfway between low and high where that leads out or is more than half the
+   last one; while one of them is not known, four times the last move where it is more than 3/4 of
+   the last one (a function that is flat here). Where nothing is `open` it takes the step and ends.
+   */
+PL_ELEMENTARY pl_search_place pl_search(pl_search_place at, double step, double open) {
+  const double size = pl_abs(step), newton = at.z + step;
+  const double low = step > 0.0 ? at.z : at.low, high = step < 0.0 ? at.z : at.high;
+  const double middle = 0.5 * (low + high), far = at.z + pl_copy_sign(4.0 * at.move, step);
+  const double below = newton < high ? 1.0 : 0.0, inside = newton > low ? below : 0.0;
+  const double held = 2.0 * size <= at.last ? inside : 0.0;
+  const double between = held != 0.0 ? newton : middle;
+  const double beyond = 4.0 * size <= 3.0 * at.last ? newton : far;
+  const double next = high - low < PL_INFINITY ? between : beyond;
+  const double end = inside != 0.0 ? newton : at.z;
+  const double z = open != 0.0 ? next : end;
+  const double moves = z != at.z ? open : 0.0, goes_on = step == step ? moves : 0.0;
+  pl_search_place to;
+  to.z = at.going != 0.0 ? z : at.z;
+  to.low = at.going != 0.0 ? low : at.low;
+  to.high = at.going != 0.0 ? high : at.high;
+  to.last = at.going != 0.0 ? size : at.last;
+  to.move = at.going != 0.0 ? pl_abs(z - at.z) : at.move;
+  to.going = at.going != 0.0 ? goes_on : 0.0;
+  return to;
+}
+
 /* x less whole turns, in (-pi, pi] as far as doubles can tell: at most the double nearest to pi in
  * size. */
 PL_ELEMENTARY double pl_wrap_angle(double x) {

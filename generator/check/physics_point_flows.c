@@ -21,7 +21,7 @@ struct point_flows {
   lowered_law step;
   interpreter *fields, *overstress;
   int count;                         /* of flows */
-  double *room, **field, **over;     /* [fields], [count]: one value each */
+  double *room, **field, **over;     /* [fields], [3 count]: overstresses, slopes */
   const double **at_field, **at_own; /* [fields], [parameters] */
   double strain[POINT_STRAINS];
 };
@@ -40,21 +40,25 @@ static bool lower_flows(point_flows *f, diagnostics *d) {
 
 static void open_values(point_flows *f) {
   const int fields = f->law->fields.count;
-  ir_node *over = arena_alloc(f->memory, (size_t)f->count * sizeof *over);
-  for (int k = 0; k < f->count; k++)
-    over[k] = f->step.text.flows[k].overstress;
+  ir_node *over = arena_alloc(f->memory, 3 * (size_t)f->count * sizeof *over);
+  for (int k = 0; k < f->count; k++) {
+    const lowered_flow *flow = &f->step.text.flows[k];
+    over[k] = flow->overstress;
+    over[f->count + k] = flow->slope == IR_NONE ? flow->overstress : flow->slope;
+    over[2 * f->count + k] = flow->slope == IR_NONE ? flow->overstress : flow->slope_after;
+  }
   f->fields = interpreter_new(f->graph, f->step.fields, fields);
-  f->overstress = interpreter_new(f->graph, over, f->count);
-  f->room = must_calloc((size_t)(2 * fields + f->count), sizeof(double));
+  f->overstress = interpreter_new(f->graph, over, 3 * f->count);
+  f->room = must_calloc((size_t)(2 * fields + 3 * f->count), sizeof(double));
   f->field = must_calloc((size_t)fields, sizeof *f->field);
-  f->over = must_calloc((size_t)f->count, sizeof *f->over);
+  f->over = must_calloc(3 * (size_t)f->count, sizeof *f->over);
   f->at_field = must_calloc((size_t)fields, sizeof *f->at_field);
   f->at_own = must_calloc((size_t)f->law->parameters.count + 1, sizeof *f->at_own);
   for (int k = 0; k < fields; k++) {
     f->at_field[k] = &f->room[k];
     f->field[k] = &f->room[fields + k];
   }
-  for (int k = 0; k < f->count; k++)
+  for (int k = 0; k < 3 * f->count; k++)
     f->over[k] = &f->room[2 * fields + k];
 }
 
@@ -131,6 +135,30 @@ static void say(point_bench *b, const point_flows *f, int k, double left) {
                        1 - left);
 }
 
+/* Of a returned flow whose return is not found: Newton's method goes down f, which must fall, and
+   not without bound. Whether it can. */
+static bool can_return(point_bench *b, const point_flows *f, int k) {
+  static const double STEEP = 100;
+  const lowered_flow *flow = &f->step.text.flows[k];
+  const double slope = *f->over[f->count + k], after = *f->over[2 * f->count + k];
+  const bool steep = !isfinite(slope) || !isfinite(after) || fabs(after) > STEEP * fabs(slope);
+  double strain[POINT_MOST];
+  if (flow->slope == IR_NONE || (!steep && slope < 0)) return true;
+  strain_of(b, f, strain);
+  if (!steep)
+    point_bench_say_at(b, flow->rule->where, DIAG_FLOW, strain,
+                       "look at signs: what the flow relaxes is taken from f, as in `- "
+                       "3*mu*(x - previous(x))`, and softening must be less steep",
+                       "f does not fall along the direction of the flow: its slope is %.4g where "
+                       "it begins, and no return is found",
+                       slope);
+  else
+    point_bench_say_at(b, flow->rule->where, DIAG_NOT_FINITE, strain,
+                       "write `(x + small)**m` for `x**m`, a root likewise: `small` as 1e-6",
+                       "f has no finite slope at the start of the return, and it is not found");
+  return false;
+}
+
 void physics_check_flows(point_bench *b, point_flows *f) {
   const symbol_list *fields = &f->law->fields;
   double before[16];
@@ -142,6 +170,9 @@ void physics_check_flows(point_bench *b, point_flows *f) {
   for (int k = 0; k < f->count; k++)
     before[k] = *f->over[k];
   run(b, f, f->fields, f->field);
+  for (int k = 0; k < f->count; k++)
+    if (before[k] > 0 && !isfinite(*f->field[f->step.text.flows[k].field]) && !can_return(b, f, k))
+      return;
   for (int k = 0; k < fields->count; k++)
     f->room[k] = *f->field[k];
   run(b, f, f->overstress, f->over);

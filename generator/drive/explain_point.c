@@ -6,6 +6,7 @@
 #include "dsl/base/arena.h"
 #include "generator/interpreter/comparison.h"
 #include "generator/ir/interpret.h"
+#include "generator/lower/lower.h"
 #include "generator/lower/lower_inputs.h"
 #include "generator/lower/point_inputs.h"
 
@@ -15,7 +16,7 @@ ir_node *explain_named_values(const kernel_plan *p, program_task task, int *coun
   ir_node *named = must_calloc((size_t)ir_count(g) + 1, sizeof *named);
   *count = 0;
   for (ir_node n = 0; n < ir_count(g); n++)
-    if (marks[n] && ir_name(g, n) && ir_operation(g, n) != IR_INPUT && ir_where(g, n).end > 0)
+    if (marks[n] && ir_name(g, n) && !ir_is_sought(g, n) && ir_operation(g, n) != IR_INPUT && ir_where(g, n).end > 0)
       named[(*count)++] = n;
   free(marks);
   return named;
@@ -40,7 +41,45 @@ static bool is_returned(const kernel_plan *p, ir_node n) {
   return false;
 }
 
-static void report_point(const kernel_plan *p, const interpreter_inputs *in, FILE *out) {
+/* The same by the law's flow, whose slopes tell. */
+static const lowered_flow *flow_of(const kernel_plan *p, ir_node n, const lowered_law *step) {
+  const span where = ir_where(p->graph, n);
+  for (int k = 0; k < step->text.flow_count; k++) {
+    const lowered_flow *f = &step->text.flows[k];
+    const symbol *s = p->law->fields.items[f->field], *of = s->component_of ? s->component_of : s;
+    if (f->slope != IR_NONE && of->rule->where.file == where.file &&
+        of->rule->where.begin == where.begin)
+      return f;
+  }
+  return NULL;
+}
+
+/* Why a return is not found, where its slopes at its start tell. */
+static bool report_slope(const kernel_plan *p, ir_node n, const interpreter_inputs *in, FILE *out) {
+  arena *memory = arena_new();
+  ir *graph = ir_new();
+  diagnostics said = {0};
+  lowered_law step;
+  double slope = -1, *at = &slope;
+  const bool lowered = lower_law(p->law, graph, LOWER_STEP, memory, &step, &said);
+  const lowered_flow *f = lowered ? flow_of(p, n, &step) : NULL;
+  if (f) {
+    interpreter *program = interpreter_new(graph, &f->slope, 1);
+    interpreter_run(program, in, 1, &at);
+    interpreter_free(program);
+    if (!isfinite(slope))
+      fputs("  f has no finite slope at the start of the return: write `(x + small)**m` for "
+            "`x**m`, `small` as 1e-6\n",
+            out);
+    else if (slope >= 0)
+      fputs("  f does not fall along the direction of the flow: look at signs\n", out);
+  }
+  ir_free(graph);
+  arena_free(memory);
+  return !(slope < 0 && isfinite(slope));
+}
+
+static bool report_point(const kernel_plan *p, const interpreter_inputs *in, FILE *out) {
   int count;
   ir_node *named = explain_named_values(p, PROGRAM_STEP, &count);
   double **values = planes_new(count + 1, 1);
@@ -49,19 +88,24 @@ static void report_point(const kernel_plan *p, const interpreter_inputs *in, FIL
   int k = 0;
   while (k < count && isfinite(values[k][0]))
     k++;
+  bool no_slope = false;
+  const bool flow = k < count && is_returned(p, named[k]);
   if (k < count)
     explain_line(p, named[k],
-                 is_returned(p, named[k]) ? "does not come back to its limit: the flow is not found"
-                                          : "stops being finite",
+                 flow ? "does not come back to its limit: the flow is not found"
+                      : "stops being finite",
                  out);
-  else if (p->law->setting == SETTING_PLANE_STRESS)
+  if (flow)
+    no_slope = report_slope(p, named[k], in, out);
+  else if (k == count && p->law->setting == SETTING_PLANE_STRESS)
     fputs("  no strain along z is found that leaves no stress there\n", out);
   interpreter_free(program);
   planes_free(values, count + 1);
   free(named);
+  return no_slope;
 }
 
-void explain_point(const kernel_plan *p, const double *parameters, const asked_point *at,
+bool explain_point(const kernel_plan *p, const double *parameters, const asked_point *at,
                    FILE *out) {
   const law *l = p->law;
   const double none = 0, *point[POINT_INPUTS], *ends[ENDS_COUNT] = {[ENDS_TIME_STEP] = &at->step};
@@ -83,8 +127,9 @@ void explain_point(const kernel_plan *p, const double *parameters, const asked_p
                                             [IR_FROM_FIELD] = field,
                                             [IR_FROM_ENDS] = ends,
                                             [IR_FROM_POINT] = point}};
-  report_point(p, &in, out);
+  const bool no_slope = report_point(p, &in, out);
   free(given);
   free(own);
   free(field);
+  return no_slope;
 }

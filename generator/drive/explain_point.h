@@ -14,8 +14,10 @@ typedef struct asked_point {
 } asked_point;
 
 /* Names the first quantity of the law, with its line, that is not finite there at rest, a flow that
-   does not come back to its limit, or a strain along z that is not found; nothing where all are. */
-void explain_point(const kernel_plan *p, const double *parameters, const asked_point *at,
+   does not come back to its limit, or a strain along z that is not found; nothing where all are.
+   Whether it is a flow whose f has no slope down, or none that is finite, where it begins (told,
+   too): no step is small enough for it. */
+bool explain_point(const kernel_plan *p, const double *parameters, const asked_point *at,
                    FILE *out);
 
 /* Named values that a program of one segment needs, in the order of evaluation; to be freed. An

@@ -1,5 +1,8 @@
 #include "generator/emit/point_loops.h"
 
+#include <stdlib.h>
+#include <string.h>
+
 #include "generator/lower/point_inputs.h"
 
 /* --- inputs ----------------------------------------------------------------------------------- */
@@ -29,6 +32,7 @@ static const char *array_of_input(emitter *e, ir_node n) {
 }
 
 static void declare(emitter *e, ir_node n) {
+  if (ir_is_sought(e->graph, n)) return;
   if (expression_is_ends_input(e, n, ENDS_TIME_STEP))
     say(e, SAY_DECLARE, "  ", spell(e, SAY_VALUE), e->name[n], spell(e, SAY_POINT_TIME_STEP));
   else
@@ -36,7 +40,26 @@ static void declare(emitter *e, ir_node n) {
         array_of_input(e, n));
 }
 
+/* Searches of a program one after the other; what they and what follows them take from before. */
+typedef struct searches {
+  ir_node *of;         /* [count] */
+  int count, now;      /* the one that is written */
+  int *kept;           /* [node_count] number of the array where a value waits for a search; -1 */
+  unsigned char *mask; /* [node_count] lines of a loop */
+} searches;
+
+static int number_of_search(const searches *s, ir_node n) {
+  int k = 0;
+  while (s->of[k] != n)
+    k++;
+  return k;
+}
+
 static const char *input(emitter *e, ir_node n) {
+  const searches *s = e->form;
+  if (ir_is_sought(e->graph, n)) return spell(e, SAY_SEARCH_RESULT, numeral(e, s->now));
+  if (ir_operation(e->graph, n) == IR_SEARCH)
+    return spell(e, SAY_SEARCH_RESULT, numeral(e, number_of_search(s, n)));
   return spell(e, SAY_HERE, spell(e, SAY_INPUT_ARRAY, e->name[n]));
 }
 
@@ -56,8 +79,137 @@ static const char *array_of_root(emitter *e, const segment_root *r) {
   return spell(e, members[r->target], numeral(e, r->index));
 }
 
+static void write_results(emitter *e, const segment *a) {
+  for (int k = 0; k < a->root_count; k++)
+    say(e, segment_is_loss(&a->roots[k]) ? SAY_ADD : SAY_STORE, "    ",
+        spell(e, SAY_HERE, spell(e, SAY_RESULT_ARRAY, numeral(e, k))),
+        expression_whole(e, a->roots[k].node));
+}
+
+/* --- searches --------------------------------------------------------------------------------- */
+
+enum { SEARCH_BLOCK = 64 };
+
+static searches searches_of(const emitter *e) {
+  const size_t size = (size_t)e->node_count + 1;
+  searches s = {must_alloc(size * sizeof *s.of), 0, 0, must_alloc(size * sizeof *s.kept),
+                must_calloc(size, 1)};
+  for (ir_node n = 0; n < e->node_count; n++)
+    if (e->needed[n] && ir_operation(e->graph, n) == IR_SEARCH) s.of[s.count++] = n;
+  return s;
+}
+
+static void searches_free(searches *s) {
+  free(s->of);
+  free(s->kept);
+  free(s->mask);
+}
+
+static bool is_leaf(const emitter *e, ir_node n) {
+  return expression_is_uniform(e, n) || ir_arity(ir_operation(e->graph, n)) == 0 ||
+         ir_operation(e->graph, n) == IR_SEARCH;
+}
+
+/* Adds to the mask what its nodes need, down to searches and to what is kept. */
+static void spread(const emitter *e, searches *s) {
+  for (ir_node n = e->node_count - 1; n >= 0; n--)
+    for (int k = 0;
+         s->mask[n] && !is_leaf(e, n) && s->kept[n] < 0 && k < ir_arity(ir_operation(e->graph, n));
+         k++)
+      s->mask[ir_operand(e->graph, n, k)] = 1;
+}
+
+static void write_lines(emitter *e, const searches *s) {
+  for (ir_node n = 0; n < e->node_count; n++)
+    if (s->mask[n] && s->kept[n] >= 0)
+      say(e, SAY_LINE, "    ", e->name[n], spell(e, SAY_SEARCH_KEPT, numeral(e, s->kept[n])),
+          expression_line_end(e, n));
+    else if (s->mask[n])
+      expression_line(e, n);
+}
+
+/* What its steps take that does not change from step to step, and where it begins. */
+static void write_start(emitter *e, searches *s, const char *found) {
+  const ir_node n = s->of[s->now];
+  unsigned char *changing = must_calloc((size_t)e->node_count + 1, 1);
+  int *kept = must_alloc(((size_t)e->node_count + 1) * sizeof *kept), count = 0;
+  changing[ir_operand(e->graph, n, 1)] = changing[ir_operand(e->graph, n, 2)] = 1;
+  memset(s->mask, 0, (size_t)e->node_count + 1);
+  s->mask[ir_operand(e->graph, n, 0)] = 1;
+  for (ir_node k = e->node_count - 1; k >= 0; k--) {
+    kept[k] = -1;
+    if (!changing[k] || is_leaf(e, k)) continue;
+    if (!ir_is_sought(e->graph, k) && e->name[k]) {
+      s->mask[k] = 1;
+      kept[k] = count++;
+      say(e, SAY_SEARCH_KEEP, numeral(e, kept[k]));
+      continue;
+    }
+    for (int o = 0; o < ir_arity(ir_operation(e->graph, k)); o++)
+      changing[ir_operand(e->graph, k, o)] = 1;
+  }
+  spread(e, s);
+  say(e, SAY_SEARCH_LOOP);
+  write_lines(e, s);
+  for (ir_node k = 0; k < e->node_count; k++)
+    if (kept[k] >= 0)
+      say(e, SAY_STORE, "    ", spell(e, SAY_SEARCH_KEPT, numeral(e, kept[k])), e->name[k]);
+  say(e, SAY_SEARCH_START, expression_whole(e, ir_operand(e->graph, n, 0)), found);
+  say(e, SAY_END, "  ");
+  memcpy(s->kept, kept, (size_t)e->node_count * sizeof *kept);
+  free(changing);
+  free(kept);
+}
+
+static void forget_kept(const emitter *e, searches *s) {
+  for (ir_node n = 0; n <= e->node_count; n++)
+    s->kept[n] = -1;
+  memset(s->mask, 0, (size_t)e->node_count + 1);
+}
+
+static void write_search(emitter *e, searches *s) {
+  const ir_node n = s->of[s->now];
+  const char *found = spell(e, SAY_SEARCH_RESULT, numeral(e, s->now));
+  say(e, SAY_SEARCH_FOUND, numeral(e, s->now));
+  say(e, SAY_SEARCH_BEGIN);
+  say(e, SAY_SEARCH_PLACES);
+  write_start(e, s, found);
+  memset(s->mask, 0, (size_t)e->node_count + 1);
+  s->mask[ir_operand(e->graph, n, 1)] = s->mask[ir_operand(e->graph, n, 2)] = 1;
+  spread(e, s);
+  say(e, SAY_SEARCH_STEPS);
+  say(e, SAY_SEARCH_LOOP);
+  write_lines(e, s);
+  say(e, SAY_SEARCH_STEP, found, expression_whole(e, ir_operand(e->graph, n, 1)),
+      expression_whole(e, ir_operand(e->graph, n, 2)));
+  say(e, SAY_END, "  ");
+  say(e, SAY_END, "  ");
+  say(e, SAY_END, "  ");
+  forget_kept(e, s);
+}
+
+/* Block by block: its searches, then the rest. */
+static void write_blocks(emitter *e, const segment *a, searches *s) {
+  say(e, SAY_SEARCH_BLOCKS, numeral(e, SEARCH_BLOCK));
+  for (s->now = 0; s->now < s->count; s->now++)
+    write_search(e, s);
+  for (int k = 0; k < a->root_count; k++)
+    s->mask[a->roots[k].node] = 1;
+  spread(e, s);
+  say(e, SAY_SEARCH_LOOP);
+  write_lines(e, s);
+  write_results(e, a);
+  say(e, SAY_END, "  ");
+  say(e, SAY_END, "  ");
+}
+
+/* --- programs --------------------------------------------------------------------------------- */
+
 static void write_program(emitter *e, const segment *a, const char *name) {
   expression_open_segment(e, &of_points, a);
+  searches s = searches_of(e);
+  e->form = &s;
+  forget_kept(e, &s);
   kernel_function_begin(&e->parts, e->out, "PL_PASS", name,
                         spell(e, e->plan->form == FORM_TIPS ? SAY_OVER_TIPS : SAY_OVER_POINTS));
   say(e, SAY_POINTS_HEAD);
@@ -65,15 +217,17 @@ static void write_program(emitter *e, const segment *a, const char *name) {
   for (int k = 0; k < a->root_count; k++)
     say(e, SAY_DECLARE, "  ", spell(e, SAY_WRITTEN), spell(e, SAY_RESULT_ARRAY, numeral(e, k)),
         array_of_root(e, &a->roots[k]));
-  say(e, SAY_OVER_BONDS);
-  expression_lines(e);
-  for (int k = 0; k < a->root_count; k++)
-    say(e, segment_is_loss(&a->roots[k]) ? SAY_ADD : SAY_STORE, "    ",
-        spell(e, SAY_HERE, spell(e, SAY_RESULT_ARRAY, numeral(e, k))),
-        expression_whole(e, a->roots[k].node));
-  say(e, SAY_END, "  ");
+  if (s.count) {
+    write_blocks(e, a, &s);
+  } else {
+    say(e, SAY_OVER_BONDS);
+    expression_lines(e);
+    write_results(e, a);
+    say(e, SAY_END, "  ");
+  }
   kernel_function_end(&e->parts, e->out);
   expression_close(e);
+  searches_free(&s);
 }
 
 void point_loops(emitter *e) {

@@ -108,6 +108,14 @@ static ir_node of_family_extreme(ir *g, const term *t) {
                           : ir_unary(g, IR_FAMILY_SUM, choose(g, attains, t->da, IR_NONE));
 }
 
+/* At a root the slope of the step by anything is how the root follows it: -f_x/f_z. */
+static ir_node of_search(ir *g, const term *t) {
+  const ir_node sought = ir_sought(g);
+  ir_node follows = t->db;
+  if (follows != IR_NONE) ir_substitute(g, &follows, 1, &sought, &t->q, 1, &follows);
+  return follows;
+}
+
 static ir_node of_operation(ir *g, const term *t) {
   switch (t->op) {
   case IR_ADD:
@@ -161,6 +169,8 @@ static ir_node of_operation(ir *g, const term *t) {
     return of_family_extreme(g, t);
   case IR_NEIGHBOUR:
     return t->da == IR_NONE ? IR_NONE : ir_unary(g, IR_NEIGHBOUR, t->da);
+  case IR_SEARCH:
+    return of_search(g, t);
   case IR_CONSTANT:
   case IR_INPUT: /* others than x */
   case IR_SIGN:

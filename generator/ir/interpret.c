@@ -31,11 +31,21 @@ static const lane_function lane_functions[IR_OP_COUNT] = {
 
 /* --- the interpreter -------------------------------------------------------------------------- */
 
+typedef struct search search;
+
 typedef struct step {
-  lane_function apply;
+  lane_function apply; /* NULL: a search */
   const double *a, *b, *c;
   double *out;
+  const search *search;
 } step;
+
+/* What is done anew in each of its steps. */
+struct search {
+  step *steps;
+  int step_count;
+  double *sought;
+};
 
 typedef struct input_slot {
   ir_source source;
@@ -51,6 +61,8 @@ struct interpreter {
   int input_count;
   step *steps;
   int step_count;
+  search *searches;
+  int search_count;
   const double **roots; /* lanes of each root */
   int root_count;
 };
@@ -73,19 +85,38 @@ static double *find_lanes(const interpreter *p, ir_node n) {
   return lanes_of(p, low);
 }
 
-static void add_step(interpreter *p, const ir *g, int slot) {
+static step step_of(const interpreter *p, const ir *g, int slot) {
   const ir_node n = p->nodes[slot];
   const ir_op op = ir_operation(g, n);
   const double *operand[3] = {p->lanes, p->lanes, p->lanes};
   for (int k = 0; k < ir_arity(op); k++)
     operand[k] = find_lanes(p, ir_operand(g, n, k));
-  assert(lane_functions[op] && "reductions over the family are for programs");
-  p->steps[p->step_count++] =
-      (step){lane_functions[op], operand[0], operand[1], operand[2], lanes_of(p, slot)};
+  assert((op == IR_SEARCH || lane_functions[op]) && "reductions over the family are for programs");
+  return (step){lane_functions[op], operand[0], operand[1], operand[2], lanes_of(p, slot), NULL};
+}
+
+/* Its steps are those nodes of it that change while it goes on. */
+static const search *add_search(interpreter *p, const ir *g, ir_node n) {
+  search *s = &p->searches[p->search_count++];
+  const ir_node asked[2] = {ir_operand(g, n, 1), ir_operand(g, n, 2)};
+  unsigned char *marks = must_calloc((size_t)n + 1, 1);
+  ir_mark(g, asked, 2, marks);
+  s->steps = must_calloc((size_t)p->slot_count, sizeof *s->steps);
+  for (int slot = 0; slot < p->slot_count && p->nodes[slot] < n; slot++) {
+    const ir_node of = p->nodes[slot];
+    if (!marks[of] || !ir_is_sought(g, of)) continue;
+    if (ir_operation(g, of) == IR_INPUT)
+      s->sought = lanes_of(p, slot);
+    else
+      s->steps[s->step_count++] = step_of(p, g, slot);
+  }
+  free(marks);
+  return s;
 }
 
 static void add_slot(interpreter *p, const ir *g, int slot) {
   const ir_node n = p->nodes[slot];
+  if (ir_is_sought(g, n)) return;
   if (ir_operation(g, n) == IR_CONSTANT) {
     for (int k = 0; k < INTERPRET_LANES; k++)
       lanes_of(p, slot)[k] = ir_value(g, n);
@@ -93,7 +124,9 @@ static void add_slot(interpreter *p, const ir *g, int slot) {
     p->inputs[p->input_count++] =
         (input_slot){ir_input_source(g, n), ir_input_index(g, n), lanes_of(p, slot)};
   } else {
-    add_step(p, g, slot);
+    step *made = &p->steps[p->step_count++];
+    *made = step_of(p, g, slot);
+    if (ir_operation(g, n) == IR_SEARCH) made->search = add_search(p, g, n);
   }
 }
 
@@ -114,6 +147,7 @@ interpreter *interpreter_new(const ir *g, const ir_node *roots, int root_count) 
   p->lanes = must_calloc(slots * INTERPRET_LANES, sizeof(double));
   p->inputs = must_calloc(slots, sizeof(input_slot));
   p->steps = must_calloc(slots, sizeof(step));
+  p->searches = must_calloc(slots, sizeof(search));
   for (int slot = 0; slot < p->slot_count; slot++)
     add_slot(p, g, slot);
   p->roots = must_calloc((size_t)root_count, sizeof(double *));
@@ -126,6 +160,9 @@ interpreter *interpreter_new(const ir *g, const ir_node *roots, int root_count) 
 void interpreter_free(interpreter *p) {
   if (!p) return;
   free(p->roots);
+  for (int k = 0; k < p->search_count; k++)
+    free(p->searches[k].steps);
+  free(p->searches);
   free(p->steps);
   free(p->inputs);
   free(p->lanes);
@@ -147,16 +184,46 @@ static void load(const interpreter *p, const interpreter_inputs *in, int first, 
   }
 }
 
+/* As emitted kernels do it (point_loops): all lanes as long as one goes on. */
+static void run_search(const step *of, int lanes) {
+  pl_search_place at[INTERPRET_LANES];
+  bool goes_on = true;
+  for (int k = 0; k < lanes; k++)
+    at[k] = pl_search_from(of->a[k]);
+  for (int n = 0; n < PL_SEARCH_STEPS && goes_on; n++) {
+    goes_on = false;
+    for (int k = 0; k < lanes; k++)
+      of->search->sought[k] = at[k].z;
+    for (int k = 0; k < of->search->step_count; k++) {
+      const step *s = &of->search->steps[k];
+      s->apply(lanes, s->a, s->b, s->c, s->out);
+    }
+    for (int k = 0; k < lanes; k++) {
+      at[k] = pl_search(at[k], of->b[k], of->c[k]);
+      goes_on = goes_on || at[k].going != 0;
+    }
+  }
+  for (int k = 0; k < lanes; k++)
+    of->out[k] = at[k].z;
+}
+
+static void run_steps(const step *steps, int step_count, int lanes) {
+  for (int k = 0; k < step_count; k++) {
+    const step *s = &steps[k];
+    if (s->apply)
+      s->apply(lanes, s->a, s->b, s->c, s->out);
+    else
+      run_search(s, lanes);
+  }
+}
+
 void interpreter_run(interpreter *p, const interpreter_inputs *in, int count,
                      double *const *outputs) {
   for (int first = 0; first < count; first += INTERPRET_LANES) {
     const int left = count - first;
     const int lanes = left < INTERPRET_LANES ? left : INTERPRET_LANES;
     load(p, in, first, lanes);
-    for (int k = 0; k < p->step_count; k++) {
-      const step *s = &p->steps[k];
-      s->apply(lanes, s->a, s->b, s->c, s->out);
-    }
+    run_steps(p->steps, p->step_count, lanes);
     for (int k = 0; k < p->root_count; k++)
       memcpy(outputs[k] + first, p->roots[k], sizeof(double) * (size_t)lanes);
   }

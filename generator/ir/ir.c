@@ -19,6 +19,7 @@ typedef struct node {
   bool of_class; /* differs from neighbour to neighbour, but not along a row */
   bool expected; /* a condition that holds nearly always */
   bool may_be_nan;
+  bool sought; /* changes while a search goes on */
   const char *name;
   span where;
 } node;
@@ -176,6 +177,10 @@ bool ir_is_expected(const ir *g, ir_node n) {
   return at(g, n)->expected;
 }
 
+bool ir_is_sought(const ir *g, ir_node n) {
+  return at(g, n)->sought;
+}
+
 bool ir_may_be_nan(const ir *g, ir_node n) {
   return at(g, n)->may_be_nan;
 }
@@ -229,6 +234,8 @@ static ir_node make_node(ir *g, ir_op op, ir_node a, ir_node b, ir_node c) {
   n.may_be_nan = operation_has(op, MAKES_NAN) && n.place > ON_BODY;
   for (int k = 0; k < ir_arity(op); k++)
     n.may_be_nan = n.may_be_nan || at(g, operand[k])->may_be_nan;
+  for (int k = 0; k < ir_arity(op) && op != IR_SEARCH; k++)
+    n.sought = n.sought || at(g, operand[k])->sought;
   return intern(g, &n);
 }
 
@@ -326,7 +333,7 @@ bool ir_is_reduction(ir_op op) {
 /* True, and the result in *value, when all operands are constants. */
 static bool fold(const ir *g, ir_op op, const ir_node operand[3], double *value) {
   double v[3] = {0.0, 0.0, 0.0};
-  if (ir_is_reduction(op)) return false;
+  if (ir_is_reduction(op) || op == IR_SEARCH) return false;
   for (int k = 0; k < ir_arity(op); k++) {
     if (!is_constant(g, operand[k])) return false;
     v[k] = ir_value(g, operand[k]);
@@ -391,6 +398,16 @@ ir_node ir_div(ir *g, ir_node a, ir_node b) {
 }
 ir_node ir_neg(ir *g, ir_node a) {
   return ir_make(g, IR_NEG, a, IR_NONE, IR_NONE);
+}
+
+ir_node ir_sought(ir *g) {
+  const ir_node n = ir_input(g, IR_FROM_SEARCH, 0, "sought", ON_POINT);
+  g->nodes[n].sought = true;
+  return n;
+}
+
+ir_node ir_search(ir *g, ir_node start, ir_node step, ir_node open) {
+  return ir_make(g, IR_SEARCH, start, step, open);
 }
 
 ir_node ir_select(ir *g, ir_node condition, ir_node yes, ir_node no) {
@@ -585,6 +602,7 @@ static const char *const source_names[IR_SOURCE_COUNT] = {
     [IR_FROM_PLANE] = "plane",
     [IR_FROM_TIP] = "tip",
     [IR_FROM_POINT] = "point",
+    [IR_FROM_SEARCH] = "search",
 };
 
 static void dump_node(const ir *g, ir_node number, FILE *out) {

@@ -42,6 +42,7 @@ typedef enum ir_source {
   IR_FROM_PLANE,     /* index: value toward each neighbour within a pass */
   IR_FROM_TIP,       /* index: tip_input of point_inputs.h: what the tip of a crack has */
   IR_FROM_POINT,     /* index: point_input of point_inputs.h: what a point of a continuum has */
+  IR_FROM_SEARCH,    /* where the search is: bound in IR_SEARCH, unknown outside */
   IR_SOURCE_COUNT
 } ir_source;
 
@@ -76,6 +77,12 @@ ir_node ir_sub(ir *g, ir_node a, ir_node b);
 ir_node ir_mul(ir *g, ir_node a, ir_node b);
 ir_node ir_div(ir *g, ir_node a, ir_node b);
 ir_node ir_neg(ir *g, ir_node a);
+/* What ir_search looks for, in `step` and `open`. */
+ir_node ir_sought(ir *g);
+/* From `start` on, where a search by `step` ends that goes on where `open` is not 0 (pl_search). */
+ir_node ir_search(ir *g, ir_node start, ir_node step, ir_node open);
+/* Changes while a search goes on. */
+bool ir_is_sought(const ir *g, ir_node n);
 ir_node ir_select(ir *g, ir_node condition, ir_node yes, ir_node no);
 /* a ** n by repeated squaring for whole |n| <= 16, with a square root for halves, cbrt for 1/3, one
    division where n is negative; pow otherwise. */

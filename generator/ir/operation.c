@@ -15,7 +15,7 @@
 const operation operations[IR_OP_COUNT] = {
 #define X(code, name, operands, traits)                                                            \
   [IR_##code] = {name, operands, traits, IMAGE_ALL, 0, 10, {0}},
-    OPERATION_LEAVES(X) OPERATIONS_OF_FAMILIES(X)
+    OPERATION_LEAVES(X) OPERATIONS_OF_FAMILIES(X) OPERATIONS_OF_SEARCHES(X)
 #undef X
 #define X(code, name, operands, traits, image, counted, weight, price, value)                      \
   [IR_##code] = {name, operands, traits, image, COUNT_##counted, weight, price},

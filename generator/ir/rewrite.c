@@ -483,6 +483,8 @@ static double degree_of(const ir *g, ir_node n, const double *degree) {
     return isnan(a) ? NAN : 0;
   case IR_SELECT:
     return isnan(a) ? NAN : common_degree(b, c);
+  case IR_SEARCH:
+    return NAN;
   case IR_FAMILY_SUM:
   case IR_FAMILY_MAX:
   case IR_FAMILY_MIN:
@@ -583,7 +585,7 @@ static ir_node size_of_function(ir *g, ir_node n, int deep) {
 static ir_node size_of(ir *g, ir_node n, int deep) {
   enum { DEEP = 10 };
   const ir_op op = ir_operation(g, n);
-  if (deep == DEEP || ir_arity(op) == 0) return ir_unary(g, IR_ABS, n);
+  if (deep == DEEP || ir_arity(op) == 0 || op == IR_SEARCH) return ir_unary(g, IR_ABS, n);
   ir_node of[3] = {IR_NONE, IR_NONE, IR_NONE};
   switch (op) {
   case IR_ADD:

@@ -361,6 +361,7 @@ bool material_law_open(const deck_material *m, const deck_lattice *l, const char
     diag_report(said, DIAG_FILE, deck_where(&m->item, "model"), "there is no model `%s`", m->model);
     diag_hint(said, "give a path ending in .plm, or put the file beside the deck or in a folder "
                     "`models`; PERILAT_MODELS may name another folder");
+    model_suggest(m->model, deck_path, said);
     return false;
   }
   const bool good = material_law_read(m, path, out, said) && material_law_plan(m, l, out, said);

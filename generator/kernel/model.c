@@ -1,5 +1,6 @@
 #include "generator/kernel/model.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
@@ -196,6 +197,33 @@ char *model_find(const char *name, const char *beside) {
 }
 
 /* --- opening ---------------------------------------------------------------------------------- */
+
+static void suggest_from(const char *folder, const char *name, diagnostics *said) {
+  struct dirent **at;
+  const int all = scandir(folder, &at, NULL, alphasort);
+  if (all < 0) return;
+  const char **names = must_calloc((size_t)all + 1, sizeof *names);
+  int count = 0;
+  for (int k = 0; k < all; k++) {
+    if (!text_ends_in(at[k]->d_name, ".plm")) continue;
+    at[k]->d_name[strlen(at[k]->d_name) - strlen(".plm")] = 0;
+    names[count++] = at[k]->d_name;
+  }
+  diag_suggest(said, name, names, count);
+  for (int k = 0; k < all; k++)
+    free(at[k]);
+  free(at);
+  free(names);
+}
+
+void model_suggest(const char *name, const char *beside, diagnostics *said) {
+  char folder[PATH_LIMIT];
+  char *some = model_find("elastic", beside);
+  if (!some) return;
+  folder_of(some, folder, sizeof folder);
+  free(some);
+  suggest_from(folder, name, said);
+}
 
 /* include "x.plm": beside the including file, then wherever models are found. */
 static char *read_include(void *context, const char *name, const char *from, char **found) {

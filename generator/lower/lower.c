@@ -111,6 +111,16 @@ static ir_node unless_returned(ir *g, ir_node over, ir_node falls, bool linear) 
   return ir_unary(g, IR_SQRT, ir_select(g, good, ir_constant(g, 0), ir_constant(g, -1)));
 }
 
+/* Of the flow noted last: what explains that no return is found. */
+static void note_slope(lowering *c, ir_node slope, ir_node lambda) {
+  static const double HARDLY = 1e-12;
+  const ir_node start = ir_constant(c->graph, 0), after = ir_constant(c->graph, HARDLY);
+  if (c->mode != LOWER_STEP) return;
+  lowered_flow *flow = &c->text.flows[c->text.flow_count - 1];
+  ir_substitute(c->graph, &slope, 1, &lambda, &start, 1, &flow->slope);
+  ir_substitute(c->graph, &slope, 1, &lambda, &after, 1, &flow->slope_after);
+}
+
 /* `flow x along direction returned when f >= 0`: x = old + lambda direction with f(x) = 0, what
    neighbours have being frozen. Newton's method from lambda = 0, in one step where f is linear in
    lambda and else in a fixed number: the returns of the usual convex yield functions have converged
@@ -154,6 +164,7 @@ static components flow_returned(lowering *c, const stmt *rule, components old,
     ir_node doubt = unless_returned(g, over, falls, linear);
     ir_substitute(g, &doubt, 1, &lambda, &found, 1, &doubt);
     found = ir_add(g, found, doubt);
+    note_slope(c, slope, lambda);
   }
   ir_substitute(g, &found, 1, stand_in, what, frozen, &found);
   return chosen(g, when, along(g, old, found, direction), old);
@@ -421,7 +432,7 @@ static void resolve_text(lowering *c, const ir_node *from, const ir_node *to, in
   lowered_text *t = &c->text;
   if (c->mode != LOWER_STEP) return;
   int fields = c->law->fields.count,
-      count = fields + t->line_count + t->place_count + 2 * t->flow_count;
+      count = fields + t->line_count + t->place_count + 4 * t->flow_count;
   ir_node *all = must_alloc(((size_t)count + 1) * sizeof *all), *at = all;
   for (int k = 0; k < fields; k++)
     *at++ = t->rules[k];
@@ -432,6 +443,8 @@ static void resolve_text(lowering *c, const ir_node *from, const ir_node *to, in
   for (int k = 0; k < t->flow_count; k++) {
     *at++ = t->flows[k].when;
     *at++ = t->flows[k].overstress;
+    *at++ = t->flows[k].slope;
+    *at++ = t->flows[k].slope_after;
   }
   ir_substitute(g, all, count, from, to, pairs, all);
   at = all;
@@ -444,6 +457,8 @@ static void resolve_text(lowering *c, const ir_node *from, const ir_node *to, in
   for (int k = 0; k < t->flow_count; k++) {
     t->flows[k].when = *at++;
     t->flows[k].overstress = *at++;
+    t->flows[k].slope = *at++;
+    t->flows[k].slope_after = *at++;
   }
   free(all);
 }

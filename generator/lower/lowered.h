@@ -38,6 +38,8 @@ typedef struct lowered_flow {
   int field;
   ir_node when;       /* IR_NONE: always */
   ir_node overstress; /* a - b of a guard a >= b; IR_NONE for other guards */
+  /* Of a returned flow of a point: of the overstress along it, at its start and hardly after. */
+  ir_node slope, slope_after;
 } lowered_flow;
 typedef struct lowered_text {
   ir_node *rules; /* [law->fields.count] a damage's rule before it is kept in [0, 1] */

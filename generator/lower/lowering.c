@@ -111,5 +111,10 @@ void lower_note_line(lowering *c, const expr *cases, int line, ir_node guard) {
 void lower_note_flow(lowering *c, const stmt *rule, ir_node when, ir_node overstress) {
   lowered_text *t = &c->text;
   t->flows = one_more(t->flows, t->flow_count, sizeof *t->flows);
-  t->flows[t->flow_count++] = (lowered_flow){rule, rule->symbol->index, when, overstress};
+  t->flows[t->flow_count++] = (lowered_flow){.rule = rule,
+                                             .field = rule->symbol->index,
+                                             .when = when,
+                                             .overstress = overstress,
+                                             .slope = IR_NONE,
+                                             .slope_after = IR_NONE};
 }

@@ -68,69 +68,81 @@ static along_z along_z_of(planner *p, ir_node sigma_zz) {
   return a;
 }
 
-/* That of the states at hand, where it is known; else 1 Pa. */
+/* That of the states at hand, where it is known and above 0; else 0, by which nothing is found. */
 static ir_node slope_at_hand(planner *p, const along_z *at_hand) {
   ir *g = p->graph;
-  const ir_node one = ir_constant(g, 1), slope = at_hand->slope;
-  if (!at_hand->affine) return one;
+  const ir_node zero = ir_constant(g, 0), slope = at_hand->slope;
+  if (!at_hand->affine) return zero;
   if (ir_is_uniform(g, slope)) return slope;
-  return ir_select(g, ir_binary(g, IR_LT, ir_constant(g, 0), slope), slope, one);
+  return ir_select(g, ir_binary(g, IR_LT, zero, slope), slope, zero);
 }
 
-/* A slope to divide by in Newton's step k. Where its own is next to nothing or negative (a point that
-   has broken, the apex of a cone) it goes on by that of the states at hand, each time four times
-   as far. What is the same everywhere stays. */
-static ir_node safe_slope(planner *p, const along_z *a, const along_z *at_hand, int k) {
+/* A slope to divide by. Where its own is next to nothing or negative (a point that has broken, the
+   apex of a cone) it is that of the states at hand. What is the same everywhere stays. */
+static ir_node safe_slope(planner *p, const along_z *a, const along_z *at_hand) {
   static const double NOTHING = 1e-3; /* of the slope of the states at hand */
   ir *g = p->graph;
   if (ir_is_uniform(g, a->slope)) return a->slope;
   const ir_node other = slope_at_hand(p, at_hand),
                 least = ir_mul(g, ir_constant(g, at_hand->affine ? NOTHING : 0), other);
-  return ir_select(g, ir_binary(g, IR_LT, least, a->slope), a->slope,
-                   ir_mul(g, ir_constant(g, 1.0 / (double)(1 << 2 * k)), other));
+  return ir_select(g, ir_binary(g, IR_LT, least, a->slope), a->slope, other);
 }
 
-/* z of Newton's method after so many steps from z = `from`; IR_NONE: too large to compile. */
-static ir_node newton(planner *p, const along_z *a, const along_z *at_hand, ir_node from, int steps,
-                      diagnostics *d) {
+static ir_node newton_step(planner *p, const along_z *a, const along_z *at_hand) {
   ir *g = p->graph;
-  for (int k = 0; k < steps; k++) {
-    const ir_node next = ir_sub(g, p->z, ir_div(g, a->stress, safe_slope(p, a, at_hand, k)));
-    ir_substitute(g, &next, 1, &p->z, &from, 1, &from);
-    if (ir_count(g) <= MOST_NODES) continue;
-    diag_report(d, DIAG_NOT_SUPPORTED, p->plan->law->tree->name_where,
-                "with its strain along z written out the law is too large to compile in plane "
-                "stress");
-    return IR_NONE;
-  }
-  return from;
+  return ir_neg(g, ir_div(g, a->stress, safe_slope(p, a, at_hand)));
 }
 
-/* The root of sigma_zz(z) by Newton's method, from the root with the states at hand where that is
-   found in one step, else from 0; z itself counts for nothing where sigma_zz does not depend on
-   it. */
-static ir_node strain_without_stress(planner *p, ir_node sigma_zz, ir_node sigma_zz_at_hand,
-                                     diagnostics *d) {
-  enum { NEWTON_STEPS = 9 };
+/* z where sigma_zz is affine. */
+static ir_node root_of_line(planner *p, const along_z *a) {
+  ir *g = p->graph;
+  const ir_node zero = ir_constant(g, 0);
+  ir_node step = newton_step(p, a, a);
+  ir_substitute(g, &step, 1, &p->z, &zero, 1, &step);
+  return step;
+}
+
+/* Whether more of sigma_zz is left than this part of what is added up to it; of no number, too. */
+static ir_node is_left(planner *p, ir_node sigma_zz, double part) {
+  ir *g = p->graph;
+  const ir_node most = ir_mul(g, ir_constant(g, part), rewrite_size(g, sigma_zz));
+  return ir_unary(g, IR_NOT, ir_binary(g, IR_LE, ir_unary(g, IR_ABS, sigma_zz), most));
+}
+
+/* Whether a step is not yet next to nothing beside the strain. */
+static ir_node is_far(planner *p, ir_node step) {
+  static const double NEAR = 1e-11; /* behind such a step the next one would be rounding */
+  ir *g = p->graph;
+  ir_node size = ir_unary(g, IR_ABS, p->strain[0]);
+  for (int k = 1; k < p->strains; k++)
+    size = ir_add(g, size, ir_unary(g, IR_ABS, p->strain[k]));
+  size = ir_mul(g, ir_constant(g, NEAR), ir_add(g, size, ir_unary(g, IR_ABS, p->z)));
+  return ir_unary(g, IR_NOT, ir_binary(g, IR_LE, ir_unary(g, IR_ABS, step), size));
+}
+
+/* The root of sigma_zz(z), searched from the root with the states at hand where that is found in one
+   step, else from 0; z itself counts for nothing where sigma_zz does not depend on it. */
+static ir_node strain_without_stress(planner *p, ir_node sigma_zz, ir_node sigma_zz_at_hand) {
+  ir *g = p->graph;
   const along_z a = along_z_of(p, sigma_zz), at_hand = along_z_of(p, sigma_zz_at_hand);
-  const ir_node zero = ir_constant(p->graph, 0);
-  if (ir_is_number(p->graph, a.slope, 0)) return zero;
-  if (a.affine) return newton(p, &a, &a, zero, 1, d);
-  ir_node from = zero;
-  if (at_hand.affine && !ir_is_number(p->graph, at_hand.slope, 0))
-    from = newton(p, &at_hand, &at_hand, zero, 1, d);
-  return newton(p, &a, &at_hand, from, NEWTON_STEPS, d);
+  const ir_node sought = ir_sought(g);
+  ir_node from = ir_constant(g, 0);
+  if (ir_is_number(g, a.slope, 0)) return from;
+  if (a.affine) return root_of_line(p, &a);
+  if (at_hand.affine && !ir_is_number(g, at_hand.slope, 0)) from = root_of_line(p, &at_hand);
+  const ir_node step = newton_step(p, &a, &at_hand);
+  ir_node of[2] = {step, is_far(p, step)};
+  ir_substitute(g, of, 2, &p->z, &sought, 1, of);
+  return ir_search(g, from, of[0], of[1]);
 }
 
 /* 0 where sigma_zz is as good as none at the z that is found, else not a number (explain_point.h). */
 static ir_node unless_free(planner *p, ir_node sigma_zz, ir_node z) {
   static const double FREE = 1e-9; /* of what is added up to it */
   ir *g = p->graph;
-  ir_node both[2] = {sigma_zz, rewrite_size(g, sigma_zz)}; /* of z itself, not of the way to it */
-  ir_substitute(g, both, 2, &p->z, &z, 1, both);
-  const ir_node most = ir_mul(g, ir_constant(g, FREE), both[1]),
-                is_free = ir_binary(g, IR_LE, ir_unary(g, IR_ABS, both[0]), most);
-  return ir_unary(g, IR_SQRT, ir_select(g, is_free, ir_constant(g, 0), ir_constant(g, -1)));
+  ir_node left = is_left(p, sigma_zz, FREE); /* of z itself, not of the way to it */
+  ir_substitute(g, &left, 1, &p->z, &z, 1, &left);
+  return ir_unary(g, IR_SQRT, ir_select(g, left, ir_constant(g, -1), ir_constant(g, 0)));
 }
 
 /* How z follows a strain of the plane where sigma_zz stays: -D_zb/D_zz. */
@@ -180,7 +192,7 @@ static bool is_searched(planner *p, ir_node sigma_zz) {
   return !along_z_of(p, sigma_zz).affine;
 }
 
-static bool settle_plane(planner *p, diagnostics *d) {
+static void settle_plane(planner *p) {
   ir *g = p->graph;
   const bool is_free = p->plan->law->setting == SETTING_PLANE_STRESS;
   const ir_node zero = ir_constant(g, 0);
@@ -192,8 +204,7 @@ static bool settle_plane(planner *p, diagnostics *d) {
       ir_node sigma_zz = both[k]->sigma[TENSOR_ZZ];
       z_rate = rate_along_z(p, at_rest(p, sigma_zz));
       ir_substitute(g, &sigma_zz, 1, &p->z_rate, &z_rate, 1, &sigma_zz);
-      z = strain_without_stress(p, sigma_zz, at_rest(p, p->frozen.sigma[TENSOR_ZZ]), d);
-      if (z == IR_NONE) return false;
+      z = strain_without_stress(p, sigma_zz, at_rest(p, p->frozen.sigma[TENSOR_ZZ]));
       ir_substitute(g, &z_rate, 1, &p->z, &z, 1, &z_rate);
       if (k == 0 && is_searched(p, sigma_zz)) doubt = unless_free(p, sigma_zz, z);
     }
@@ -205,7 +216,6 @@ static bool settle_plane(planner *p, diagnostics *d) {
     both[k]->sigma[TENSOR_XX] = ir_add(g, both[k]->sigma[TENSOR_XX], doubt);
     if (is_free) both[k]->sigma[TENSOR_ZZ] = zero;
   }
-  return true;
 }
 
 static ir_node with_new_fields(planner *p, ir_node n) {
@@ -475,8 +485,8 @@ bool plan_points(kernel_plan *plan, diagnostics *d) {
                      stress = plan->law->failed && alive == FORCES_OF_OLD ? FORCES_OF_BOTH : alive;
   if (plan->dimensions == 3)
     find_tangent(&p, false);
-  else if (!settle_plane(&p, d))
-    return false;
+  else
+    settle_plane(&p);
   fail_points(&p);
   plan->linear = is_linear(&p);
   plan->stores = plan->law->nonconservative == NULL;

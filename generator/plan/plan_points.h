@@ -3,7 +3,8 @@
 
        plane strain   strain_zz = 0
        plane stress   strain_zz such that sigma_zz = 0, by Newton's method:
-                      z <- z - sigma_zz/(d sigma_zz/dz), once where sigma_zz is affine in z
+                      z <- z - sigma_zz/(d sigma_zz/dz), once where sigma_zz is affine in z, else
+                      by a search (ir_search)
                       tangent D_ab - D_az D_zb/D_zz, rate of z: -sum_b D_zb/D_zz rate_b
 
    A law that gives no energy stores sigma : strain/2 where the stress is homogeneous of degree one in

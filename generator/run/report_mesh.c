@@ -2,12 +2,14 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/elementary.h"
 #include "generator/run/moment.h"
 #include "generator/run/print_quantity.h"
 #include "runtime/continuum/cells.h"
+#include "runtime/lattice/regions.h"
 
 static long count_set(const unsigned char *flags, int size) {
   long count = 0;
@@ -33,12 +35,26 @@ static void print_cells(const mesh *m) {
            count_set(m->gone, mesh_node_count(m)));
 }
 
-/* "mesh       plate: 858 nodes of plate.msh, 1560 triangles of 3 nodes, sides of at least 1.2 mm; 1560
-   points" */
-static void announce_lists(const cells *c, const deck_mesh *k) {
+/* "; groups that the deck does not name: plate, hole" */
+static void print_groups(const deck *k, const char *name) {
+  bool *used = regions_used(k);
+  const char *before = "; groups that the deck does not name: ";
+  for (int r = 0; r < k->region_count; r++) {
+    const deck_region *region = &k->regions[r];
+    if (!region->group || used[r] || strcmp(region->lattice, name) != 0) continue;
+    printf("%s%s", before, region->name);
+    before = ", ";
+  }
+  free(used);
+}
+
+/* "mesh       plate: 200 x 100 mm, 858 nodes of plate.msh, 1560 triangles of 3 nodes, 1.2 mm between
+   neighbours at least; 1560 points" */
+static void announce_lists(const cells *c, const deck *all, const deck_mesh *k) {
   const cell_lists *l = c->mesh.lists;
   long count[ELEMENT_MOST_NODES + 1] = {0};
-  printf("  mesh       %s: %d nodes of %s", k->name, l->node_count, k->file);
+  printf("  mesh       %s: %.6g x %.6g mm, %d nodes of %s", k->name, 1e3 * k->size[0],
+         1e3 * k->size[1], l->node_count, k->file);
   for (int n = 0; n < l->count; n++)
     count[l->nodes[n]]++;
   for (int n = 3; n <= ELEMENT_MOST_NODES; n++)
@@ -50,14 +66,15 @@ static void announce_lists(const cells *c, const deck_mesh *k) {
   printf(", %.6g mm between neighbours at least; %d points", 1e3 * k->spacing, c->points.count);
   if (count[4] < l->count && k->dilatation == DILATATION_MEAN)
     fputs("; quadrilaterals alone take the mean dilatation", stdout);
+  print_groups(all, k->name);
   putchar('\n');
 }
 
 /* "mesh       beam: 74 x 25 nodes, 3.13151 x 3.175 mm apart, 1752 cells: ...; 24048 points" */
-static void announce_cells(const cells *c, const deck_mesh *k) {
+static void announce_cells(const cells *c, const deck *all, const deck_mesh *k) {
   const mesh *m = &c->mesh;
   if (m->lists) {
-    announce_lists(c, k);
+    announce_lists(c, all, k);
     return;
   }
   printf("  mesh       %s: %d x %d nodes, ", k->name, m->nodes[0], m->nodes[1]);
@@ -133,7 +150,7 @@ void announce_mesh(const run *r, int lattice) {
   const cells *c = simulation_cells(r->simulation, lattice);
   const deck *k = r->deck;
   int number = 0;
-  announce_cells(c, &k->lattices[lattice]);
+  announce_cells(c, k, &k->lattices[lattice]);
   for (int n = 0; n < k->interaction_count; n++)
     if (k->interactions[n].lattice == lattice) announce_law(r, n, number++, c);
   for (int n = 0; n < k->crack_count && c->tips; n++)

@@ -375,8 +375,9 @@ void expression_line(emitter *e, ir_node n) {
       expression_is_ends_input(e, n, ENDS_TIME_STEP))
     return;
   const char *value = e->dropped && e->dropped[n] ? dropped(e, n)
-                      : expression_is_input(e, n) ? e->scope->input(e, n)
-                                                  : expression(e, n);
+                      : expression_is_input(e, n) || ir_operation(e->graph, n) == IR_SEARCH
+                          ? e->scope->input(e, n)
+                          : expression(e, n);
   say(e, SAY_LINE, e->scope->indent, e->name[n], value, expression_line_end(e, n));
 }
 

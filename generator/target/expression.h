@@ -27,7 +27,7 @@ typedef struct scope {
   bool strip; /* each case of a chain has its line, and what is expected is asked by sizes */
   /* Writes what stands before the loop for an input; may be NULL. */
   void (*declare)(emitter *e, ir_node input);
-  /* What the line of an input says. */
+  /* What the line of an input says, or of a search, whose result the form finds. */
   const char *(*input)(emitter *e, ir_node input);
 } scope;
 

@@ -70,10 +70,10 @@
   X(LOWER_BOUND, "  lower[$1] = $2, low_open[$1] = $3;\n")                                         \
   X(UPPER_BOUND, "  upper[$1] = $2, high_open[$1] = $3;\n")                                        \
   X(STATES_HEAD, "  (void)law, (void)uniforms;\n  const long count = given->count;\n")             \
-  X(STATE_INPUT, "given->in[$1]")                                                                 \
-  X(STATE_FIELD, "given->field[$1]")                                                              \
-  X(STATE_RESULT, "given->out[$1]")                                                               \
-  X(STATE_NEW_FIELD, "given->new_field[$1]")                                                      \
+  X(STATE_INPUT, "given->in[$1]")                                                                  \
+  X(STATE_FIELD, "given->field[$1]")                                                               \
+  X(STATE_RESULT, "given->out[$1]")                                                                \
+  X(STATE_NEW_FIELD, "given->new_field[$1]")                                                       \
                                                                                                    \
   /* --- points of a continuum --- */                                                              \
   X(POINTS_HEAD, "  (void)law, (void)uniforms;\n"                                                  \
@@ -92,6 +92,33 @@
   X(TIP_INPUT, "points->in[$1]")                                                                   \
   X(TIP_OUT, "points->out[$1]")                                                                    \
   X(POINT_LOST, "points->lost[$1]")                                                                \
+  /* searches: block by block, all points of one as long as one goes on */                         \
+  X(SEARCH_BLOCKS, "  enum { BLOCK = $1 };\n"                                                      \
+    "  for (long begin = 0; begin < count; begin += BLOCK) {\n"                                    \
+    "  const long rest = count - begin, lanes = rest < BLOCK ? rest : BLOCK;\n"                    \
+    "  const long end = begin + lanes;\n")                                                         \
+  X(SEARCH_KEEP, "  _Alignas(PL_ALIGNMENT) double kept_$1[BLOCK];\n")                              \
+  X(SEARCH_KEPT, "kept_$1[q - begin]")                                                             \
+  X(SEARCH_FOUND, "  _Alignas(PL_ALIGNMENT) double found_$1[BLOCK];\n")                            \
+  X(SEARCH_RESULT, "found_$1[q - begin]")                                                          \
+  X(SEARCH_PLACES, "  _Alignas(PL_ALIGNMENT) double low[BLOCK], high[BLOCK], last[BLOCK], "        \
+    "move[BLOCK],\n    going[BLOCK];\n")                                                           \
+  X(SEARCH_START, "    const pl_search_place at_first = pl_search_from($1);\n"                     \
+    "    $2 = at_first.z, low[q - begin] = at_first.low, high[q - begin] = at_first.high;\n"       \
+    "    last[q - begin] = at_first.last, move[q - begin] = at_first.move;\n"                      \
+    "    going[q - begin] = at_first.going;\n")                                                    \
+  X(SEARCH_STEPS, "  uint64_t some_go_on = 1;\n"                                                   \
+    "  for (int step = 0; step < PL_SEARCH_STEPS && some_go_on != 0; step++) {\n"                  \
+    "  some_go_on = 0;\n")                                                                         \
+  X(SEARCH_STEP, "    pl_search_place place = {$1, low[q - begin], high[q - begin], "              \
+    "last[q - begin],\n      move[q - begin], going[q - begin]};\n"                                \
+    "    place = pl_search(place, $2, $3);\n"                                                      \
+    "    $1 = place.z, low[q - begin] = place.low, high[q - begin] = place.high;\n"                \
+    "    last[q - begin] = place.last, move[q - begin] = place.move;\n"                            \
+    "    going[q - begin] = place.going;\n"                                                        \
+    "    some_go_on |= pl_to_bits(place.going);\n")                                                \
+  X(SEARCH_BEGIN, "  {\n")                                                                         \
+  X(SEARCH_LOOP, "  PL_INDEPENDENT\n  for (long q = begin; q < end; q++) {\n")                     \
                                                                                                    \
   /* --- strips of bonds --- */                                                                    \
   X(STRIP_HEAD, "  (void)law, (void)uniforms;\n"                                                   \
@@ -273,7 +300,7 @@
   X(KEEP_VALUE, "        kept[$1][q] = value_$1;\n")                                               \
   X(KEPT_VALUE, "        const double value_$1 = kept[$1][q];\n")                                  \
   X(ADD_TO_BOTH, "        to_$1[q] += value_$2;\n        far_$1[q] $3= value_$2;\n")               \
-  X(ADD_TO_EACH, "        to_$1[q] += value_$2;\n        far_$1[q] += value_$3;\n")               \
+  X(ADD_TO_EACH, "        to_$1[q] += value_$2;\n        far_$1[q] += value_$3;\n")                \
   X(ADD_PRODUCT_TO_BOTH, "        to_$1[q] = pl_fma(value_$2, $3, to_$1[q]);\n"                    \
     "        far_$1[q] = pl_fma($4value_$2, $3, far_$1[q]);\n")                                    \
   X(TAKE_SUM, "    {\n    double *restrict got = family->sum[$1] + first;\n"                       \
@@ -374,9 +401,9 @@
     "      bits |= ~settled[q] & UINT64_C(1) << k;\n"                                              \
     "  }\n"                                                                                        \
     "  return bits;\n"                                                                             \
-    "}\n_Static_assert(PL_LANES == 8, \"sites of a mark\");\n\n")                                 \
+    "}\n_Static_assert(PL_LANES == 8, \"sites of a mark\");\n\n")                                  \
   X(CHANGES_BEGIN, "static uint64_t changes(const pl_family *family, long first, "                 \
-    "long lanes) {\n  uint64_t bits = 0;\n")                                                      \
+    "long lanes) {\n  uint64_t bits = 0;\n")                                                       \
   X(CHANGES_OF_MARKS, "  bits |= changed_marks(family, $1, first, lanes);\n")                      \
   X(CHANGES_OF_PLANES, "  for (long k = 0; k < $2 && bits == 0; k++)\n"                            \
     "    bits |= changed_plane(family->old_field[$1] + first + k*family->plane,\n"                 \

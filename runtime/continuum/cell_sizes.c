@@ -5,7 +5,7 @@
 
 #include "runtime/lattice/rows.h"
 
-static const double MM = 1e-3;
+static const double MM = 1e-3, SLENDER = 1.5;
 
 /* "at (x, y) mm" */
 static void name_cell(const mesh *m, int cell, char text[ROWS_PLACE_TEXT]) {
@@ -68,9 +68,32 @@ static void report_size(const mesh *m, int cell, const pl_law *law, const size_r
                      : "make the mesh coarser, or the parameters such that the limit is lower");
 }
 
+/* A band runs along or across slender cells: as wide as their shorter or longer side, not h. */
+static void warn_of_slender(const mesh *m, const unsigned char *own, const pl_law *law, span where,
+                            diagnostics *d) {
+  int worst = -1;
+  double most = SLENDER;
+  for (int cell = 0; cell < mesh_cell_count(m); cell++) {
+    const double by = is_of_law(m, own, cell) ? mesh_cell_slender(m, cell) : 0;
+    if (by <= most) continue;
+    most = by;
+    worst = cell;
+  }
+  if (worst < 0) return;
+  char there[ROWS_PLACE_TEXT];
+  name_cell(m, worst, there);
+  diag_report(d, DIAG_DECK_WARNING, where,
+              "the cell at %s is %.3g times longer than wide, but the law `%s` knows one size "
+              "`h`: a band across or along such cells takes up to %.3g times more or less work",
+              there, most, law->name, sqrt(most));
+  diag_hint(d, "make cells as wide as they are high where it may crack");
+}
+
 bool cell_sizes_fit(const mesh *m, const unsigned char *own, const pl_law *law,
                     const double *parameters, span where, diagnostics *d) {
-  if (PL_HAS(law, reads_size) && law->reads_size && !has_size(m, own, law, where, d)) return false;
+  const bool reads = PL_HAS(law, reads_size) && law->reads_size;
+  if (reads && !has_size(m, own, law, where, d)) return false;
+  if (reads) warn_of_slender(m, own, law, where, d);
   if (!PL_HAS(law, size_bounds) || !law->size_bounds) return true;
   size_range r;
   law->size_bounds(law, parameters, &r.low, &r.high, &r.low_open, &r.high_open);

@@ -14,7 +14,7 @@ enum {
   STRAINS = 3,
   STRESSES = 4,
   TANGENTS = STRAINS * STRAINS,
-  STRIP = 128 /* points of a strip, unless a group has more */
+  STRIP = 320 /* points of a strip, unless a group has more: strains and stresses are 18 kB */
 };
 
 /* What a thread works with: planes of one strip. */

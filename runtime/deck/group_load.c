@@ -341,7 +341,7 @@ static void check_edge(deck_reader *r, const namelist_group *from, const deck_tr
   const int lattice = item->mesh ? deck_find_lattice(r->k, item->mesh) : -1;
   deck_refuse_both(r, from, "edge", "from");
   deck_refuse_both(r, from, "edge", "to");
-  if (lattice < 0) return;
+  if (lattice < 0 || r->k->lattices[lattice].item.faulty) return;
   if (r->k->lattices[lattice].gmsh) {
     check_edge_name(r, item, r->k->lattices[lattice].gmsh);
     return;

@@ -67,7 +67,8 @@ static const deck_key_info monitor_keys[] = {
     {.name = "field",
      .type = DECK_NAME,
      DECK_AT(monitor, field),
-     .doc = "field: name of a state, damage or output of the law that stands on particles"},
+     .doc = "field: name of a state, damage or output of the law that stands on particles or at "
+            "the points of a mesh"},
     {.name = "crack",
      .type = DECK_NAME,
      DECK_AT(monitor, crack),

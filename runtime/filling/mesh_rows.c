@@ -26,7 +26,21 @@ int mesh_rows_cut(const deck *k, const deck_mesh *l, mesh *m) {
   return mesh_cut(m);
 }
 
-/* A hole is to take something of the mesh. */
+static bool holds_a_cell(const deck_shape *of, const mesh *m) {
+  for (int cell = 0; cell < mesh_cell_count(m); cell++) {
+    int node[ELEMENT_MOST_NODES], held = 0;
+    const int count = mesh_cell_nodes(m, cell, node);
+    for (int k = 0; k < count; k++) {
+      double at[2];
+      mesh_place(m, node[k], at);
+      held += shape_contains(of, at, m->holes.tolerance);
+    }
+    if (held == count) return true;
+  }
+  return false;
+}
+
+/* A hole is to take something of the mesh: a node, or one column of cells. */
 static bool takes_something(const deck_notch *n, const mesh *m, diagnostics *d) {
   double lower[3], upper[3], at[2];
   bool meets = true, holds = false;
@@ -46,7 +60,7 @@ static bool takes_something(const deck_notch *n, const mesh *m, diagnostics *d) 
     mesh_place(m, node, at);
     holds = shape_contains(&n->shape, at, -m->holes.tolerance);
   }
-  if (holds) return true;
+  if (holds || holds_a_cell(&n->shape, m)) return true;
   diag_report(d, DIAG_DECK_WARNING, n->item.where, "the hole holds no node of `%s`", n->mesh);
   diag_hint(d,
             "nodes are %.6g mm by %.6g mm apart: what a hole does that is smaller is felt "

@@ -53,8 +53,7 @@ static void report_empty(const char *lattice, const deck_region *region, const r
     hint_extent(lattice, w, d);
 }
 
-/* Regions that anything names, a mark each; malloc'ed. */
-static bool *find_used_regions(const deck *k) {
+bool *regions_used(const deck *k) {
   bool *used = must_calloc((size_t)k->region_count + 1, sizeof *used);
 #define USED(list, member)                                                                         \
   for (int i = 0; i < k->list##_count; i++) {                                                      \
@@ -76,21 +75,13 @@ static bool *find_used_regions(const deck *k) {
   USED(monitor, region)
   USED(monitor, between[0])
   USED(monitor, between[1])
+  USED(force, edge)
 #undef USED
   return used;
 }
 
-/* Of a file's groups those of cells, unless it is the only one: without it Gmsh would save none. */
-static bool is_told(const deck *k, const deck_region *region) {
-  int surfaces = 0;
-  for (int r = 0; r < k->region_count; r++)
-    surfaces += k->regions[r].group && k->regions[r].group->dimension == 2 &&
-                strcmp(k->regions[r].lattice, region->lattice) == 0;
-  return !region->group || (region->group->dimension == 2 && surfaces > 1);
-}
-
 region_sites *regions_select(const deck *k, const char *lattice, const rows *w, diagnostics *d) {
-  bool *used = find_used_regions(k);
+  bool *used = regions_used(k);
   region_sites *regions = must_calloc((size_t)k->region_count + 1, sizeof *regions);
   for (int r = 0; r < k->region_count; r++) {
     const deck_region *region = &k->regions[r];
@@ -99,10 +90,8 @@ region_sites *regions_select(const deck *k, const char *lattice, const rows *w, 
     regions[r].count = rows_select(w, &region->shape, &regions[r].particles);
     if (regions[r].count == 0)
       report_empty(lattice, region, w, d);
-    else if (!deck_lacks(k, NULL) && !used[r] && is_told(k, region))
-      diag_report(d, DIAG_DECK_WARNING, region->item.where,
-                  region->group ? "the deck never names the physical group `%s`"
-                                : "region `%s` is never used",
+    else if (!deck_lacks(k, NULL) && !used[r] && !region->group)
+      diag_report(d, DIAG_DECK_WARNING, region->item.where, "region `%s` is never used",
                   region->name);
   }
   free(used);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/continuum/node_fields.h"
 #include "runtime/continuum/point_law.h"
 #include "runtime/mesh/mesh_fields.h"
 
@@ -23,6 +24,7 @@ struct mesh_gauge {
   double (*places)[2];
   int *nodes;
   long place_count;
+  double *planes[3];    /* of a stress or strain of a region: that of all nodes */
   node_weight *weights; /* [count] with the cracks as they were when there were `pieces` */
   int count, pieces;
 };
@@ -42,23 +44,23 @@ static bool has_place(mesh_gauge *g, diagnostics *d) {
   return false;
 }
 
-static void take_law(mesh_gauge *g) {
-  if (g->deck->kind != MONITOR_STRESS) return;
-  const cells_law *l = cells_law_at(g->of, mesh_cell_of(&g->of->mesh, g->places[0]));
-  g->law = point_law_new(l->law, l->parameters);
-  g->states = must_calloc((size_t)l->law->field_count + 1, sizeof *g->states);
-}
-
 static bool is_tensor(const deck_monitor *m) {
   return m->kind == MONITOR_STRAIN || m->kind == MONITOR_STRESS;
 }
 
-static bool names_a_place(const mesh_gauge *g, diagnostics *d) {
-  if (!is_tensor(g->deck) || g->deck->placed) return true;
-  diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&g->deck->item, "region"),
-              "on a mesh stress and strain are watched at a place, not of a region");
-  diag_hint(d, "give `at` in place of `region`");
-  return false;
+static bool is_of_region(const mesh_gauge *g) {
+  return is_tensor(g->deck) && !g->deck->placed;
+}
+
+/* What a stress is found with, or fields of a region. */
+static void take_law(mesh_gauge *g) {
+  if (is_of_region(g))
+    for (int k = 0; k < 3; k++)
+      g->planes[k] = must_calloc((size_t)g->of->nodes->size, sizeof(double));
+  if (is_of_region(g) || g->deck->kind != MONITOR_STRESS) return;
+  const cells_law *l = cells_law_at(g->of, mesh_cell_of(&g->of->mesh, g->places[0]));
+  g->law = point_law_new(l->law, l->parameters);
+  g->states = must_calloc((size_t)l->law->field_count + 1, sizeof *g->states);
 }
 
 mesh_gauge *mesh_gauge_new(const deck_monitor *m, const int32_t *sites, long count, const cells *c,
@@ -75,7 +77,7 @@ mesh_gauge *mesh_gauge_new(const deck_monitor *m, const int32_t *sites, long cou
     else
       mesh_place(&c->mesh, g->nodes[k], g->places[k]);
   }
-  if (names_a_place(g, d) && (!m->placed || has_place(g, d))) {
+  if (!m->placed || has_place(g, d)) {
     take_law(g);
     return g;
   }
@@ -87,6 +89,8 @@ void mesh_gauge_free(mesh_gauge *g) {
   if (!g) return;
   point_law_free(g->law);
   free(g->states);
+  for (int k = 0; k < 3; k++)
+    free(g->planes[k]);
   free(g->places);
   free(g->nodes);
   free(g->weights);
@@ -179,7 +183,18 @@ static double tensor(const mesh_gauge *g) {
   return stress[g->deck->component];
 }
 
+/* As frames show it at the nodes. */
+static double tensor_of_region(const mesh_gauge *g) {
+  const double *const at[2] = {g->w->displacement[0], g->w->displacement[1]};
+  double sum = 0;
+  (g->deck->kind == MONITOR_STRESS ? node_field_stress : node_field_strain)(g->of, at, g->planes);
+  for (long k = 0; k < g->place_count; k++)
+    sum += g->planes[g->deck->component][cells_site(g->of, g->nodes[k])];
+  return sum / (double)g->place_count;
+}
+
 double mesh_gauge_value(mesh_gauge *g, long step) {
+  if (is_of_region(g)) return tensor_of_region(g);
   find_weights(g);
   if (is_tensor(g->deck)) return tensor(g);
   return g->deck->kind == MONITOR_DISPLACEMENT || g->deck->kind == MONITOR_OPENING

@@ -138,7 +138,22 @@ double mesh_cell_size(const mesh *m, int cell) {
   const int count = mesh_cell_nodes(m, cell, node);
   for (int k = 0; k < count; k++)
     mesh_place(m, node[k], at[k]);
-  return sqrt(element_area(count, (const double(*)[2])at));
+  /* a row of triangles of 3 nodes is made of halves of cells */
+  return sqrt((count == 3 ? 2 : 1) * element_area(count, (const double(*)[2])at));
+}
+
+double mesh_cell_slender(const mesh *m, int cell) {
+  int node[ELEMENT_MOST_NODES];
+  double at[ELEMENT_MOST_NODES][2], across[2] = {0};
+  if (mesh_cell_nodes(m, cell, node) != 4) return 1;
+  for (int k = 0; k < 4; k++)
+    mesh_place(m, node[k], at[k]);
+  for (int k = 0; k < 4; k++) {
+    const double *to = at[(k + 1) % 4];
+    const double x = to[0] - at[k][0], y = to[1] - at[k][1];
+    across[k % 2] += sqrt(x * x + y * y);
+  }
+  return across[0] > across[1] ? across[0] / across[1] : across[1] / across[0];
 }
 
 void mesh_strain_place(const mesh *m, int cell, const double place[2], double at[2]) {

@@ -124,8 +124,10 @@ int mesh_cell_nodes(const mesh *m, int cell, int node[ELEMENT_MOST_NODES]);
 /* The cells around a node that are not absent, by their numbers: how many, of a grid 4 at most. */
 enum { MESH_MOST_AROUND = 64 };
 int mesh_cells_around(const mesh *m, int node, int around[MESH_MOST_AROUND]);
-/* h, m: the root of the cell's area, holes included. */
+/* h, m: the root of the cell's area, of a triangle of 3 nodes of twice its area; holes included. */
 double mesh_cell_size(const mesh *m, int cell);
+/* How many times longer a quadrilateral is than wide, by means of opposite sides; 1 of triangles. */
+double mesh_cell_slender(const mesh *m, int cell);
 /* Where an element with one point knows the strain: its middle, whatever the place in it; what its
    corners do beside is no strain of the law's. Of other cells the place itself. */
 void mesh_strain_place(const mesh *m, int cell, const double place[2], double at[2]);

@@ -236,6 +236,16 @@ static void values_of_dead_cells(const frames_of *of, const frame_source *from, 
 
 /* --- tensors ---------------------------------------------------------------------------------- */
 
+/* What a tied particle's bonds bear is a part of what is there: the mesh has the rest. */
+static void leave_out_tied(const run_body *of, double *const *values) {
+  if (of->tie_count == 0) return;
+  unsigned char *tied = run_body_tied_sites(of);
+  for (long site = 0; site < of->lattice_rows->size; site++)
+    for (int c = 0; c < TENSOR_MOST && values[c] && tied[site]; c++)
+      values[c][site] = NAN;
+  free(tied);
+}
+
 static void find_stress(const frames_of *of, bond_forces *forces, double *const *values) {
   if (of->body->cells) {
     double *const *u = of->body->body->displacement;
@@ -245,6 +255,7 @@ static void find_stress(const frames_of *of, bond_forces *forces, double *const 
   }
   bond_forces_find(forces, -1);
   particle_stress(forces, of->body->body, values);
+  leave_out_tied(of->body, values);
 }
 
 static void find_strain(const frames_of *of, bond_forces *forces, double *const *values) {

@@ -5,6 +5,7 @@
 
 #include "runtime/deck/group_monitor.h"
 #include "runtime/deck/lattice_kind.h"
+#include "runtime/mesh/element_modes.h"
 
 span law_fits_where(const deck *k, int lattice) {
   const deck_lattice *l = &k->lattices[lattice];
@@ -46,6 +47,37 @@ void law_fits_protection(const pl_law *law, const deck *k, int lattice, diagnost
         d, DIAG_DECK_WARNING, in_vain->item.where,
         "the law `%s` has no damage that could be held back; its states go on as they do elsewhere",
         law->name);
+}
+
+/* --- elements --------------------------------------------------------------------------------- */
+
+/* Nodes of elements of the law that lock where the volume hardly changes: 4 of quadrilaterals whose
+   dilatation is not the mean, 3 of triangles with one point; 0: there are none. */
+static int nodes_that_lock(const cells *c, int law) {
+  const mesh *m = &c->mesh;
+  for (int cell = 0; cell < mesh_cell_count(m); cell++) {
+    if (m->cell[cell] != CELL_ELEMENT || cell_laws_at(&c->where, cell) != law) continue;
+    const int nodes = m->lists ? m->lists->nodes[cell] : 4;
+    if (nodes == 3 || (nodes == 4 && m->element_gauss[cell] == 2 && !element_takes_mean(m, cell)))
+      return nodes;
+  }
+  return 0;
+}
+
+void law_fits_elements(const pl_law *law, const cells *c, int number, span where, diagnostics *d) {
+  const double most = 20; /* Poisson's ratio 0.475 */
+  const plane_stiffness *at_rest = &c->stiffness[number];
+  const double shear = at_rest->D[2][2], bulk = at_rest->D[0][0] - 4.0 / 3 * shear;
+  const int nodes = bulk > most * shear ? nodes_that_lock(c, number) : 0;
+  if (nodes == 0) return;
+  diag_report(d, DIAG_DECK_WARNING, where,
+              "`%s` hardly changes its volume, its bulk modulus is %.4g times the shear modulus: "
+              "%s lock in plane strain, and the body is too stiff",
+              law->name, bulk / shear,
+              nodes == 3 ? "triangles of 3 nodes" : "quadrilaterals with 2 x 2 points");
+  diag_hint(d, nodes == 3 ? "take triangles of 6 nodes (gmsh -order 2), or quadrilaterals with "
+                            "dilatation = 'mean'"
+                          : "give the mesh, or the zone, dilatation = 'mean'");
 }
 
 /* --- the lattice ------------------------------------------------------------------------------ */

@@ -165,10 +165,15 @@ static const pl_field *law_field(const pl_law *law, int k) {
   return k < law->field_count ? &law->fields[k] : &law->outputs[k - law->field_count];
 }
 
+/* Particles have it; of points nodes have the mean around. */
+static bool is_watchable(const pl_field *f) {
+  return f->place == PL_ON_PARTICLE || f->place == PL_ON_POINT;
+}
+
 static int find_field(const deck_monitor *m, const pl_law *law) {
   for (int k = law->field_count + law->output_count - 1; k >= 0; k--) {
     const pl_field *f = law_field(law, k);
-    if (f->place == PL_ON_PARTICLE && strcasecmp(f->name, m->field) == 0) return k;
+    if (is_watchable(f) && strcasecmp(f->name, m->field) == 0) return k;
   }
   return -1;
 }
@@ -187,9 +192,9 @@ static bool check_field(const deck_monitor *m, const run_body *of, diagnostics *
   const char **names = must_calloc((size_t)count + 1, sizeof *names);
   int there = 0;
   for (int k = 0; k < count; k++)
-    if (law_field(law, k)->place == PL_ON_PARTICLE) names[there++] = law_field(law, k)->name;
-  diag_report(d, DIAG_BAD_VALUE, deck_where(&m->item, "field"),
-              "the law `%s` has no `%s` on particles", law->name, m->field);
+    if (is_watchable(law_field(law, k))) names[there++] = law_field(law, k)->name;
+  diag_report(d, DIAG_BAD_VALUE, deck_where(&m->item, "field"), "the law `%s` has no `%s` %s",
+              law->name, m->field, of->cells ? "at points" : "on particles");
   deck_suggest(d, m->field, names, there, "a monitor can watch");
   free(names);
   return false;
@@ -228,7 +233,8 @@ static monitor_time when_known(const monitor *m, const monitors *all) {
   if (all->deck->relaxation.increments > 0) return KNOWN_WHEN_OBSERVED;
   switch (m->deck->kind) {
   case MONITOR_FIELD:
-    return m->field < m->law->law->field_count ? KNOWN_ONE_LATE : KNOWN_WHEN_OBSERVED;
+    return m->field < m->law->law->field_count && !m->of[0]->cells ? KNOWN_ONE_LATE
+                                                                   : KNOWN_WHEN_OBSERVED;
   case MONITOR_REACTION:
   case MONITOR_REACTIONS:
   case MONITOR_TIP:
@@ -270,10 +276,30 @@ static bool has_gauges(const monitor *m) {
   return is_field_of_mesh(m->deck) && m->of[0] && m->of[0]->cells && (!m->of[1] || m->of[1]->cells);
 }
 
+/* The stress of tied particles is not known: their bonds bear a part of it. False with a diagnostic
+   where all of them are tied. */
+static bool leave_out_tied(monitor *m, diagnostics *d) {
+  const run_body *of = m->of[0];
+  long left = 0;
+  if (m->deck->kind != MONITOR_STRESS || of->tie_count == 0) return true;
+  unsigned char *tied = run_body_tied_sites(of);
+  for (long p = 0; p < m->index_count[0]; p++)
+    if (!tied[m->indices[0][p]]) m->indices[0][left++] = m->indices[0][p];
+  free(tied);
+  m->index_count[0] = left;
+  if (left > 0) return true;
+  diag_report(d, DIAG_EMPTY_REGION, deck_where(&m->deck->item, "region"),
+              "all particles of `%s` here are tied to a mesh, which bears a part of their stress",
+              of->name);
+  diag_hint(d, "watch the stress of the mesh there");
+  return false;
+}
+
 /* What watched.h watches, of a region or of all particles. */
 static void watch(monitor *m, monitors *all, diagnostics *d) {
   const run_body *of = m->of[0];
   take_sites(m, 0, all, m->deck->region);
+  if (!leave_out_tied(m, d)) return;
   damage_law *laws = run_body_damages(of);
   m->own =
       watched_new(m->deck, m->indices[0], m->index_count[0], of->state, laws, of->law_count, d);
@@ -289,6 +315,12 @@ static void check_speed(const monitor *m, const monitors *all, diagnostics *d) {
               "a speed is taken over two states at least: %.6g s and more", 2 * all->interval);
 }
 
+/* The law has the monitor's field, in the monitor's unit. */
+static bool same_field(const monitor *m, const run_law *law) {
+  const int k = find_field(m->deck, law->law);
+  return k >= 0 && strcmp(law_field(law->law, k)->unit, m->unit) == 0;
+}
+
 /* That of the region's first particle, where it has the field. */
 static const run_law *law_watched(const monitor *m) {
   const run_body *of = m->of[0];
@@ -297,6 +329,34 @@ static const run_law *law_watched(const monitor *m) {
         find_field(m->deck, of->laws[n].law) >= 0)
       return &of->laws[n];
   return law_with_field(m->deck, of);
+}
+
+/* What of a node's value is a law's: by the areas of its cells around, among those of laws that have
+   the field. */
+static double part_of_node(const monitor *m, const run_law *law, long site) {
+  double all = 0;
+  if (!law->share) return 1;
+  for (int n = 0; n < m->of[0]->law_count; n++)
+    if (same_field(m, &m->of[0]->laws[n])) all += m->of[0]->laws[n].share[site];
+  return all > 0 ? law->share[site] / all : 0;
+}
+
+/* Those with cells around of a law that has the field. */
+static void keep_nodes(monitor *m, diagnostics *d) {
+  const run_body *of = m->of[0];
+  long kept = 0;
+  for (long p = 0; p < m->index_count[0]; p++) {
+    bool has = false;
+    for (int n = 0; n < of->law_count; n++)
+      has = has ||
+            (same_field(m, &of->laws[n]) && part_of_node(m, &of->laws[n], m->indices[0][p]) > 0);
+    if (has) m->indices[0][kept++] = m->indices[0][p];
+  }
+  m->index_count[0] = kept;
+  if (kept > 0) return;
+  diag_report(d, DIAG_BAD_VALUE, deck_where(&m->deck->item, "region"),
+              "no node of `%s` has a cell of the law `%s` around it, whose `%s` is watched",
+              m->deck->region, m->law->law->name, m->deck->field);
 }
 
 /* Other laws have no such field on their particles. */
@@ -357,7 +417,10 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
     m->law = law_watched(m);
     m->field = find_field(m->deck, m->law->law);
     m->unit = law_field(m->law->law, m->field)->unit;
-    check_share(m, d);
+    if (m->of[0]->cells)
+      keep_nodes(m, d);
+    else
+      check_share(m, d);
     break;
   case MONITOR_DAMAGED:
   case MONITOR_BROKEN:
@@ -489,6 +552,8 @@ static char *gauge_words(const monitors *all, const monitor *m, arena *a) {
   const char *kind = m->deck->kind == MONITOR_STRESS ? "stress" : "strain";
   tensor_components(2, &t);
   rows_place_text(2, m->deck->at, text);
+  if (!m->deck->placed && (m->deck->kind == MONITOR_STRAIN || m->deck->kind == MONITOR_STRESS))
+    return arena_printf(a, "mean %s %s of `%s`", kind, t[m->deck->component].name, m->deck->region);
   if (m->deck->kind == MONITOR_STRAIN || m->deck->kind == MONITOR_STRESS)
     return arena_printf(a, "%s %s at %s", kind, t[m->deck->component].name, text);
   const char *quantity = m->deck->kind == MONITOR_ACCELERATION ? "acceleration"
@@ -637,8 +702,26 @@ static double count_all_damaged(const monitors *all, const monitor *m) {
   return (double)count;
 }
 
+/* Of nodes, which have what frames show there. */
+static double node_mean(const monitors *all, const monitor *m) {
+  double sum = 0;
+  for (int n = 0; n < m->of[0]->law_count; n++) {
+    const run_law *law = &m->of[0]->laws[n];
+    if (!same_field(m, law)) continue;
+    const int k = find_field(m->deck, law->law), output = k - law->law->field_count;
+    const double *values = output >= 0 ? all->values : law->state->new_field[k];
+    if (output >= 0) sweep_output(law->state, output, all->values);
+    for (long p = 0; p < m->index_count[0]; p++) {
+      const double part = part_of_node(m, law, m->indices[0][p]);
+      if (part > 0) sum += part * values[m->indices[0][p]];
+    }
+  }
+  return sum / (double)m->index_count[0];
+}
+
 /* Of a law's field or output on particles. */
 static double field_mean(const monitors *all, const monitor *m, bool late) {
+  if (m->of[0]->cells) return node_mean(all, m);
   sweep *state = m->law->state;
   const int count = m->law->law->field_count;
   const double *values = m->field >= count ? all->values

@@ -190,9 +190,16 @@ static bool cells_suit_laws(const run_body *b, diagnostics *d) {
   return true;
 }
 
+static bool is_plane_strain(const deck *k, const run_body *b) {
+  return strcmp(k->lattices[b->lattice].setting, "plane_strain") == 0;
+}
+
 static bool find_limit_of_cells(run_body *b, const deck *k, diagnostics *d) {
   if (!cells_suit_laws(b, d)) return false;
   give_laws(b);
+  for (int n = 0; n < b->law_count && is_plane_strain(k, b); n++)
+    law_fits_elements(b->laws[n].law, b->cells, n,
+                      deck_where(&b->laws[n].from->material->item, "model"), d);
   if (!cracks_suit_laws(b, k, d)) return false;
   unsigned char *held = held_freedoms(b);
   cells_step_limit(b->cells, held, &b->limit);
@@ -501,13 +508,33 @@ static span support_at(const run_body *b, const deck *k, int64_t site) {
   return b->ties[0].from->item.where;
 }
 
-/* What loads do to tied particles they would do to the mesh. */
-static bool ties_are_free(const run_body *b, const deck *k, diagnostics *d) {
+unsigned char *run_body_tied_sites(const run_body *b) {
   unsigned char *tied = must_calloc((size_t)b->lattice_rows->size, 1);
-  bool good = true;
   for (int n = 0; n < b->tie_count; n++)
     for (long p = 0; p < b->ties[n].count; p++)
       tied[b->lattice_rows->particle_site[b->ties[n].particles[p].particle]] = 1;
+  return tied;
+}
+
+long run_body_damaged_ties(const run_body *b) {
+  long count = 0;
+  if (b->tie_count == 0) return 0;
+  unsigned char *tied = run_body_tied_sites(b);
+  const int32_t *site = b->lattice_rows->particle_site;
+  for (int n = 0; n < b->law_count; n++) {
+    const run_law *l = &b->laws[n];
+    for (long m = 0; damage_on_bonds(l->law) && m < l->rows->bond_count; m++)
+      count += (tied[site[l->bonds[m].i]] || tied[site[l->bonds[m].j]]) &&
+               damage_of_bond_in(l->state, l->state->field, &l->bonds[m]) >= 0.5;
+  }
+  free(tied);
+  return count;
+}
+
+/* What loads do to tied particles they would do to the mesh. */
+static bool ties_are_free(const run_body *b, const deck *k, diagnostics *d) {
+  unsigned char *tied = run_body_tied_sites(b);
+  bool good = true;
   for (long n = 0; n < b->loads->constraint_count && good; n++) {
     const constraint *c = &b->loads->constraints[n];
     good = !tied[c->site];

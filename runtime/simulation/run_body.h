@@ -49,8 +49,8 @@ typedef struct run_body {
   const tip_law *cracks; /* [cracks of the deck] their laws */
   mesh_tie *ties;        /* [tie_count] of a lattice to meshes */
   int tie_count;
-  bool tied; /* a tie is between this one and another body */
-  step_limit limit;      /* of this body alone; `step` is that of the run */
+  bool tied;        /* a tie is between this one and another body */
+  step_limit limit; /* of this body alone; `step` is that of the run */
   ledger ledger;
   ledger_laws energies;
   load_look look;         /* of the state observed last */
@@ -63,6 +63,10 @@ typedef struct run_body {
 static inline bool run_body_is_link(const run_body *b) {
   return b->lattice_rows->copies != NULL;
 }
+/* [size] 1 where a particle is tied to a mesh; malloc'ed. */
+unsigned char *run_body_tied_sites(const run_body *b);
+/* Bonds that end at a tied particle and have a damage of 0.5 or more. */
+long run_body_damaged_ties(const run_body *b);
 /* In results, where a particle stands once. */
 static inline long run_body_particles(const run_body *b) {
   return run_body_is_link(b) ? 0 : b->lattice_rows->particle_count;

@@ -357,6 +357,8 @@ void run_contacts_warn(const deck *k, const run_body *bodies, diagnostics *d) {
       diag_note(d, drawn_by(k, first, o.site[0]), "the other body");
       diag_hint(d, some_contact_has(k, c.of[o.body[0]], c.of[o.body[1]])
                        ? "a `&contact` keeps them no further apart than they begin"
+                   : (first->cells != NULL) != (second->cells != NULL)
+                       ? "no force acts between them: a `&tie` makes a lattice and a mesh one body"
                        : "no force acts between them: move one, or cut it with a `&notch`");
     }
     contact_free(c.found);

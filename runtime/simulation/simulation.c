@@ -331,6 +331,10 @@ const mesh_tie *simulation_ties(const simulation *s, int number, int *count) {
   return s->bodies[number].ties;
 }
 
+long simulation_damaged_ties(const simulation *s, int number) {
+  return run_body_damaged_ties(&s->bodies[number]);
+}
+
 double simulation_sample_interval(const simulation *s) {
   return s->plan.sample_interval;
 }

@@ -64,6 +64,8 @@ const deck *simulation_deck(const simulation *s);
 double simulation_omega(const simulation *s, int mode);
 /* Of a lattice, to meshes: *count of them. */
 const mesh_tie *simulation_ties(const simulation *s, int number, int *count);
+/* Of its bonds at tied particles those with a damage of 0.5 or more. */
+long simulation_damaged_ties(const simulation *s, int number);
 const rows *simulation_rows(const simulation *s, int body);
 /* The cells of a mesh (runtime/continuum/cells.h); NULL of other bodies. */
 const struct cells *simulation_cells(const simulation *s, int body);

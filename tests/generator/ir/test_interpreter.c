@@ -220,11 +220,57 @@ static void graph_may_grow(void **unused) {
   ir_free(NULL);
 }
 
+/* max(z, flat)^3 + max(z, flat) - y, which is flat below `flat`: a Newton's step there leads nowhere. */
+static ir_node cubic_less(ir *g, ir_node z, ir_node flat, ir_node y) {
+  const ir_node x = ir_binary(g, IR_MAX, z, flat);
+  return ir_sub(g, ir_add(g, ir_mul(g, x, ir_mul(g, x, x)), x), y);
+}
+
+/* The root of it from 0 on, by Newton's method with slope 1 where there is none. */
+static ir_node root_of_cubic(ir *g, ir_node flat, ir_node y) {
+  const ir_node z = ir_sought(g), f = cubic_less(g, z, flat, y), one = ir_constant(g, 1);
+  const ir_node three = ir_constant(g, 3), square = ir_mul(g, z, z);
+  const ir_node slope =
+      ir_select(g, ir_binary(g, IR_LT, flat, z), ir_add(g, ir_mul(g, three, square), one), one);
+  const ir_node open = ir_binary(g, IR_LT, ir_constant(g, 1e-12), ir_unary(g, IR_ABS, f));
+  return ir_search(g, ir_constant(g, 0), ir_neg(g, ir_div(g, f, slope)), open);
+}
+
+/* A search comes to the root, whatever lanes stand beside; Cardano's formula tells which it is. */
+static void searches_find_roots(void **unused) {
+  (void)unused;
+  ir *g = ir_new();
+  const ir_node flat = bond(g, 0), y = bond(g, 1), root = root_of_cubic(g, flat, y);
+  assert_false(ir_is_sought(g, root));
+  interpreter *p = interpreter_new(g, &root, 1);
+  double flats[MOST], ys[MOST], together[MOST], alone;
+  uint64_t state = 5;
+  for (int k = 0; k < MOST; k++) {
+    flats[k] = k % 3 == 0 ? 0.5 + 0.2 * random_number(&state) : -100;
+    ys[k] = k % 3 == 0 ? 50 * (3 + random_number(&state)) : 50 * random_number(&state);
+  }
+  const double *inputs[] = {flats, ys};
+  const unsigned char stride[] = {1, 1};
+  interpreter_inputs in = {.values = {[IR_FROM_QUANTITY] = inputs},
+                           .stride = {[IR_FROM_QUANTITY] = stride}};
+  interpreter_run(p, &in, MOST, (double *const[]){together});
+  for (int k = 0; k < MOST; k++) {
+    const double deep = sqrt(ys[k] * ys[k] / 4 + 1.0 / 27);
+    const double root_by_formula = cbrt(deep + ys[k] / 2) - cbrt(deep - ys[k] / 2);
+    assert_true(fabs(together[k] - root_by_formula) < 1e-10);
+    inputs[0] = flats + k, inputs[1] = ys + k;
+    interpreter_run(p, &in, 1, (double *const[]){&alone});
+    assert_true(alone == together[k]);
+  }
+  interpreter_free(p);
+  ir_free(g);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(strips_of_any_count), cmocka_unit_test(every_operation),
       cmocka_unit_test(cases_do_not_leak),   cmocka_unit_test(first_bad_node_is_found),
-      cmocka_unit_test(graph_may_grow),
+      cmocka_unit_test(graph_may_grow),      cmocka_unit_test(searches_find_roots),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -142,6 +142,7 @@ static void it_is_drawn(void **state) {
       {"plot a.h5 --map stress", "`stress` is a tensor: give --component xx, yy, xy or principal"},
       {"plot a.h5 --map stress --component zz", "is a tensor"},
       {"plot a.h5 --map displacement --component yy", "it is no tensor"},
+      {"plot a.h5 --map strain --component yy", "let the deck's `&output` have fields = 'strain'"},
       {"plot a.h5 --map damage", "is of a mesh, which has no damage"},
       {"plot a.h5 --map stress --component yy --range 3", "--range needs two ascending values"},
       {"plot a.h5 --map stress --component yy --range '3 MPa,1 MPa'", "two ascending values"},

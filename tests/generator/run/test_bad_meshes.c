@@ -117,8 +117,42 @@ static void test_faults(void **state) {
   assert_int_equal(different, 0);
 }
 
+/* The size shows a wrong unit; a group that the deck leaves to the base material is told, no fault. */
+static void test_file(void **state) {
+  workplace *w = *state;
+  assert_int_equal(shell(w, "$P check " SOURCE_DIR "/examples/plate_gmsh/plate.nml 2>&1"), 0);
+  assert_non_null(strstr(w->said, "plate: 240 x 120 mm, "));
+  assert_non_null(strstr(w->said, "; groups that the deck does not name: plate\n"));
+  assert_null(strstr(w->said, "warning"));
+}
+
+/* K/G = 2(1 + nu)/(3(1 - 2 nu)) is 20 at nu = 0.4754. */
+static void test_locking(void **state) {
+  static const struct {
+    const char *set;
+    bool warns;
+  } decks[] = {
+      {"--set material.nu=0.48 --set mesh.dilatation=point", true},
+      {"--set material.nu=0.48", false},
+      {"--set material.nu=0.47 --set mesh.dilatation=point", false},
+      {"--set material.nu=0.48 --set mesh.dilatation=point --set mesh.setting=plane_stress", false},
+      {"--set material.nu=0.48 --set mesh.dilatation=point --set mesh.gauss=1", false}};
+  workplace *w = *state;
+  for (size_t k = 0; k < sizeof decks / sizeof *decks; k++) {
+    char command[1000];
+    snprintf(command, sizeof command,
+             "$P check " SOURCE_DIR "/examples/thick_ring/ring.nml %s 2>&1", decks[k].set);
+    assert_int_equal(shell(w, command), 0);
+    const bool said = strstr(w->said, "its bulk modulus is 24.67 times the shear modulus") != NULL;
+    if (said != decks[k].warns) print_message("%s\n%s", decks[k].set, w->said);
+    assert_true(said == decks[k].warns);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test_setup_teardown(test_locking, set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(test_file, set_up_workplace, tear_down_workplace),
       cmocka_unit_test_setup_teardown(test_faults, set_up_workplace, tear_down_workplace)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -231,6 +231,74 @@ static void a_uniform_strain_goes_through(void **state) {
     }
 }
 
+static const double *stress_yy(deck_case *c, double *values) {
+  const frame_field *fields;
+  const int count = simulation_frame_fields(c->simulation, &fields);
+  for (int f = 0; f < count; f++)
+    if (strcmp(fields[f].name, "stress_yy") == 0) {
+      simulation_frame_values(c->simulation, f, values);
+      return values;
+    }
+  fail_msg("no stress");
+  return NULL;
+}
+
+/* In a uniform strain a free particle has the stress of the solid, and a tied one none rather than that
+   of the half of its bonds. */
+static void tied_particles_show_no_stress(void **state) {
+  (void)state;
+  const strip s = {8, 0.12, 0.06, 10e-3, MICROPOLAR, 0};
+  double a[2][2] = {{-0.2e-6, 0}, {0, 1e-6}};
+  long tied = 0, inner = 0;
+  deck_case c;
+  open_strip(&c, &s,
+             "&simulation end_time = '1 us' step = '0.1 us' /\n"
+             "&output frames = 1 fields = 'stress' /\n");
+  strain_all(&c, a);
+  const rows *g = simulation_rows(c.simulation, CORE);
+  unsigned char *of = run_body_tied_sites(&c.simulation->bodies[CORE]);
+  double *values = calloc(10000, sizeof *values);
+  stress_yy(&c, values);
+  for (long p = 0; p < g->particle_count; p++) {
+    const long q = g->particle_site[p];
+    tied += of[q];
+    if (of[q]) assert_true(isnan(values[p]));
+    if (of[q] || g->y[q] < 1.01 * spacing || g->y[q] > s.height - 1.01 * spacing) continue;
+    inner++;
+    assert_true(fabs(values[p] / (E * 1e-6) - 1) < 1e-5);
+  }
+  assert_true(tied > 40 && inner > 100);
+  free(values);
+  free(of);
+  deck_case_close(&c);
+}
+
+/* Half of a bond's damage counts, of those that end at a tied particle alone. */
+static void damage_at_ties_is_counted(void **state) {
+  (void)state;
+  const strip s = {6, 0.08, 0.04, 10e-3, "model = 'mplm_bilinear'", 0};
+  deck_case c;
+  open_strip(&c, &s, "&simulation end_time = '1 us' /\n&output frames = 0 /\n");
+  const run_body *b = &c.simulation->bodies[CORE];
+  const run_law *l = &b->laws[0];
+  const rows *g = simulation_rows(c.simulation, CORE);
+  unsigned char *tied = run_body_tied_sites(b);
+  assert_int_equal(run_body_damaged_ties(b), 0);
+  long at_ties = 0;
+  int damage = 0;
+  while (l->law->fields[damage].kind != PL_FIELD_DAMAGE)
+    damage++;
+  for (long m = 0; m < l->rows->bond_count; m++) {
+    l->state->field[damage][l->bonds[m].slot] = m % 2 ? 0.6 : 0.4;
+    at_ties +=
+        m % 2 && (tied[g->particle_site[l->bonds[m].i]] || tied[g->particle_site[l->bonds[m].j]]);
+  }
+  assert_true(at_ties > 10 && at_ties < l->rows->bond_count / 4);
+  assert_int_equal(run_body_damaged_ties(b), at_ties);
+  free(tied);
+  deck_case_close(&c);
+}
+
 /* However far all has turned, the lattice asks nothing of the nodes; a mesh is for small turns. */
 static void a_rigid_turn_asks_nothing_of_the_mesh(void **state) {
   (void)state;
@@ -613,6 +681,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(particles_and_bonds_are_sorted),
                                      cmocka_unit_test(halves_are_half_of_a_bond),
                                      cmocka_unit_test(a_uniform_strain_goes_through),
+                                     cmocka_unit_test(tied_particles_show_no_stress),
+                                     cmocka_unit_test(damage_at_ties_is_counted),
                                      cmocka_unit_test(a_rigid_turn_asks_nothing_of_the_mesh),
                                      cmocka_unit_test(little_of_a_pulse_is_thrown_back),
                                      cmocka_unit_test(momentum_is_kept),

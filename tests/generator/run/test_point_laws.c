@@ -72,6 +72,78 @@ static void same_bits(void **state) {
 }
 
 /* Nodes between broken points are broken; what all have lost is the ledger's. */
+/* Two laws side by side, of which both have the field, or the first alone. */
+static void write_block(const workplace *w, const char *second, const char *fields) {
+  static const char block[] =
+      "&simulation end_time = 1 /\n"
+      "&relaxation increments = 2 /\n"
+      "&mesh name = 'm' size = '40 mm', '20 mm' nodes = 17, 9 thickness = '10 mm'\n"
+      "      method = 'finite_elements' dilatation = 'mean' setting = 'plane_strain' /\n"
+      "&region name = 'half' shape = 'rectangle' corner = '20 mm', 0 size = '20 mm', '20 mm' /\n"
+      "&region name = 'all' shape = 'rectangle' corner = 0, 0 size = '40 mm', '20 mm' /\n"
+      "&region name = 'b' shape = 'segment' from = 0, 0 to = '40 mm', 0 /\n"
+      "&region name = 'p' shape = 'segment' from = 0, '20 mm' to = '30 mm', '20 mm' /\n"
+      "&material mesh = 'm' model = 'von_mises' H = '2 GPa' /\n"
+      "&material mesh = 'm' region = 'half' model = %s /\n"
+      "&support region = 'b' fix = 'xy' /\n"
+      "&drive region = 'p' component = 'y' displacement = '-0.1 mm' /\n"
+      "&monitor name = 'state' kind = 'field' field = 'eps_bar' region = 'all' /\n"
+      "&monitor name = 'output' kind = 'field' field = 'mises' region = 'all' /\n"
+      "&monitor name = 'sigma' kind = 'stress' component = 'yy' region = 'all' /\n"
+      "&monitor name = 'epsilon' kind = 'strain' component = 'xy' region = 'all' /\n"
+      "&output result = 'block.h5' fields = %s /\n";
+  char text[4000];
+  snprintf(text, sizeof text, block, second, fields);
+  write_text(w, "block.nml", text);
+}
+
+/* The mean of a frame's field over the nodes that have it. */
+static double mean_of_frame(result_file *f, const char *field) {
+  long count, there = 0;
+  int components;
+  char text[64], error[1000];
+  double sum = 0, *values = result_read_frame(f, field, 2, &count, &components, text, sizeof text,
+                                              error, sizeof error);
+  assert_non_null(values);
+  for (long p = 0; p < count; p++) {
+    if (isnan(values[p])) continue;
+    sum += values[p];
+    there++;
+  }
+  free(values);
+  return sum / (double)there;
+}
+
+static void monitors_tell(void **state) {
+  static const struct {
+    const char *monitor, *field;
+  } same[] = {
+      {"state", "eps_bar"}, {"output", "mises"}, {"sigma", "stress_yy"}, {"epsilon", "strain_xy"}};
+  static const char *const second[] = {"'von_mises' f_y = '300 MPa' H = 0", "'elastic'"};
+  workplace *w = *state;
+  char text[64], error[1000];
+  for (int k = 0; k < 2; k++) {
+    write_block(w, second[k], "'eps_bar', 'mises', 'stress', 'strain'");
+    expect(w, "run block.nml --interpret", 0, "largest");
+    result_file *f = open_result_of(w, "block.h5");
+    for (int n = 0; n < 4; n++) {
+      long samples;
+      double *values =
+          result_read_series(f, same[n].monitor, &samples, text, sizeof text, error, sizeof error);
+      const double mean = mean_of_frame(f, same[n].field);
+      assert_non_null(values);
+      if (!(fabs(values[samples - 1] - mean) < 1e-12 * fabs(mean)))
+        print_message("%s: %.15g, not %.15g\n", same[n].monitor, values[samples - 1], mean);
+      assert_true(fabs(mean) > 0 && fabs(values[samples - 1] - mean) < 1e-12 * fabs(mean));
+      free(values);
+    }
+    result_read_close(f);
+  }
+  /* two large increments: the body swings, and the work is damped */
+  expect(w, "run block.nml --interpret", 0, "relaxation.increments=4");
+  expect(w, "run block.nml --set monitor[state].field=eps_bat", 1, "has no `eps_bat` at points");
+}
+
 static void nodes_tell(void **state) {
   workplace *w = *state;
   double sum = 0, most = 0;
@@ -281,6 +353,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(same_bits, set_up_workplace, tear_down_workplace),
       cmocka_unit_test_setup_teardown(nodes_tell, set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(monitors_tell, set_up_workplace, tear_down_workplace),
       cmocka_unit_test_setup_teardown(losses_are_of_second_order, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(stress_knows_states, set_up_workplace, tear_down_workplace),
