@@ -26,6 +26,9 @@ typedef struct strip {
   int beyond; /* columns of the lattice inside the right mesh */
 } strip;
 
+/* Of the meshes: density and stiffness over the lattice's; how far the lattice reaches into them, mm. */
+static double light = 1, overlap = 0;
+
 static double width_of(const strip *s) {
   return s->columns * spacing * sqrt(3) / 2;
 }
@@ -43,11 +46,11 @@ static void write_strip(const strip *s, const char *head, char *text, size_t siz
       "thickness = '10 mm' method = 'finite_elements' /\n"
       "&mesh name = 'right' corner = '%.14g mm', 0 size = '%g mm', '%g mm' nodes = %d, %d "
       "thickness = '10 mm' method = 'finite_elements' /\n"
-      "&material mesh = 'left' model = 'elastic' E = 30e9 nu = 0.2 rho = 2400 /\n"
-      "&material mesh = 'right' model = 'elastic' E = 30e9 nu = 0.2 rho = 2400 /\n"
+      "&material mesh = 'left' model = 'elastic' E = %g nu = 0.2 rho = %g /\n"
+      "&material mesh = 'right' model = 'elastic' E = %g nu = 0.2 rho = %g /\n"
       "&tie lattice = 'core' mesh = 'left' /\n&tie lattice = 'core' mesh = 'right' /\n",
-      head, s->law, w + 1e3 * s->beyond * spacing * sqrt(3) / 2, h, l, l, h, nx, ny, w, l, h, nx,
-      ny);
+      head, s->law, w + 1e3 * s->beyond * spacing * sqrt(3) / 2, h, l, l + overlap, h, nx, ny,
+      w - overlap, l, h, nx, ny, light * 30e9, light * 2400, light * 30e9, light * 2400);
 }
 
 #define MICROPOLAR "model = 'elastic_micropolar' E = 30e9 nu = 0.2"
@@ -492,6 +495,138 @@ static void the_step_is_stable(void **state) {
   }
 }
 
+typedef void visitor(body *b, long site, int d, double scale, double *into);
+
+static void visit_all(const deck_case *c, visitor *visit, double *into) {
+  for (int n = 0; n < BODIES; n++) {
+    body *b = body_of(c, n);
+    for (long p = 0; p < b->lattice->particle_count; p++)
+      for (int d = 0; d < b->dof; d++)
+        visit(b, b->lattice->particle_site[p], d, d < 2 ? 1 : spacing, into);
+  }
+}
+
+static void put_anything(body *b, long site, int d, double scale, double *into) {
+  (void)into;
+  b->velocity[d][site] = sin(1.7 * (double)site * (d + 1)) / scale;
+}
+
+/* Velocities become displacements of that size, at rest. */
+static void begin_with(body *b, long site, int d, double scale, double *size) {
+  (void)scale;
+  b->displacement[d][site] = *size * b->velocity[d][site];
+  b->velocity[d][site] = 0;
+}
+
+static void add_square(body *b, long site, int d, double scale, double *sum) {
+  sum[0] += scale * scale * b->displacement[d][site] * b->displacement[d][site];
+  sum[1] += scale * scale * b->velocity[d][site] * b->velocity[d][site];
+}
+
+/* Square of the highest frequency of all, by power iteration on what a step from rest pushes. */
+static double highest_square(deck_case *c) {
+  const double dt = body_of(c, CORE)->time_step;
+  double found = 0;
+  visit_all(c, put_anything, NULL);
+  for (int round = 0; round < 300; round++) {
+    double before[2] = {0, 0}, after[2] = {0, 0};
+    visit_all(c, add_square, before);
+    double size = 1e-9 / sqrt(before[1]);
+    visit_all(c, begin_with, &size);
+    for (int k = 0; k < c->simulation->tie_count; k++)
+      tie_steps_follow(&c->simulation->ties[k], false);
+    before[0] = 0;
+    visit_all(c, add_square, before);
+    assert_int_equal(simulation_advance(c->simulation, 1, NULL), STEP_OK);
+    visit_all(c, add_square, after);
+    found = sqrt(after[1] / before[0]) / dt;
+  }
+  return found;
+}
+
+/* Below the longest one, and not below that part of it. */
+static void step_is_near(const strip *s, double part) {
+  deck_case c;
+  open_flying(&c, s, 6000, 1, 1, 1e-9);
+  const double step = body_of(&c, CORE)->time_step, longest = 2 / sqrt(highest_square(&c));
+  print_message("step %.5g us of %.5g us, %.3f\n", 1e6 * step, 1e6 * longest, step / longest);
+  assert_true(step < longest && step > part * longest);
+  deck_case_close(&c);
+  open_flying(&c, s, 600, 1, 1, 1e-6);
+  assert_int_equal(deck_case_go(&c), STEP_END);
+  const double *kinetic = deck_case_series(&c, "energy/kinetic");
+  assert_true(deck_case_largest(&c, "energy/stored") + deck_case_largest(&c, "energy/kinetic") <
+              3 * kinetic[0]);
+  deck_case_close(&c);
+}
+
+/* A lattice that is much stiffer, and one that is much softer than the mesh, whose own limits say little
+   of the nodes between. */
+static void the_step_is_near_the_longest(void **state) {
+  (void)state;
+  static const char *const laws[] = {MICROPOLAR, "model = 'elastic_micropolar' E = 30e11 nu = 0.2",
+                                     "model = 'elastic_micropolar' E = 30e7 nu = 0.2"};
+  for (int k = 0; k < 3; k++) {
+    const strip s = {5, 0.04, 0.02, k == 1 ? 2.5e-3 : 5e-3, laws[k], 0};
+    step_is_near(&s, 0.5);
+  }
+}
+
+/* Bonds of particles that lie inside a mesh and give it little mass pull at nodes that have little of
+   their own: faster than all that moves in the lattice or in the mesh alone. */
+static void light_nodes_limit_the_step(void **state) {
+  (void)state;
+  const strip s = {5, 0.04, 0.02, 5e-3, MICROPOLAR, 0};
+  light = 0.03;
+  overlap = 2.3;
+  step_is_near(&s, 1.0 / 3);
+  light = 1;
+  overlap = 0;
+}
+
+/* Mass of what moves by itself. */
+static double free_mass(const deck_case *c) {
+  double sum = 0;
+  for (int n = 0; n < BODIES; n++) {
+    const body *b = body_of(c, n);
+    for (long p = 0; p < b->lattice->particle_count; p++)
+      sum += body_mass(b, 0, b->lattice->particle_site[p]);
+  }
+  int count;
+  const mesh_tie *ties = simulation_ties(c->simulation, CORE, &count);
+  const body *core = body_of(c, CORE);
+  for (int n = 0; n < count; n++)
+    for (long p = 0; p < ties[n].count; p++)
+      sum -= body_mass(core, 0, core->lattice->particle_site[ties[n].particles[p].particle]);
+  return sum;
+}
+
+/* What hangs on tied particles goes to the nodes as a whole, and its momentum is kept. */
+static void point_masses_on_tied_particles_are_kept(void **state) {
+  (void)state;
+  const strip s = {7, 0.08, 0.04, 10e-3, MICROPOLAR, 0};
+  static const char *const more[] = {
+      "", "&region name = 'row' lattice = 'core' shape = 'rectangle' corner = -1e-4, -1e-4 size = "
+          "2e-4, 1 /\n&point_mass region = 'row' total = 0.25 /\n"};
+  double mass[2], before[3], after[3];
+  for (int k = 0; k < 2; k++) {
+    char head[2048];
+    deck_case c;
+    snprintf(head, sizeof head, FLIES "%s", 300.0, 0.5, 1, 1e-3, 1e-3, more[k]);
+    open_strip(&c, &s, head);
+    mass[k] = free_mass(&c);
+    assert_int_equal(simulation_advance(c.simulation, 1, NULL), STEP_OK);
+    momenta_of(&c, before);
+    assert_int_equal(deck_case_go(&c), STEP_END);
+    const double scale = momenta_of(&c, after);
+    for (int d = 0; d < 2; d++)
+      assert_true(fabs(after[d] - before[d]) < 1e-12 * scale);
+    deck_case_close(&c);
+  }
+  print_message("mass %.9g kg and %.9g kg more\n", mass[0], mass[1] - mass[0]);
+  assert_true(fabs(mass[1] - mass[0] - 0.25) < 1e-12);
+}
+
 /* --- the same bits ---------------------------------------------------------------------------- */
 
 static void same_histories(const deck_case *a, const deck_case *b) {
@@ -553,6 +688,9 @@ int main(void) {
                                      cmocka_unit_test(momentum_is_kept),
                                      cmocka_unit_test(energies_balance),
                                      cmocka_unit_test(the_step_is_stable),
+                                     cmocka_unit_test(the_step_is_near_the_longest),
+                                     cmocka_unit_test(light_nodes_limit_the_step),
+                                     cmocka_unit_test(point_masses_on_tied_particles_are_kept),
                                      cmocka_unit_test(threads_do_not_show),
                                      cmocka_unit_test(a_run_goes_on_as_if_never_stopped)};
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -435,6 +435,35 @@ static void go(laws_run *c, const pl_law *const *laws, const char *text) {
   assert_int_equal(small_go(&c->r), STEP_END);
 }
 
+/* After the first step of an element at rest u_x = a x y dt: in a gauge the dilatation is that of the
+   middle, half of the difference in either strain. */
+static void gauges_see_the_mean_dilatation(void **state) {
+  (void)state;
+  const double a = 1, dt = 1e-6, y = 0.07, shift = 0.5 * a * dt * (0.05 - y);
+  const pl_law *const ways[] = {&hooke_law, &bent};
+  for (int k = 0; k < 2; k++) {
+    laws_run c;
+    go(&c, &ways[k],
+       "&simulation end_time = '1 us' step = '1 us' /\n"
+       "&mesh name = 'plate' size = 0.2, 0.1 nodes = 2, 2 thickness = 0.02 setting = "
+       "'plane_strain' "
+       "method = 'finite_elements' gauss = 2 dilatation = 'mean' /\n"
+       "&material mesh = 'plate' model = 'hooke' E = 30e9 nu = 0.2 rho = 2400 /\n"
+       "&region name = 'all' lattice = 'plate' shape = 'rectangle' corner = -1, -1 size = 3, 3 /\n"
+       "&initial_velocity region = 'all' component = 'x' value = '1 [m/s]*x*y/1 [m^2]' /\n"
+       "&monitor name = 'x' kind = 'strain' at = 0.13, 0.07 component = 'xx' /\n"
+       "&monitor name = 'y' kind = 'strain' at = 0.13, 0.07 component = 'yy' /\n"
+       "&monitor name = 's' kind = 'stress' at = 0.13, 0.07 component = 'yy' /\n"
+       "&output sample = '1 us' /\n");
+    print_message("strain %.9g, %.9g\n", small_last(&c.r, "x"), small_last(&c.r, "y"));
+    assert_true(fabs(small_last(&c.r, "x") - (a * y * dt + shift)) < 1e-10 * a * dt);
+    assert_true(fabs(small_last(&c.r, "y") - shift) < 1e-10 * a * dt);
+    const double stress = 30e9 / (1 - 0.2 * 0.2) * (shift + 0.2 * (a * y * dt + shift));
+    assert_true(fabs(small_last(&c.r, "s") / stress - 1) < 1e-9);
+    small_close(&c.r);
+  }
+}
+
 static void runs_by_both_ways_agree(void **state) {
   (void)state;
   static const char *const names[] = {"u", "s", "energy/kinetic", "energy/stored"};
@@ -558,6 +587,7 @@ int main(void) {
                                      cmocka_unit_test(only_rigid_motions_are_free),
                                      cmocka_unit_test(a_square_bends_as_a_beam),
                                      cmocka_unit_test(a_membrane_does_not_lock),
+                                     cmocka_unit_test(gauges_see_the_mean_dilatation),
                                      cmocka_unit_test(runs_by_both_ways_agree),
                                      cmocka_unit_test(threads_change_no_bit),
                                      cmocka_unit_test(a_resumed_run_is_the_same),

@@ -12,6 +12,7 @@
 #include "runtime/continuum/cells.h"
 #include "runtime/continuum/side_load.h"
 #include "runtime/geometry/gmsh_mesh.h"
+#include "runtime/simulation/frame_field.h"
 #include "tests/runtime/small_run.h"
 
 /* A square of 1 mm, its quadrant at the upper right an arc of radius 1 mm about (0, 0): two triangles of
@@ -31,6 +32,7 @@ static const char disc[] =
 static const char rest[] = "&support region = 'base' fix = 'x', 'y' /\n";
 
 static int threads_wanted = 1;
+static const char *whole_deck; /* in place of the one below */
 
 static void read_deck(small_run *r, const char *msh, const char *more) {
   char text[4096];
@@ -42,13 +44,14 @@ static void read_deck(small_run *r, const char *msh, const char *more) {
            "&mesh name = 'disc' file = 'disc.msh' unit = 'mm' thickness = '10 mm' /\n"
            "&material mesh = 'disc' model = 'hooke' /\n%s",
            threads_wanted, more);
-  const int file = source_add(&r->sources, "deck.nml", text, strlen(text));
+  const char *whole = whole_deck ? whole_deck : text;
+  const int file = source_add(&r->sources, "deck.nml", whole, strlen(whole));
   source_add(&r->sources, "disc.msh", msh, strlen(msh));
   r->deck = deck_read(r->memory, &r->sources, file, NULL, 0, &r->said);
 }
 
-static void open_run(small_run *r, const char *more) {
-  read_deck(r, disc, more);
+static void open_file(small_run *r, const char *msh, const char *more) {
+  read_deck(r, msh, more);
   if (!r->deck) small_print(r);
   assert_non_null(r->deck);
   assert_true(material_parameters(&r->deck->materials[0], &hooke_law, r->parameters, &r->said));
@@ -57,6 +60,10 @@ static void open_run(small_run *r, const char *more) {
   r->simulation = simulation_new(r->deck, r->laws, &r->said);
   if (!r->simulation) small_print(r);
   assert_non_null(r->simulation);
+}
+
+static void open_run(small_run *r, const char *more) {
+  open_file(r, disc, more);
 }
 
 static void groups_are_regions(void **state) {
@@ -107,6 +114,34 @@ static void normals_point_out(void **state) {
   sum = (sums){0};
   sides_visit(&c->mesh, m, gmsh_mesh_group(m, "base"), add_normal, &sum);
   assert_true(fabs(sum.x) < 1e-20 && fabs(sum.y + 1e-5) < 1e-17);
+  small_close(&r);
+}
+
+/* Of a curve that runs the other way round than its surface normals point out, too. */
+static void normals_of_turned_curves_point_out(void **state) {
+  (void)state;
+  char turned[sizeof disc];
+  small_run r;
+  memcpy(turned, disc, sizeof disc);
+  char *lines = strstr(turned, "2 2 4 6\n3 4 3 7\n"), *base = strstr(turned, "1 1 2 5\n");
+  assert_true(lines && base);
+  memcpy(lines, "2 4 2 6\n3 3 4 7\n", 16);
+  memcpy(base, "1 2 1 5\n", 8);
+  open_file(&r, turned,
+            "&support region = 'base' fix = 'x', 'y' /\n&static /\n"
+            "&monitor name = 'x' kind = 'reaction' region = 'base' component = 'x' /\n"
+            "&monitor name = 'y' kind = 'reaction' region = 'base' component = 'y' /\n"
+            "&traction mesh = 'disc' edge = 'arc' component = 'normal' stress = '1 MPa' /\n");
+  const cells *c = simulation_cells(r.simulation, 0);
+  const gmsh_mesh *m = r.deck->lattices[0].gmsh;
+  sums sum = {0};
+  sides_visit(&c->mesh, m, gmsh_mesh_group(m, "arc"), add_normal, &sum);
+  assert_true(fabs(sum.x - 1e-5) < 1e-17 && fabs(sum.y - 1e-5) < 1e-17);
+  sum = (sums){0};
+  sides_visit(&c->mesh, m, gmsh_mesh_group(m, "base"), add_normal, &sum);
+  assert_true(fabs(sum.x) < 1e-20 && fabs(sum.y + 1e-5) < 1e-17);
+  assert_int_equal(small_go(&r), STEP_END);
+  assert_true(fabs(small_last(&r, "x") + 10) < 0.02 && fabs(small_last(&r, "y") + 10) < 0.02);
   small_close(&r);
 }
 
@@ -183,6 +218,164 @@ static void threads_have_the_same_bits(void **state) {
   }
   threads_wanted = 1;
   assert_true(found[0] != 0 && found[0] == found[1] && found[0] == found[2]);
+}
+
+/* --- two laws --------------------------------------------------------------------------------- */
+
+#define TWO_SURFACES                                                                               \
+  "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 \"lower\"\n2 2 \"upper\"\n"        \
+  "$EndPhysicalNames\n$Entities\n0 0 2 0\n1 0 0 0 4 1 0 1 1 0\n2 0 0 0 4 1 0 1 2 "                 \
+  "0\n$EndEntities\n"
+
+/* Values of its own for each of two laws. */
+static void open_two(small_run *r, const pl_law *const law[2], const char *msh, const char *more,
+                     double values[2][8]) {
+  read_deck(r, msh, more);
+  if (!r->deck) small_print(r);
+  assert_non_null(r->deck);
+  assert_int_equal(r->deck->interaction_count, 2);
+  for (int k = 0; k < 2; k++) {
+    assert_true(
+        material_parameters(r->deck->interactions[k].material, law[k], values[k], &r->said));
+    r->laws[k] = (simulation_law){.law = law[k], .parameters = values[k]};
+  }
+  r->simulation = simulation_new(r->deck, r->laws, &r->said);
+  if (!r->simulation) small_print(r);
+  assert_non_null(r->simulation);
+}
+
+/* Two squares of h = 1 mm apart from each other, nu = 0: the highest modes of each are uniform strains,
+   omega^2 = 4 E/(rho h^2). Of the longest step, 2/omega of the stiffer one, 0.98 is taken. */
+static const char squares[] =
+    TWO_SURFACES "$Nodes\n1 8 1 8\n2 1 0 8\n1 2 3 4 5 6 7 8\n0 0 0 1 0 0 1 1 0 0 1 0\n"
+                 "3 0 0 4 0 0 4 1 0 3 1 0\n$EndNodes\n"
+                 "$Elements\n2 2 1 2\n2 1 3 1\n1 1 2 3 4\n2 2 3 1\n2 5 6 7 8\n$EndElements\n";
+
+static void the_stiffer_law_limits_the_step(void **state) {
+  (void)state;
+  pl_law bent = hooke_law;
+  bent.linear = 0;
+  for (int k = 0; k < 4; k++) {
+    const pl_law *of = k % 2 ? &bent : &hooke_law, *const law[2] = {of, of};
+    small_run r;
+    char text[512];
+    double values[2][8];
+    snprintf(text, sizeof text,
+             "&simulation end_time = '2 us' /\n"
+             "&mesh name = 'disc' file = 'disc.msh' unit = 'mm' thickness = '10 mm' /\n"
+             "&material mesh = 'disc' model = 'hooke' E = %s nu = 1e-9 /\n"
+             "&material mesh = 'disc' region = 'upper' model = 'hooke' E = %s nu = 1e-9 /\n",
+             k < 2 ? "30e9" : "30e11", k < 2 ? "30e11" : "30e9");
+    whole_deck = text;
+    open_two(&r, law, squares, "", values);
+    whole_deck = NULL;
+    const double omega = sqrt(4 * 30e11 / 2400) / 1e-3,
+                 part = simulation_step_limit(r.simulation)->limit * omega / 2;
+    print_message("step over the longest: %.5f\n", part);
+    assert_true(fabs(part - 0.98) < 1e-3);
+    small_close(&r);
+  }
+}
+
+/* Hourglass modes of either square, by the matrix and point by point. */
+static void each_law_resists_its_own_hourglass(void **state) {
+  (void)state;
+  pl_law bent = hooke_law;
+  bent.linear = 0;
+  double stored[2][2];
+  for (int k = 0; k < 4; k++) {
+    const pl_law *of = k % 2 ? &bent : &hooke_law, *const law[2] = {of, of};
+    small_run r;
+    char text[1024];
+    double values[2][8];
+    snprintf(text, sizeof text,
+             "&simulation end_time = '0.02 us' step = '0.001 us' /\n"
+             "&mesh name = 'disc' file = 'disc.msh' unit = 'mm' thickness = '10 mm' gauss = 1 "
+             "hourglass = 0.5 /\n"
+             "&material mesh = 'disc' model = 'hooke' /\n"
+             "&material mesh = 'disc' region = 'upper' model = 'hooke' E = 30e8 /\n"
+             "&region name = 'of' lattice = 'disc' shape = 'rectangle' corner = %g, -1 size = "
+             "1.8e-3, 3 /\n"
+             "&initial_velocity region = 'of' component = 'x' value = '1 [m/s]*(x/1 [mm] - %g)*"
+             "(y/1 [mm] - 0.5)' /\n",
+             k < 2 ? -0.4e-3 : 2.6e-3, k < 2 ? 0.5 : 3.5);
+    whole_deck = text;
+    open_two(&r, law, squares, "", values);
+    whole_deck = NULL;
+    assert_int_equal(small_go(&r), STEP_END);
+    stored[k / 2][k % 2] = small_last(&r, "energy/stored");
+    small_close(&r);
+  }
+  for (int k = 0; k < 2; k++)
+    assert_true(stored[k][0] > 0 && fabs(stored[k][1] / stored[k][0] - 1) < 1e-9);
+  const double ratio = stored[0][0] / stored[1][0];
+  print_message("stored in hourglass modes: %.3g J, %.3g J\n", stored[0][0], stored[1][0]);
+  assert_true(fabs(ratio - 10) < 0.2); /* as E: after the same way, nearly */
+}
+
+/* A square and a rectangle three times as wide side by side: at nodes of both, laws count by area. */
+static void laws_share_nodes_by_area(void **state) {
+  (void)state;
+  static const char sides[] =
+      TWO_SURFACES "$Nodes\n1 6 1 6\n2 1 0 6\n1 2 3 4 5 6\n0 0 0 1 0 0 1 1 0 0 1 0 4 0 0 4 1 0\n"
+                   "$EndNodes\n$Elements\n2 2 1 2\n2 1 3 1\n1 1 2 3 4\n2 2 3 1\n2 2 5 6 3\n"
+                   "$EndElements\n";
+  const pl_law *const law[2] = {&hooke_law, &hooke_law};
+  small_run r;
+  double values[2][8];
+  open_two(&r, law, sides, "&material mesh = 'disc' region = 'upper' model = 'hooke' /\n", values);
+  const cells *c = simulation_cells(r.simulation, 0);
+  for (int n = 0; n < 6; n++) {
+    double at[2];
+    mesh_place(&c->mesh, n, at);
+    const long site = cells_site(c, n);
+    const double wide = at[0] < 0.5e-3 ? 0 : at[0] > 2e-3 ? 1 : 0.75;
+    assert_true(fabs(c->where.share[1][site] - wide) < 1e-12);
+    assert_true(fabs(c->where.share[0][site] - (1 - wide)) < 1e-12);
+  }
+  small_close(&r);
+}
+
+/* A fan of four triangles about a node that all begin with: the second and the fourth are weak. Pulled
+   alike, these two die, and the node's bits are theirs. */
+static void two_cells_of_one_node_die(void **state) {
+  (void)state;
+  static const char fan[] =
+      TWO_SURFACES "$Nodes\n1 5 1 5\n2 1 0 5\n1 2 3 4 5\n0.5 0.5 0 0 0 0 1 0 0 1 1 0 0 1 0\n"
+                   "$EndNodes\n$Elements\n4 4 1 4\n2 1 2 1\n1 1 2 3\n2 2 2 1\n2 1 3 4\n"
+                   "2 1 2 1\n3 1 4 5\n2 2 2 1\n4 1 5 2\n$EndElements\n";
+  const pl_law *const law[2] = {&hooke_law, &brittle_law};
+  const frame_field *fields;
+  small_run r;
+  double values[2][8], dead[5], first;
+  open_two(
+      &r, law, fan,
+      "&material mesh = 'disc' region = 'upper' model = 'brittle' eps_u = 1e-6 /\n"
+      "&region name = 'all' lattice = 'disc' shape = 'rectangle' corner = -1, -1 size = 3, 3 /\n"
+      "&initial_velocity region = 'all' component = 'x' value = '100 [1/s]*x' /\n"
+      "&initial_velocity region = 'all' component = 'y' value = '100 [1/s]*y' /\n",
+      values);
+  assert_int_equal(small_go(&r), STEP_END);
+  const cells *c = simulation_cells(r.simulation, 0);
+  assert_int_equal(cells_deaths(c, &first), 2);
+  int bits = 0, corner[ELEMENT_MOST_NODES], middle = -1;
+  for (int k = 0; k < 4; k++) { /* in whatever order */
+    const bool weak = r.deck->lattices[0].gmsh->cell_tag[k] % 2 == 0;
+    assert_int_equal(cells_dead(c, k), weak);
+    bits += weak ? 1 << k : 0;
+    mesh_cell_nodes(&c->mesh, k, corner);
+    assert_true(k == 0 || corner[0] == middle);
+    middle = corner[0];
+  }
+  const int count = simulation_frame_fields(r.simulation, &fields);
+  int field = 0;
+  while (field < count && strcmp(fields[field].name, "dead_cells") != 0)
+    field++;
+  assert_true(field < count);
+  simulation_frame_values(r.simulation, field, dead);
+  for (int n = 0; n < 5; n++)
+    assert_true(dead[cells_particle(c, n)] == (n == middle ? bits : 0));
+  small_close(&r);
 }
 
 /* --- quadrilaterals with one point ------------------------------------------------------------ */
@@ -393,7 +586,12 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(groups_are_regions),
       cmocka_unit_test(normals_point_out),
+      cmocka_unit_test(normals_of_turned_curves_point_out),
       cmocka_unit_test(edges_are_loaded),
+      cmocka_unit_test(the_stiffer_law_limits_the_step),
+      cmocka_unit_test(each_law_resists_its_own_hourglass),
+      cmocka_unit_test(laws_share_nodes_by_area),
+      cmocka_unit_test(two_cells_of_one_node_die),
       cmocka_unit_test(materials_of_groups),
       cmocka_unit_test(threads_have_the_same_bits),
       cmocka_unit_test(resistance_to_hourglass_modes_is_that_of_grids),

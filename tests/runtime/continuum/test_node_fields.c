@@ -104,6 +104,43 @@ static void linear_fields_are_exact(void **state) {
   }
 }
 
+/* u_x = a x y in elements with the mean dilatation: that of an element, a y, is a y_middle instead, and
+   the half of the difference is in either strain. Around a node inside differences cancel out. */
+static void the_mean_dilatation_shows(void **state) {
+  (void)state;
+  const double a = 1e-3, E = 30e9, nu = 0.2, height = 0.5;
+  small_mesh s;
+  begin(&s, 2);
+  memset(s.c.mesh.element_free, 0, NODES);
+  memset(s.c.mesh.mean_dilatation, 1, (size_t)mesh_cell_count(&s.c.mesh));
+  mesh_settle(&s.c.mesh);
+  integration_points_open(&s.c.points, &s.c.mesh);
+  for (int n = 0; n < NODES; n++) {
+    double at[2];
+    mesh_place(&s.c.mesh, n, at);
+    s.u[0][node_layout_at(&s.layout, n)] = a * at[0] * at[1];
+  }
+  const double *const u[2] = {s.u[0], s.u[1]};
+  for (int stress = 0; stress < 2; stress++) {
+    (stress ? node_field_stress : node_field_strain)(&s.c, u, s.out);
+    for (int n = 0; n < NODES; n++) {
+      const int row = n / ALONG;
+      const double y = -2 + height * row,
+                   shift = (row == 0        ? 1
+                            : row == UP - 1 ? -1
+                                            : 0) *
+                           0.25 * a * height,
+                   x = a * y + shift, x_of = E / (1 - nu * nu) * (x + nu * shift),
+                   y_of = E / (1 - nu * nu) * (shift + nu * x);
+      const long site = node_layout_at(&s.layout, n);
+      assert_true(fabs(s.out[0][site] - (stress ? x_of : x)) < (stress ? E : 1) * 1e-14);
+      assert_true(fabs(s.out[1][site] - (stress ? y_of : shift)) < (stress ? E : 1) * 1e-14);
+    }
+  }
+  integration_points_close(&s.c.points);
+  end(&s);
+}
+
 /* The parameter of an element-free node is not its displacement; that of an element's node is. */
 static void values_are_displacements(void **state) {
   (void)state;
@@ -179,9 +216,11 @@ static void one_point_stands_in_the_middle(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(linear_fields_are_exact), cmocka_unit_test(values_are_displacements),
-      cmocka_unit_test(a_crack_parts_its_sides), cmocka_unit_test(one_point_sees_no_hourglass),
-      cmocka_unit_test(one_point_stands_in_the_middle)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(linear_fields_are_exact),
+                                     cmocka_unit_test(the_mean_dilatation_shows),
+                                     cmocka_unit_test(values_are_displacements),
+                                     cmocka_unit_test(a_crack_parts_its_sides),
+                                     cmocka_unit_test(one_point_sees_no_hourglass),
+                                     cmocka_unit_test(one_point_stands_in_the_middle)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

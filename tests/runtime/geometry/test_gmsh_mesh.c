@@ -114,6 +114,21 @@ static void version_4_0_is_read(void **state) {
   end_reading(&r);
 }
 
+/* Of nodes with their places along lines and in surfaces (Mesh.SaveParametric), which are not asked for. */
+static void parametric_nodes_are_read(void **state) {
+  (void)state;
+  reading r;
+  read_text(&r,
+            HEAD NAMES ENTITIES
+            "$Nodes\n3 7 1 9\n0 1 1 1\n1\n0 0 0\n1 1 1 2\n5\n6\n3 0 0 .25\n3 1 0 .75\n2 1 1 4\n2\n"
+            "3\n4\n9\n2 0 0 .5 .6\n2 1 0 .7 .8\n0 1 0 -1 -2\n7 7 7 8 9\n$EndNodes\n" ELEMENTS,
+            1e-3);
+  assert_non_null(r.m);
+  assert_int_equal(r.d.count, 0);
+  check_mesh(r.m);
+  end_reading(&r);
+}
+
 /* Of 6 nodes; the arc of a side is above its chord. */
 static void quadratic_triangles_are_read(void **state) {
   (void)state;
@@ -239,6 +254,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(version_4_1_is_read),
       cmocka_unit_test(version_4_0_is_read),
+      cmocka_unit_test(parametric_nodes_are_read),
       cmocka_unit_test(quadratic_triangles_are_read),
       cmocka_unit_test(faulty_files_are_told_at_their_lines),
       cmocka_unit_test(truncated_files_are_told),

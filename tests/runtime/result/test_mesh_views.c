@@ -146,6 +146,24 @@ static void cells_that_have_died_are_left_out(void **state) {
   assert_true(mesh_cell_died(5, 2) && !mesh_cell_died(5, 1) && mesh_cell_died(5, 0));
 }
 
+/* Of a fan of four triangles, which all begin at one node, the second and the fourth have died. */
+static void cells_of_one_node_die_apart(void **state) {
+  (void)state;
+  static const int32_t fan[] = {4, 0, 1, 4, 1, 2, 4, 2, 5, 4, 5, 0};
+  static const result_mesh of = {"plate", 1, NODES, 4, 3, fan, method, 0.5, NULL, NULL};
+  static const int left[] = {0, 2};
+  result_header h = header("m.h5");
+  mesh_views v = {.particles = ALL, .dead = calloc(ALL, sizeof(double))};
+  h.meshes = &of;
+  v.dead[1 + 4] = 2 + 8;
+  mesh_views_find(&v, &h, 1);
+  assert_int_equal(v.sets[0].count, 2);
+  for (int k = 0; k < 2; k++)
+    for (int q = 0; q < 3; q++)
+      assert_int_equal(v.sets[0].corners[3 * k + q], 1 + fan[3 * left[k] + q]);
+  mesh_views_free(&v);
+}
+
 static bool has_number(hid_t file, const char *name, long rows, int columns) {
   hsize_t shape[3] = {0, 0, 0};
   const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
@@ -246,7 +264,9 @@ static void the_sidecar_has_cells_and_cracks_in_every_frame(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(cells_that_a_crack_crosses_are_left_out),
-      cmocka_unit_test(cells_of_several_kinds), cmocka_unit_test(cells_that_have_died_are_left_out),
+      cmocka_unit_test(cells_of_several_kinds),
+      cmocka_unit_test(cells_that_have_died_are_left_out),
+      cmocka_unit_test(cells_of_one_node_die_apart),
       cmocka_unit_test(what_is_written_is_read_back),
       cmocka_unit_test(the_sidecar_has_cells_and_cracks_in_every_frame)};
   return cmocka_run_group_tests(tests, NULL, NULL);
