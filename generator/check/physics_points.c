@@ -113,7 +113,6 @@ static void check_stiffness(point_bench *b) {
 
 /* --- the stress's slope ----------------------------------------------------------------------- */
 
-/* The largest difference between the tangent and the stress's central differences. */
 /* Of one column: the largest distance of differences over `by` between two stresses. */
 static double column_gap(const point_bench *b, const double *tangent, int k, const double *high,
                          const double *low, double by) {
@@ -124,6 +123,8 @@ static double column_gap(const point_bench *b, const double *tangent, int k, con
   return gap;
 }
 
+/* The largest distance of the tangent from the stress's differences, in each direction those of the
+   better side or of both: at a kink it is that of one side. */
 static double tangent_gap(point_bench *b, const double *strain, const double *tangent, double by) {
   double moved[MOST], high[MOST], low[MOST], here[MOST], difference = 0;
   point_bench_stress(b, strain, here);
