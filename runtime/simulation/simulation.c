@@ -5,7 +5,9 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/analysis/implied.h"
 #include "runtime/base/subnormals.h"
+#include "runtime/continuum/point_law.h"
 #include "runtime/deck/group_run.h"
 #include "runtime/simulation/law_fits.h"
 #include "runtime/simulation/link_limit.h"
@@ -103,6 +105,35 @@ static void open_ties(simulation *s) {
     loads_links_added(s->bodies[b].loads);
 }
 
+/* Young's modulus along x of a mesh's law at rest, as it holds in the plane, Pa. */
+static double modulus_of_mesh(const run_body *of) {
+  double t[3][3];
+  point_law *at = point_law_new(of->laws[0].law, of->laws[0].parameters);
+  point_law_tangent(at, (double[3]){0}, mesh_cell_size(&of->cells->mesh, 0), t);
+  point_law_free(at);
+  return t[0][0] - t[0][1] * t[1][0] / t[1][1];
+}
+
+/* Of bodies with one law each, and lattices that a law implies something of. */
+static void warn_of_moduli(simulation *s, diagnostics *d) {
+  const double most = 0.05;
+  for (int b = 0; b < s->body_count; b++)
+    for (int n = 0; n < s->bodies[b].tie_count; n++) {
+      const run_body *of = &s->bodies[b], *tied = body_of(s, of->ties[n].mesh);
+      implied_elasticity e;
+      if (of->law_count > 1 || tied->law_count > 1 || of->lattice_rows->list ||
+          !implied_elastic(of->law, of->laws[0].parameters, of->lattice_rows, &e))
+        continue;
+      const double E = modulus_of_mesh(tied);
+      if (!(fabs(e.E[0] / E - 1) > most)) continue;
+      diag_report(d, DIAG_DECK_WARNING, of->ties[n].from->item.where,
+                  "`%s` has E = %.4g GPa and `%s` has %.4g GPa: waves are thrown back at the tie, "
+                  "and stresses differ",
+                  of->name, 1e-9 * e.E[0], tied->name, 1e-9 * E);
+      diag_hint(d, "give the law of the mesh the E and nu of the lattice");
+    }
+}
+
 /* Their blocks are dealt out to a team with as many as the largest body has. */
 static bool open_bodies(simulation *s, diagnostics *d) {
   bool good = true;
@@ -124,7 +155,10 @@ static bool open_bodies(simulation *s, diagnostics *d) {
   s->team = team_new(s->blocks);
   s->links = run_links_new(s->bodies, s->body_count, &s->link_count);
   s->link_stages = s->link_count > 0 ? RUN_LINK_STAGES : 0;
-  if (good) open_ties(s);
+  if (good) {
+    warn_of_moduli(s, d);
+    open_ties(s);
+  }
   run_contacts_begin(&s->contacts);
   return good;
 }

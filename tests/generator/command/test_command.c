@@ -163,6 +163,7 @@ static void overrides_are_checked(void **state) {
       {"run beam.nml --set material.E=-1", 1, "is not in (0, inf)"},
       {"run beam.nml --set material.Q=1", 1, "has no parameter `Q`"},
       {"run beam.nml --set material.model=nope", 1, "there is no model `nope`"},
+      {"run beam.nml --set material.model=britle_cracking", 1, "mean `brittle_cracking`?"},
       {"run beam.nml --set output.result=folder/x.h5", 1,
        "cannot write the result into the folder"},
       {"run beam.nml --set output.result=.", 1, "is a folder"},

@@ -49,6 +49,8 @@ static const fault faults[] = {
      false},
     {"thinner", "thickness = '10 mm'  rotation", "thickness = '12 mm'  rotation", true},
     {"plane_strain", "'10 mm'  rotation", "'10 mm'  setting = 'plane_strain'  rotation", true},
+    {"softer", "'right'  model = 'elastic'  E = '30 GPa'",
+     "'right'  model = 'elastic'  E = '28 GPa'", true},
     {"families", "'elastic_micropolar'  E = '30 GPa'  nu = 0.2", "'lps'  E = '30 GPa'  nu = 0.2",
      false},
     {"to_itself", "lattice = 'core'  mesh = 'left'", "lattice = 'left'  mesh = 'left'", false},
