@@ -7,6 +7,7 @@
 
 #include "runtime/base/whole_file.h"
 #include "runtime/continuum/point_forces.h"
+#include "runtime/geometry/gmsh_mesh.h"
 
 void bad_bond_path(const char *result, const bad_state *b, char *path, size_t size) {
   size_t n = strlen(result);
@@ -91,16 +92,25 @@ static bool write_bond(const char *deck_name, const model *m, const simulation_l
   return !ferror(out);
 }
 
+const char *bad_cell_text(const deck_lattice *of, const int cell[2], char text[BAD_CELL_TEXT]) {
+  if (of->gmsh)
+    snprintf(text, BAD_CELL_TEXT, "%lld", (long long)of->gmsh->cell_tag[cell[0]]);
+  else
+    snprintf(text, BAD_CELL_TEXT, "(%d, %d)", cell[0], cell[1]);
+  return text;
+}
+
 static bool write_point(const char *deck_name, const model *m, const simulation_law *l,
-                        const char *setting, const bad_state *b, FILE *out) {
+                        const deck_lattice *of, const bad_state *b, FILE *out) {
   static const char *const strain[] = {"strain_xx", "strain_yy", "strain_xy"};
   const point_state *p = b->point;
+  char cell[BAD_CELL_TEXT];
   fprintf(out,
-          "! The point (%.9g, %.9g) m of cell (%d, %d) where a run stopped: %s in step %ld, t = "
+          "! The point (%.9g, %.9g) m of cell %s where a run stopped: %s in step %ld, t = "
           "%.9g s.\n",
-          p->at[0], p->at[1], p->cell[0], p->cell[1], b->what, b->step, b->time);
+          p->at[0], p->at[1], bad_cell_text(of, p->cell, cell), b->what, b->step, b->time);
   put_title(deck_name, out);
-  fprintf(out, "&point  setting = '%s'  size = %.17g  /\n", setting, p->size);
+  fprintf(out, "&point  setting = '%s'  size = %.17g  /\n", of->setting, p->size);
   put_material(m, l, out);
   put_initial(l->law, p->field, l->law->field_count, out);
   for (int k = 0; k < 3; k++)
@@ -126,10 +136,10 @@ bool bad_bond_write(const char *path, const char *deck_name, const model *m,
 }
 
 bool bad_point_write(const char *path, const char *deck_name, const model *m,
-                     const simulation_law *l, const char *setting, const bad_state *b, char *error,
-                     size_t size) {
+                     const simulation_law *l, const deck_lattice *of, const bad_state *b,
+                     char *error, size_t size) {
   whole_file whole;
   FILE *out = whole_file_open(&whole, path);
-  const bool good = out && write_point(deck_name, m, l, setting, b, out);
+  const bool good = out && write_point(deck_name, m, l, of, b, out);
   return end(&whole, out, good, path, error, size);
 }

@@ -20,7 +20,6 @@
 #include "runtime/continuum/tips.h"
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/filling/bar_placing.h"
-#include "runtime/geometry/gmsh_mesh.h"
 #include "runtime/geometry/polyline.h"
 #include "runtime/lattice/notch_depth.h"
 #include "runtime/lattice/parameter_planes.h"
@@ -507,7 +506,7 @@ static void write_bad_point(const run *r, const bad_state *b) {
   char path[4200], error[ERROR_LENGTH + 4200];
   bad_bond_path(r->result_path, b, path, sizeof path);
   if (bad_point_write(path, r->options->deck_path, r->model_of[b->interaction],
-                      &r->laws[b->interaction], r->deck->lattices[b->body].setting, b, error,
+                      &r->laws[b->interaction], &r->deck->lattices[b->body], b, error,
                       sizeof error))
     fprintf(stderr, "  this point alone: perilat drive %s\n", path);
   else
@@ -549,13 +548,9 @@ static void print_family(const run *r, const bad_state *b) {
 static void print_point(const run *r, const bad_state *b) {
   const pl_law *kernel = r->laws[b->interaction].law;
   const point_state *p = b->point;
-  const gmsh_mesh *file =
-      r->deck->lattices[r->deck->interactions[b->interaction].lattice].gmsh; /* has own numbers */
-  fprintf(stderr, "  point (%.6g, %.6g) mm of cell ", 1e3 * p->at[0], 1e3 * p->at[1]);
-  if (file)
-    fprintf(stderr, "%lld", (long long)file->cell_tag[p->cell[0]]);
-  else
-    fprintf(stderr, "(%d, %d)", p->cell[0], p->cell[1]);
+  char cell[BAD_CELL_TEXT];
+  fprintf(stderr, "  point (%.6g, %.6g) mm of cell %s", 1e3 * p->at[0], 1e3 * p->at[1],
+          bad_cell_text(&r->deck->lattices[b->body], p->cell, cell));
   fprintf(stderr, ": strain xx %.6g, yy %.6g, xy %.6g; stress xx %.6g, yy %.6g, xy %.6g MPa",
           p->strain[0], p->strain[1], p->strain[2], 1e-6 * p->stress[0], 1e-6 * p->stress[1],
           1e-6 * p->stress[2]);

@@ -88,7 +88,7 @@ static void find_parts(cell_laws *l, int law, const rows *nodes, const mesh *m) 
   for (int c = 0; c < mesh_cell_count(m); c++)
     l->cells[law][c] = l->of_cell[c] == law && m->cell[c] != CELL_ABSENT;
   for (int n = 0; n < mesh_node_count(m); n++) {
-    int around[MESH_MOST_AROUND];
+    int around[ELEMENT_MOST_AROUND];
     double own = 0, all = 0;
     const int count = mesh_cells_around(m, n, around);
     for (int k = 0; k < count; k++) {

@@ -16,7 +16,7 @@ void node_field_values(const cells *c, const double *const planes[2], double *va
   const node_layout l = layout_of(c);
   for (int n = 0; n < mesh_node_count(&c->mesh); n++) {
     const int32_t particle = c->nodes->site_particle[node_layout_at(&l, n)];
-    int around[MESH_MOST_AROUND];
+    int around[ELEMENT_MOST_AROUND];
     double at[2];
     point_shape s;
     if (particle < 0) continue;
@@ -32,7 +32,7 @@ void node_field_values(const cells *c, const double *const planes[2], double *va
 enum { ANY_LAW = -1 };
 
 /* Cells of a law around a node. */
-static int cells_of_law(const cells *c, int law, int node, int around[MESH_MOST_AROUND]) {
+static int cells_of_law(const cells *c, int law, int node, int around[ELEMENT_MOST_AROUND]) {
   const int count = mesh_cells_around(&c->mesh, node, around);
   int of_law = 0;
   for (int n = 0; n < count; n++)
@@ -41,7 +41,7 @@ static int cells_of_law(const cells *c, int law, int node, int around[MESH_MOST_
 }
 
 /* Functions of element-free cells are the same in all of them: one speaks for all. */
-static int cells_that_differ(const cells *c, int law, int node, int around[MESH_MOST_AROUND]) {
+static int cells_that_differ(const cells *c, int law, int node, int around[ELEMENT_MOST_AROUND]) {
   const mesh *m = &c->mesh;
   const int count = cells_of_law(c, law, node, around);
   bool alike = count > 0;
@@ -53,7 +53,7 @@ static int cells_that_differ(const cells *c, int law, int node, int around[MESH_
 /* The mean over the cells of the law around the node; false: there are none. */
 static bool strain_at(const cells *c, const node_layout *l, const double *const displacement[2],
                       int law, int node, double strain[3]) {
-  int around[MESH_MOST_AROUND];
+  int around[ELEMENT_MOST_AROUND];
   double there[2];
   const int count = cells_that_differ(c, law, node, around);
   mesh_place(&c->mesh, node, there);
@@ -91,7 +91,7 @@ static void stress_of_law(const cells *c, point_law *const *laws, int law,
                           const double *const displacement[2], int node, double stress[4]) {
   const node_layout l = layout_of(c);
   double strain[3];
-  int around[MESH_MOST_AROUND];
+  int around[ELEMENT_MOST_AROUND];
   if (!cells_mean_stress(c, law, node, stress) &&
       strain_at(c, &l, displacement, law, node, strain) && cells_of_law(c, law, node, around) > 0)
     point_law_stress(laws[law], strain, mesh_cell_size(&c->mesh, around[0]), stress);

@@ -16,7 +16,7 @@ static int by_number(const void *p, const void *q) {
 
 /* Those that share a cell with a node, ascending; how many. */
 static int partners(const mesh *m, int node, int32_t *out) {
-  int around[MESH_MOST_AROUND], in[ELEMENT_MOST_NODES], count = 0, kept = 0;
+  int around[ELEMENT_MOST_AROUND], in[ELEMENT_MOST_NODES], count = 0, kept = 0;
   const int cells = mesh_cells_around(m, node, around);
   for (int c = 0; c < cells; c++) {
     const int nodes = mesh_cell_nodes(m, around[c], in);
@@ -30,7 +30,7 @@ static int partners(const mesh *m, int node, int32_t *out) {
 }
 
 static void find_partners(node_matrix *k, const mesh *m) {
-  int32_t found[MESH_MOST_AROUND * ELEMENT_MOST_NODES];
+  int32_t found[ELEMENT_MOST_AROUND * ELEMENT_MOST_NODES];
   k->first = must_calloc((size_t)k->nodes + 1, sizeof *k->first);
   for (int n = 0; n < k->nodes; n++)
     k->first[n + 1] = k->first[n] + partners(m, n, found);

@@ -637,7 +637,7 @@ static void add_cell(const point_forces *p, const double *plane, int cell, doubl
 }
 
 double point_forces_mean(const point_forces *p, const double *plane, int node) {
-  int cell[MESH_MOST_AROUND];
+  int cell[ELEMENT_MOST_AROUND];
   const int count = mesh_cells_around(p->of, node, cell);
   double sum = 0, volume = 0;
   for (int n = 0; n < count; n++)
@@ -654,7 +654,7 @@ static int corners_there(const mesh *m, int cell) {
 }
 
 double point_forces_share(const point_forces *p, const double *plane, int node) {
-  int cell[MESH_MOST_AROUND];
+  int cell[ELEMENT_MOST_AROUND];
   const int count = mesh_cells_around(p->of, node, cell);
   double share = 0;
   for (int n = 0; n < count; n++) {

@@ -7,6 +7,8 @@
 #include <stdbool.h>
 
 enum { ELEMENT_MOST_NODES = 6, ELEMENT_MOST_POINTS = 6 };
+/* Elements around a node: a double has a bit for each of those that begin with it (mesh_views.h). */
+enum { ELEMENT_MOST_AROUND = 52 };
 
 static inline int element_corners(int nodes) {
   return nodes == 4 ? 4 : 3;

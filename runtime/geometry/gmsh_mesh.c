@@ -678,11 +678,11 @@ static bool is_not_crowded(const maker *k) {
   int *around = must_calloc((size_t)k->m->node_count + 1, sizeof *around), bad = -1;
   for (int c = 0; c < k->m->cell_count; c++)
     for (int q = 0; q < k->m->nodes[c]; q++)
-      if (++around[k->m->cell[c][q]] > GMSH_MOST_AROUND) bad = c;
+      if (++around[k->m->cell[c][q]] > ELEMENT_MOST_AROUND) bad = c;
   free(around);
   if (bad < 0) return true;
   diag_report(k->d, DIAG_OUT_OF_BOUNDS, line_of_cell(k, bad),
-              "more than %d cells meet in a node of this one", GMSH_MOST_AROUND);
+              "more than %d cells meet in a node of this one", ELEMENT_MOST_AROUND);
   return false;
 }
 

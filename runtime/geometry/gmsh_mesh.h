@@ -37,7 +37,7 @@ typedef struct gmsh_mesh {
   double area;  /* m^2 */
 } gmsh_mesh;
 
-enum { GMSH_MOST_NODES = 4000000, GMSH_MOST_AROUND = 64 /* cells around a node */ };
+enum { GMSH_MOST_NODES = 4000000 };
 
 /* Takes over `path` (malloc'ed), as gmsh_text_read. NULL after messages, also where a cell is
    degenerate or inverted, cells lie over each other (cell_overlap.h), a node hangs, or there is no

@@ -64,13 +64,34 @@ static int box_at(const cell_lists *l, int axis, double x) {
   return k < 0 ? 0 : k > l->boxes[axis] - 1 ? l->boxes[axis] - 1 : (int)k;
 }
 
-/* Counts cells in boxes, or puts them there where `at` says how far each is filled. */
-static void visit_boxes(cell_lists *l, int32_t *at) {
+/* The boxes that a cell's own box reaches: from, to along each axis. */
+static void boxes_of(const cell_lists *l, int cell, int from[2], int to[2]) {
+  double low[2], high[2];
+  box_of(l, cell, low, high);
+  for (int a = 0; a < 2; a++) {
+    from[a] = box_at(l, a, low[a]);
+    to[a] = box_at(l, a, high[a]);
+  }
+}
+
+/* How many places all cells take in boxes. */
+static int64_t entries_of(const cell_lists *l) {
+  int64_t sum = 0;
   for (int c = 0; c < l->count; c++) {
-    double low[2], high[2];
-    box_of(l, c, low, high);
-    for (int j = box_at(l, 1, low[1]); j <= box_at(l, 1, high[1]); j++)
-      for (int i = box_at(l, 0, low[0]); i <= box_at(l, 0, high[0]); i++) {
+    int from[2], to[2];
+    boxes_of(l, c, from, to);
+    sum += (int64_t)(to[0] - from[0] + 1) * (to[1] - from[1] + 1);
+  }
+  return sum;
+}
+
+/* Counts cells in boxes, or puts them there where `at` says how far each is filled. */
+static void visit_boxes(cell_lists *l, int64_t *at) {
+  for (int c = 0; c < l->count; c++) {
+    int from[2], to[2];
+    boxes_of(l, c, from, to);
+    for (int j = from[1]; j <= to[1]; j++)
+      for (int i = from[0]; i <= to[0]; i++) {
         const int box = j * l->boxes[0] + i;
         if (at)
           l->in[at[box]++] = c;
@@ -80,9 +101,8 @@ static void visit_boxes(cell_lists *l, int32_t *at) {
   }
 }
 
-/* About as many boxes as cells, each as large as the mean cell's. */
-static void find_boxes(cell_lists *l) {
-  enum { MOST_BOXES = 2000 };
+/* What all cells reach, m; the mean of their sides. */
+static double find_extent(cell_lists *l, double size[2]) {
   double high[2] = {-INFINITY, -INFINITY}, sides = 0;
   l->low[0] = l->low[1] = INFINITY;
   for (int c = 0; c < l->count; c++) {
@@ -94,16 +114,34 @@ static void find_boxes(cell_lists *l) {
       sides += 0.5 * (to[a] - from[a]) / l->count;
     }
   }
-  l->box = pl_max(sides, pl_max(high[0] - l->low[0], high[1] - l->low[1]) / MOST_BOXES);
   for (int a = 0; a < 2; a++)
-    l->boxes[a] = 1 + (int)((high[a] - l->low[a]) / l->box);
+    size[a] = high[a] - l->low[a];
+  return sides;
+}
+
+/* About as many boxes as cells, each as large as the mean cell's; larger ones where long cells lie
+   across many. */
+static void choose_boxes(cell_lists *l) {
+  enum { MOST_BOXES = 2000, MOST_ENTRIES = 16 /* a cell, in the mean */ };
+  double size[2];
+  const double sides = find_extent(l, size);
+  l->box = 0.5 * pl_max(sides, pl_max(size[0], size[1]) / MOST_BOXES);
+  do {
+    l->box *= 2;
+    for (int a = 0; a < 2; a++)
+      l->boxes[a] = 1 + (int)(size[a] / l->box);
+  } while (entries_of(l) > (int64_t)MOST_ENTRIES * l->count);
+}
+
+static void find_boxes(cell_lists *l) {
+  choose_boxes(l);
   const size_t boxes = (size_t)l->boxes[0] * (size_t)l->boxes[1];
   l->first_in = must_calloc(boxes + 1, sizeof *l->first_in);
   visit_boxes(l, NULL);
   for (size_t k = 0; k < boxes; k++)
     l->first_in[k + 1] += l->first_in[k];
   l->in = must_alloc(((size_t)l->first_in[boxes] + 1) * sizeof *l->in);
-  int32_t *at = copy_of(l->first_in, (boxes + 1) * sizeof *at);
+  int64_t *at = copy_of(l->first_in, (boxes + 1) * sizeof *at);
   visit_boxes(l, at);
   free(at);
 }
@@ -139,7 +177,7 @@ int cell_lists_find(const cell_lists *l, const double at[2], double u[2]) {
   for (int a = 0; a < 2; a++)
     if (!(at[a] >= l->low[a] && at[a] <= l->low[a] + l->box * l->boxes[a])) return -1;
   const int box = box_at(l, 1, at[1]) * l->boxes[0] + box_at(l, 0, at[0]);
-  for (int32_t k = l->first_in[box]; k < l->first_in[box + 1]; k++) {
+  for (int64_t k = l->first_in[box]; k < l->first_in[box + 1]; k++) {
     const int cell = l->in[k];
     double corner[ELEMENT_MOST_NODES][2], here[2];
     cell_lists_places(l, cell, corner);

@@ -20,7 +20,8 @@ typedef struct cell_lists {
   int32_t *first, *around; /* [node_count + 1]; cells of a node in ascending order */
   double low[2], box;      /* m: of boxes of equal sides that hold all */
   int boxes[2];
-  int32_t *first_in, *in; /* [boxes + 1]; cells that may reach into a box */
+  int64_t *first_in; /* [boxes + 1] */
+  int32_t *in;       /* cells that may reach into a box, 16 for each cell at most in all */
 } cell_lists;
 
 /* Copies what it is given. */

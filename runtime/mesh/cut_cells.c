@@ -203,7 +203,7 @@ static bool is_seen_from(const mesh *m, int cell, const double node[2], cut_poin
 }
 
 static bool is_seen(const mesh *m, int node, cut_points *scratch) {
-  int around[MESH_MOST_AROUND];
+  int around[ELEMENT_MOST_AROUND];
   double at[2];
   const int count = mesh_cells_around(m, node, around);
   mesh_place(m, node, at);
@@ -222,7 +222,7 @@ static bool meets_holes(const mesh *m, int cell) {
 
 /* A hole may take a node and of a cell only a corner that is as good as nothing. */
 static void set_cut_around(mesh *m, int gone) {
-  int around[MESH_MOST_AROUND];
+  int around[ELEMENT_MOST_AROUND];
   const int count = mesh_cells_around(m, gone, around);
   for (int k = 0; k < count; k++)
     set_cut(m, around[k]);

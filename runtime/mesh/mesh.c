@@ -112,14 +112,14 @@ int mesh_cell_nodes(const mesh *m, int cell, int node[ELEMENT_MOST_NODES]) {
   return 4;
 }
 
-static int listed_around(const cell_lists *l, int node, int around[MESH_MOST_AROUND]) {
+static int listed_around(const cell_lists *l, int node, int around[ELEMENT_MOST_AROUND]) {
   const int count = node < l->node_count ? l->first[node + 1] - l->first[node] : 0;
   for (int k = 0; k < count; k++)
     around[k] = l->around[l->first[node] + k];
   return count;
 }
 
-int mesh_cells_around(const mesh *m, int node, int around[MESH_MOST_AROUND]) {
+int mesh_cells_around(const mesh *m, int node, int around[ELEMENT_MOST_AROUND]) {
   if (m->lists) return listed_around(m->lists, node, around);
   const int i = node % m->nodes[0], j = node / m->nodes[0];
   int count = 0;

@@ -122,8 +122,7 @@ static inline void mesh_corners(const mesh *m, int cell, int corner[4]) {
 /* Of any mesh: a cell's nodes, corners counter-clockwise, then those between. How many. */
 int mesh_cell_nodes(const mesh *m, int cell, int node[ELEMENT_MOST_NODES]);
 /* The cells around a node that are not absent, by their numbers: how many, of a grid 4 at most. */
-enum { MESH_MOST_AROUND = 64 };
-int mesh_cells_around(const mesh *m, int node, int around[MESH_MOST_AROUND]);
+int mesh_cells_around(const mesh *m, int node, int around[ELEMENT_MOST_AROUND]);
 /* h, m: the root of the cell's area, of a triangle of 3 nodes of twice its area; holes included. */
 double mesh_cell_size(const mesh *m, int cell);
 /* How many times longer a quadrilateral is than wide, by means of opposite sides; 1 of triangles. */

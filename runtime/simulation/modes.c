@@ -345,7 +345,17 @@ static const char *find(whole *w, int most, mode *modes, mode_count *count) {
 
 _Static_assert((int)MODES_MOST_RIGID == (int)LOWEST_MOST_ZEROS, "as many are counted");
 
+static bool has_mesh(const simulation *s) {
+  for (int b = 0; b < s->body_count; b++)
+    if (s->bodies[b].cells) return true;
+  return false;
+}
+
 const char *modes_find(simulation *s, int most, mode *modes, mode_count *count) {
+  if (has_mesh(s)) {
+    *count = (mode_count){0};
+    return "modes of meshes are not sought";
+  }
   whole w = {.bodies = s->bodies,
              .body_count = s->body_count,
              .links = s->links,

@@ -79,6 +79,25 @@ static void a_lost_return_stops_the_run(void **state) {
   }
 }
 
+/* A row of squares of a file, which numbers them from 100 on. */
+static void a_cell_of_a_file_has_its_number(void **state) {
+  workplace *w = *state;
+  write_bar(w, "angle", angle_law, "plane_strain", "-20 m/s");
+  assert_int_equal(
+      shell(w, "awk 'BEGIN { n = 20; print \"$MeshFormat\\n4.1 0 8\\n$EndMeshFormat\\n$Nodes\"; "
+               "print 1, 2*n + 2, 1, 2*n + 2; print 2, 1, 0, 2*n + 2; "
+               "for (k = 1; k <= 2*n + 2; k++) print k; "
+               "for (k = 0; k <= 2*n + 1; k++) print 10*int(k/2), 10*(k%%2), 0; "
+               "print \"$EndNodes\\n$Elements\"; print 1, n, 100, 99 + n; print 2, 1, 3, n; "
+               "for (k = 0; k < n; k++) print 100 + k, 2*k + 1, 2*k + 3, 2*k + 4, 2*k + 2; "
+               "print \"$EndElements\" }' > bar.msh && "
+               "sed -i \"s/size = .* nodes = 41, 5/file = 'bar.msh'  unit = 'mm'/; "
+               "s/method = 'finite_elements'//; s/'20 mm' \\//'10 mm' \\//\" bar.nml"),
+      0);
+  expect(w, "run bar.nml", 2, " mm of cell 100: strain xx");
+  assert_int_equal(shell(w, "grep -q ' m of cell 100 where a run stopped' bar_bad_point.nml"), 0);
+}
+
 /* Small steps never go far beyond the limit. */
 static void the_same_law_goes_in_small_steps(void **state) {
   workplace *w = *state;
@@ -110,6 +129,7 @@ static void check_says_so(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_lost_return_stops_the_run),
+      cmocka_unit_test(a_cell_of_a_file_has_its_number),
       cmocka_unit_test(the_same_law_goes_in_small_steps),
       cmocka_unit_test(a_lost_thickness_stops_the_run),
       cmocka_unit_test(check_says_so),

@@ -169,10 +169,21 @@ static void shapes_are_drawn_and_spare_inputs(void **state) {
   if (exists(w, "beam.h5") || exists(w, "other.h5")) fail_msg("a result nobody has asked for");
 }
 
+static void meshes_have_none(void **state) {
+  workplace *w = *state;
+  expect(w,
+         "check " EXAMPLES "tension/rot0_continuum.nml --set damping.rate= --set damping.ratio=0.2",
+         1, "the bodies have no frequency to go by: modes of meshes are not sought");
+  expect(w, "info " EXAMPLES "tension/rot0_continuum.nml --modes 1", 1,
+         "has no modes: modes of meshes are not sought");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {ONE(the_pages_have_the_modes_of_the_examples),
                                      ONE(a_run_takes_its_end_and_damping_from_them),
-                                     ONE(solvers_find_them_too), ONE(shapes_are_frames_of_a_result),
-                                     ONE(shapes_are_drawn_and_spare_inputs)};
+                                     ONE(solvers_find_them_too),
+                                     ONE(shapes_are_frames_of_a_result),
+                                     ONE(shapes_are_drawn_and_spare_inputs),
+                                     ONE(meshes_have_none)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

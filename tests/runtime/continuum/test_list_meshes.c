@@ -332,6 +332,36 @@ static void cells_of_places_are_found(void **state) {
 }
 
 /* Masses sum to that of the square; all are positive. */
+/* Parallel cells that lie aslant, 4000 times as long as wide: boxes of their mean side would hold most
+   of them each. */
+static void slivers_lie_in_few_boxes(void **state) {
+  (void)state;
+  enum { SLIVERS = 400 };
+  static double at[2 * SLIVERS + 2][2];
+  static cell_nodes cell[SLIVERS];
+  static unsigned char nodes[SLIVERS];
+  for (int k = 0; k <= SLIVERS; k++)
+    for (int end = 0; end < 2; end++) {
+      at[2 * k + end][0] = end + k / (4000.0 * 1.41421356);
+      at[2 * k + end][1] = end - k / (4000.0 * 1.41421356);
+    }
+  for (int32_t k = 0; k < SLIVERS; k++) {
+    const int32_t of[] = {2 * k, 2 * k + 2, 2 * k + 3, 2 * k + 1};
+    memcpy(cell[k], of, sizeof of);
+    nodes[k] = 4;
+  }
+  cell_lists *l = cell_lists_new(2 * SLIVERS + 2, (const double(*)[2])at, SLIVERS, nodes, cell);
+  assert_true(l->first_in[(long)l->boxes[0] * l->boxes[1]] <= 16 * SLIVERS);
+  for (int k = 0; k < SLIVERS; k++) {
+    const double there[2] = {0.3 + (k + 0.5) / (4000.0 * 1.41421356),
+                             0.3 - (k + 0.5) / (4000.0 * 1.41421356)};
+    double u[2];
+    assert_int_equal(cell_lists_find(l, there, u), k);
+    assert_true(fabs(u[0]) < 1e-9 && fabs(u[1] + 0.4) < 1e-9);
+  }
+  cell_lists_free(l);
+}
+
 static void masses_are_those_of_the_body(void **state) {
   (void)state;
   for (int k = 0; k < 4; k++) {
@@ -422,6 +452,7 @@ int main(void) {
       cmocka_unit_test(errors_fall_as_they_are_to),
       cmocka_unit_test(points_and_matrix_agree),
       cmocka_unit_test(cells_of_places_are_found),
+      cmocka_unit_test(slivers_lie_in_few_boxes),
       cmocka_unit_test(masses_are_those_of_the_body),
       cmocka_unit_test(the_highest_frequency_is_known),
       cmocka_unit_test(what_can_turn_is_loose_in_any_mesh),

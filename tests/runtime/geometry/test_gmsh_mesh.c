@@ -250,6 +250,35 @@ static void nodes_at_one_place_are_told(void **state) {
   end_reading(&r);
 }
 
+/* A fan of triangles around node 1. */
+static void read_fan(reading *r, int count) {
+  char text[20000] = HEAD, *end = text + strlen(text);
+  end += sprintf(end, "$Nodes\n1 %d 1 %d\n2 1 0 %d\n", count + 1, count + 1, count + 1);
+  for (int n = 0; n <= count; n++)
+    end += sprintf(end, "%d\n", n + 1);
+  end += sprintf(end, "0 0 0\n");
+  for (int n = 0; n < count; n++)
+    end += sprintf(end, "%.16g %.16g 0\n", cos(2 * M_PI * n / count), sin(2 * M_PI * n / count));
+  end += sprintf(end, "$EndNodes\n$Elements\n1 %d 1 %d\n2 1 2 %d\n", count, count, count);
+  for (int n = 0; n < count; n++)
+    end += sprintf(end, "%d 1 %d %d\n", n + 1, n + 2, (n + 1) % count + 2);
+  sprintf(end, "$EndElements\n");
+  read_text(r, text, 1);
+}
+
+/* A double has 53 bits for the cells that begin with a node. */
+static void few_cells_meet_in_a_node(void **state) {
+  (void)state;
+  reading r;
+  read_fan(&r, 52);
+  assert_non_null(r.m);
+  end_reading(&r);
+  read_fan(&r, 53);
+  assert_null(r.m);
+  assert_non_null(strstr(r.d.items[0].message, "more than 52 cells meet in a node"));
+  end_reading(&r);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(version_4_1_is_read),
@@ -258,6 +287,7 @@ int main(void) {
       cmocka_unit_test(quadratic_triangles_are_read),
       cmocka_unit_test(faulty_files_are_told_at_their_lines),
       cmocka_unit_test(truncated_files_are_told),
+      cmocka_unit_test(few_cells_meet_in_a_node),
       cmocka_unit_test(nodes_at_one_place_are_told),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
