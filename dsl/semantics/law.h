@@ -98,10 +98,10 @@ typedef struct law {
   symbol_list options;
   const char **chosen; /* [options.count] the choice in force (default: the first) */
   const symbol *results[RESULT_COUNT];
-  const symbol *rho;  /* the parameter `rho`, or NULL */
-  const stmt *sized; /* `require h in ...`, or NULL */
+  const symbol *rho;    /* the parameter `rho`, or NULL */
+  const stmt *sized;    /* `require h in ...`, or NULL */
   const symbol *failed; /* the damage of `failed when`, or NULL */
-  const stmt **rules; /* statements to evaluate each step, in order (constants first) */
+  const stmt **rules;   /* statements to evaluate each step, in order (constants first) */
   int rule_count;
   const char *nonconservative; /* reason, or NULL */
 } law;

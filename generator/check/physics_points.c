@@ -20,7 +20,7 @@ static const double NO_STIFFNESS = 1e-3;      /* of that at rest: as a point at 
 static const double SYMMETRY_TOLERANCE = 1e-9; /* of its largest entry */
 static const double PATH_TOLERANCE = 1e-6;     /* of the work of the absolute stresses */
 /* Of the work done: what a law that says it has no stored energy may gain on a way around. */
-static const double GAIN_OF_NONCONSERVATIVE = 0.5;
+static const double GAIN_OF_NONCONSERVATIVE = 1;
 static const double ROUNDING = 1e-12; /* of an energy */
 static const double TIME_STEP = 1e-6; /* s */
 

@@ -16,7 +16,8 @@ ir_node *explain_named_values(const kernel_plan *p, program_task task, int *coun
   ir_node *named = must_calloc((size_t)ir_count(g) + 1, sizeof *named);
   *count = 0;
   for (ir_node n = 0; n < ir_count(g); n++)
-    if (marks[n] && ir_name(g, n) && !ir_is_sought(g, n) && ir_operation(g, n) != IR_INPUT && ir_where(g, n).end > 0)
+    if (marks[n] && ir_name(g, n) && !ir_is_sought(g, n) && ir_operation(g, n) != IR_INPUT &&
+        ir_where(g, n).end > 0)
       named[(*count)++] = n;
   free(marks);
   return named;

@@ -80,7 +80,7 @@ static const char *root_name(const kernel_plan *p, const segment_root *r, char *
   case TO_UPPER:
     snprintf(text, size, "%s bound of %s", r->target == TO_LOWER ? "lower" : "upper",
              r->index == p->law->parameters.count ? p->law->sized->name
-                                         : p->law->parameters.items[r->index]->name);
+                                                  : p->law->parameters.items[r->index]->name);
   }
   return text;
 }
@@ -203,12 +203,11 @@ static void dump_pass(const kernel_plan *p, int task, int number, FILE *out) {
 }
 
 void plan_dump(const kernel_plan *p, FILE *out) {
-  static const char *const kinds[] = {
-      [PL_CENTRAL] = "central bond",
-      [PL_MICROPOLAR] = "micropolar bond",
-      [PL_STATE] = "family",
-      [PL_CONTINUUM] = "continuum",
-      [PL_CRACK] = "crack"};
+  static const char *const kinds[] = {[PL_CENTRAL] = "central bond",
+                                      [PL_MICROPOLAR] = "micropolar bond",
+                                      [PL_STATE] = "family",
+                                      [PL_CONTINUUM] = "continuum",
+                                      [PL_CRACK] = "crack"};
   fprintf(out, "kernel of %s: %s, %d dimensions, %d degrees of freedom, ", p->law->tree->name,
           kinds[plan_kind(p)], p->dimensions, p->dof);
   if (p->form == FORM_POINTS)

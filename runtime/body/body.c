@@ -88,8 +88,7 @@ void body_give_away(body *w, long site) {
 /* v = decay v_before + part dt/m f (motion.h), part = (1 + decay)/2. */
 double body_kicked_by(const body *w, int component, long site, double before) {
   const double gained = w->velocity[component][site] - w->decay * before;
-  return gained * w->mass[component] /
-         (0.5 * (1 + w->decay) * w->time_step * w->mobility[0][site]);
+  return gained * w->mass[component] / (0.5 * (1 + w->decay) * w->time_step * w->mobility[0][site]);
 }
 
 static long doubles_below(const body *w, int row) {

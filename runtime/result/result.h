@@ -95,8 +95,8 @@ typedef struct result_mesh {
   int columns;          /* 4; 3, 4 or 6 where cells come from a file */
   const int32_t *cells; /* [cell_count][columns] its nodes: corners counter-clockwise, then those of
                             the sides; -1 behind the last */
-  const int32_t *method; /* [cell_count] 1, 2, 3 as /meshes says */
-  double thickness;      /* m */
+  const int32_t *method;                      /* [cell_count] 1, 2, 3 as /meshes says */
+  double thickness;                           /* m */
   const int64_t *node_numbers, *cell_numbers; /* of its file; NULL: it has none */
 } result_mesh;
 

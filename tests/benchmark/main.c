@@ -14,12 +14,9 @@ typedef struct part {
   bool (*measure)(figures *f);
 } part;
 
-static const part parts[] = {{"bonds", benchmark_bonds},
-                             {"families", benchmark_families},
-                             {"meshes", benchmark_meshes},
-                             {"points", benchmark_points},
-                             {"runs", benchmark_runs},
-                             {"lammps", benchmark_lammps}};
+static const part parts[] = {{"bonds", benchmark_bonds},   {"families", benchmark_families},
+                             {"meshes", benchmark_meshes}, {"points", benchmark_points},
+                             {"runs", benchmark_runs},     {"lammps", benchmark_lammps}};
 enum { PARTS = sizeof parts / sizeof *parts };
 
 static void name_machine(figures *f) {
