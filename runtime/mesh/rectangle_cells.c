@@ -4,6 +4,9 @@
 
 #include "runtime/kernel.h"
 
+/* Wider than a register they are taken apart; what has them is inlined, so that no call passes them. */
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 typedef double lanes
     __attribute__((vector_size(PL_LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
 
