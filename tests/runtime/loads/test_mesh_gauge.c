@@ -181,8 +181,6 @@ static void wrong(const char *text, const char *message) {
 static void what_is_not_shown_is_told(void **state) {
   (void)state;
   wrong(ZONED GAUGE("xx", "strain", "xx", "0.7, 3"), "is not in the mesh");
-  wrong(ZONED "&monitor name = 'e' kind = 'strain' component = 'xx' region = 'all' /\n",
-        "watched at a place");
   wrong(ZONED "&monitor name = 'u' kind = 'displacement' component = 'x' /\n",
         "needs `region` or `at`");
   wrong(ZONED "&drive region = 'left' component = 'x' acceleration = 3 rise = '1 ms' /\n",
