@@ -16,6 +16,7 @@
 #include "generator/run/run_cracks.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/uniform_strain.h"
+#include "runtime/continuum/mesh_ties.h"
 #include "runtime/continuum/point_forces.h"
 #include "runtime/continuum/tips.h"
 #include "runtime/deck/lattice_kind.h"

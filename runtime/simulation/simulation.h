@@ -14,7 +14,6 @@
 #include "dsl/base/c_linkage.h"
 #include "runtime/analysis/material.h"
 #include "runtime/analysis/step_limit.h"
-#include "runtime/continuum/mesh_ties.h"
 #include "runtime/deck/deck.h"
 #include "runtime/kernel.h"
 #include "runtime/lattice/parameter_planes.h"
@@ -26,6 +25,7 @@
 C_LINKAGE_BEGIN
 
 typedef struct simulation simulation;
+struct mesh_tie;
 struct profile;
 struct sweep;
 struct tips;
@@ -63,7 +63,7 @@ const deck *simulation_deck(const simulation *s);
 /* rad/s of a mode, from 1, that the deck gives something by. */
 double simulation_omega(const simulation *s, int mode);
 /* Of a lattice, to meshes: *count of them. */
-const mesh_tie *simulation_ties(const simulation *s, int number, int *count);
+const struct mesh_tie *simulation_ties(const simulation *s, int number, int *count);
 /* Of its bonds at tied particles those with a damage of 0.5 or more. */
 long simulation_damaged_ties(const simulation *s, int number);
 const rows *simulation_rows(const simulation *s, int body);
