@@ -94,6 +94,7 @@ static const char *const c_foreign_words[] = {
 /* Functions that a kernel defines. */
 static const char *const c_own_functions[] = {"prepare",
                                               "bounds",
+                                              "size_bounds",
                                               "rows",
                                               "rows_ledger",
                                               "rows_observe",
