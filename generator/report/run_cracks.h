@@ -3,7 +3,7 @@
 #define PERILAT_GENERATOR_RUN_CRACKS_H
 
 #include "dsl/base/json.h"
-#include "generator/run/run_state.h"
+#include "generator/report/run_state.h"
 
 /* Some tip has: what its advances release may have either sign. */
 bool cracks_have_grown(const run *r);

@@ -1,12 +1,12 @@
-#include "generator/run/run_document.h"
+#include "generator/report/run_document.h"
 
 #include <math.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "generator/run/bad_bond.h"
-#include "generator/run/report_mesh.h"
-#include "generator/run/run_cracks.h"
+#include "generator/report/bad_bond.h"
+#include "generator/report/report_mesh.h"
+#include "generator/report/run_cracks.h"
 
 static double last_of(const double *values, long samples) {
   return samples > 0 ? values[samples - 1] + 0.0 : NAN; /* no minus before zeros */

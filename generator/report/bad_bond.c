@@ -1,4 +1,4 @@
-#include "generator/run/bad_bond.h"
+#include "generator/report/bad_bond.h"
 
 #include <errno.h>
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "generator/run/report_mesh.h"
+#include "generator/report/report_mesh.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "dsl/base/elementary.h"
-#include "generator/run/moment.h"
-#include "generator/run/print_quantity.h"
+#include "generator/report/moment.h"
+#include "generator/report/print_quantity.h"
 #include "runtime/continuum/cells.h"
 #include "runtime/lattice/regions.h"
 

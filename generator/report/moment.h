@@ -2,7 +2,7 @@
 #ifndef PERILAT_GENERATOR_RUN_MOMENT_H
 #define PERILAT_GENERATOR_RUN_MOMENT_H
 
-#include "generator/run/run_state.h"
+#include "generator/report/run_state.h"
 
 /* "t = 4.1 ms"; in quasi-static runs, whose time is only an order, "increment 170 of 480": the
    run's state at a time of the deck, s. */

@@ -1,4 +1,4 @@
-#include "generator/run/moment.h"
+#include "generator/report/moment.h"
 
 #include <math.h>
 #include <stdio.h>

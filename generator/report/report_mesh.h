@@ -3,7 +3,7 @@
 #define PERILAT_GENERATOR_REPORT_MESH_H
 
 #include "dsl/base/json.h"
-#include "generator/run/run_state.h"
+#include "generator/report/run_state.h"
 
 /* Of the deck's lattice of that number, a &mesh: a line each for the mesh, its law, its cracks. */
 void announce_mesh(const run *r, int lattice);

@@ -1,4 +1,4 @@
-#include "generator/run/print_quantity.h"
+#include "generator/report/print_quantity.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,7 +2,8 @@
 #ifndef PERILAT_GENERATOR_RUN_STATE_H
 #define PERILAT_GENERATOR_RUN_STATE_H
 
-#include "generator/run/run.h"
+#include "generator/kernel/model.h"
+#include "generator/report/run_request.h"
 #include "runtime/result/result.h"
 #include "runtime/simulation/profile.h"
 #include "runtime/simulation/simulation.h"

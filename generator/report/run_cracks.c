@@ -1,9 +1,9 @@
-#include "generator/run/run_cracks.h"
+#include "generator/report/run_cracks.h"
 
 #include <math.h>
 
-#include "generator/run/moment.h"
-#include "generator/run/print_quantity.h"
+#include "generator/report/moment.h"
+#include "generator/report/print_quantity.h"
 #include "runtime/continuum/cells.h"
 
 enum { NAME_TEXT = 256 };

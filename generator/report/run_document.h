@@ -3,7 +3,7 @@
 #define PERILAT_GENERATOR_RUN_DOCUMENT_H
 
 #include "dsl/base/json.h"
-#include "generator/run/run_state.h"
+#include "generator/report/run_state.h"
 
 /* How the run ended, as entries of the open object. */
 void put_run(json *w, const run *r);

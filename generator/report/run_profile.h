@@ -2,7 +2,7 @@
 #ifndef PERILAT_GENERATOR_RUN_PROFILE_H
 #define PERILAT_GENERATOR_RUN_PROFILE_H
 
-#include "generator/run/run_state.h"
+#include "generator/report/run_state.h"
 
 /* --profile: where the time of the march went, what a particle's step costs, and what limits it.
    Takes half a second. */

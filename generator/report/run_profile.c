@@ -1,4 +1,4 @@
-#include "generator/run/run_profile.h"
+#include "generator/report/run_profile.h"
 
 #include <math.h>
 #include <stdlib.h>
