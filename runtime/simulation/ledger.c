@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "dsl/base/elementary.h"
-#include "runtime/continuum/cells.h"
+#include "runtime/continuum/cells_engine.h"
 #include "runtime/interaction/family.h"
 
 const char *const ledger_names[LEDGER_COUNT] = {

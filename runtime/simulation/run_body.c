@@ -11,6 +11,7 @@
 #include "runtime/analysis/material.h"
 #include "runtime/analysis/stability.h"
 #include "runtime/continuum/cell_sizes.h"
+#include "runtime/continuum/cells_engine.h"
 #include "runtime/continuum/line_load.h"
 #include "runtime/continuum/side_load.h"
 #include "runtime/continuum/tip_laws.h"

@@ -11,9 +11,11 @@
 #include "laws_run.h"
 #include "runtime/continuum/cell_laws.h"
 #include "runtime/continuum/cells.h"
+#include "runtime/continuum/cells_engine.h"
 #include "runtime/continuum/tip_laws.h"
 #include "runtime/simulation/frame_field.h"
 #include "runtime/simulation/simulation_save.h"
+#include "runtime/simulation/simulation_state.h"
 #include "softening_law.h"
 #include "tests/runtime/same_runs.h"
 
@@ -158,6 +160,13 @@ static void both_ways_agree_side_by_side(void **state) {
   small_close(&a.r);
 }
 
+/* What the engine says of the second law in the state observed last. */
+static void check_stored_by(const laws_run *c) {
+  const double stored = cells_stored_by(c->r.simulation->bodies[0].laws[1].state),
+               last = small_last(&c->r, "plate.right/stored");
+  assert_true(stored > 0 && fabs(stored / last - 1) < 1e-12);
+}
+
 /* Whichever of the two is asked point by point. */
 static void each_law_knows_what_it_stores(void **state) {
   (void)state;
@@ -173,6 +182,9 @@ static void each_law_knows_what_it_stores(void **state) {
     go(&c, linear, decks[k]);
     agree(&a, &b, "plate.right/stored", 1e-10);
     agree(&a, &c, "plate.right/stored", 1e-10);
+    check_stored_by(&a);
+    check_stored_by(&b);
+    check_stored_by(&c);
     small_close(&a.r);
     small_close(&b.r);
     small_close(&c.r);

@@ -14,6 +14,7 @@
 #include "runtime/continuum/tips.h"
 #include "runtime/deck/group_mesh.h"
 #include "runtime/filling/mesh_rows.h"
+#include "runtime/interaction/sweep.h"
 #include "runtime/mesh/node_layout.h"
 #include "runtime/simulation/simulation_save.h"
 #include "tests/runtime/small_run.h"
