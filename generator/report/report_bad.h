@@ -1,5 +1,5 @@
-/* What a run says when a state has gone bad: where, what its bond, family or point was like, and what
-   may mend it. */
+/* What a run says when a state has gone bad: where, what its bond, family or point was like, and
+   what may mend it. */
 #ifndef PERILAT_GENERATOR_REPORT_BAD_H
 #define PERILAT_GENERATOR_REPORT_BAD_H
 

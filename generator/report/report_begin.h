@@ -1,5 +1,5 @@
-/* What a run says before it begins: its bodies with their laws, masses and loads, times and steps, the
-   machine, the result. */
+/* What a run says before it begins: its bodies with their laws, masses and loads, times and steps,
+   the machine, the result. */
 #ifndef PERILAT_GENERATOR_REPORT_BEGIN_H
 #define PERILAT_GENERATOR_REPORT_BEGIN_H
 

@@ -162,7 +162,8 @@ static void announce_lattice(const run *r, int lattice) {
       1e3 * w->height, depth);
 }
 
-/* "tie        core to left: 17 particles, 0.31 kg of which goes to 18 nodes; 16 bonds count by halves" */
+/* "tie        core to left: 17 particles, 0.31 kg of which goes to 18 nodes; 16 bonds count by
+   halves" */
 void announce_ties(const run *r, int lattice) {
   int count;
   const mesh_tie *ties = simulation_ties(r->simulation, lattice, &count);

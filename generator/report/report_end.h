@@ -1,5 +1,5 @@
-/* What a run says at its end: speed, increments, monitors, contacts, energies, cracks, deaths; and why
-   it ended. */
+/* What a run says at its end: speed, increments, monitors, contacts, energies, cracks, deaths; and
+   why it ended. */
 #ifndef PERILAT_GENERATOR_REPORT_END_H
 #define PERILAT_GENERATOR_REPORT_END_H
 

@@ -1,5 +1,5 @@
-/* What a run says of its laws before it begins: what they imply on the deck's lattice and on the body
-   with its edges, and which parameters differ from place to place. */
+/* What a run says of its laws before it begins: what they imply on the deck's lattice and on the
+   body with its edges, and which parameters differ from place to place. */
 #ifndef PERILAT_GENERATOR_REPORT_LAWS_H
 #define PERILAT_GENERATOR_REPORT_LAWS_H
 

@@ -48,8 +48,8 @@ static void print_groups(const deck *k, const char *name) {
   free(used);
 }
 
-/* "mesh       plate: 200 x 100 mm, 858 nodes of plate.msh, 1560 triangles of 3 nodes, 1.2 mm between
-   neighbours at least; 1560 points" */
+/* "mesh       plate: 200 x 100 mm, 858 nodes of plate.msh, 1560 triangles of 3 nodes, 1.2 mm
+   between neighbours at least; 1560 points" */
 static void announce_lists(const cells *c, const deck *all, const deck_mesh *k) {
   const cell_lists *l = c->mesh.lists;
   long count[ELEMENT_MOST_NODES + 1] = {0};
@@ -115,7 +115,8 @@ static void announce_law(const run *r, int interaction, int number, const cells 
          sqrt(D[0][0] / rho), sqrt(D[2][2] / rho), kernel->linear ? "" : " at rest");
 }
 
-/* "crack      notch: 19.05 mm, grows by lefm; its tip is looked at every 42 us, a sample every 84" */
+/* "crack      notch: 19.05 mm, grows by lefm; its tip is looked at every 42 us, a sample every
+   84" */
 static void announce_crack(const run *r, const tips *t, const deck_crack *k) {
   int count = 0;
   double length = 0;

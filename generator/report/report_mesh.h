@@ -1,4 +1,5 @@
-/* What a run says of its meshes: before it begins nodes, cells, law, cracks; at its end which cells died. */
+/* What a run says of its meshes: before it begins nodes, cells, law, cracks; at its end which cells
+   died. */
 #ifndef PERILAT_GENERATOR_REPORT_MESH_H
 #define PERILAT_GENERATOR_REPORT_MESH_H
 

@@ -109,9 +109,10 @@ static bool yields(const pl_law *kernel) {
   return some;
 }
 
-/* The part of the work that may be damped without a warning. Limit loads of laws that yield are far too
-   low long before it is a tenth: under a punch on a block of `von_mises` in plane strain without
-   hardening by 59 % with a part of 0.1 (6 increments), by 7 % with 0.02 (40), by 1 % with 0.004. */
+/* The part of the work that may be damped without a warning. Limit loads of laws that yield are far
+   too low long before it is a tenth: under a punch on a block of `von_mises` in plane strain
+   without hardening by 59 % with a part of 0.1 (6 increments), by 7 % with 0.02 (40), by 1 % with
+   0.004. */
 static double part_damped(const run *r) {
   for (int n = 0; n < r->deck->interaction_count; n++)
     if (yields(r->laws[n].law)) return 0.01;

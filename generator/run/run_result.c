@@ -322,8 +322,8 @@ static void bond_table(run *r, result_header *h) {
   h->bonds = bonds;
 }
 
-/* The nodes of a cell as particles of its mesh, corners counter-clockwise, behind the last -1; false:
-   one is not there. */
+/* The nodes of a cell as particles of its mesh, corners counter-clockwise, behind the last -1;
+   false: one is not there. */
 static bool corners_of(const mesh *m, const rows *w, const node_layout *l, int cell, int columns,
                        int32_t *around) {
   int node[ELEMENT_MOST_NODES];

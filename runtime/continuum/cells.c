@@ -208,7 +208,8 @@ bool cells_all_linear(const cells *c) {
   return true;
 }
 
-/* The root of the largest eigenvalue of M^-1 K with these tangents at the points of the laws' cells. */
+/* The root of the largest eigenvalue of M^-1 K with these tangents at the points of the laws'
+   cells. */
 static double highest(const cells *c, const plane_stiffness *laws, const double *mass,
                       const unsigned char *held) {
   node_stencil k;

@@ -1,7 +1,7 @@
-/* The cells of a mesh with their laws: what a mesh consists of, masses of its nodes, its stiffness at
-   rest and the longest stable step; what is known of its points. A mesh may have several laws, by
-   cells (cell_laws.h): those that are linear have one stiffness together. What they do in a step:
-   cells_engine.h. */
+/* The cells of a mesh with their laws: what a mesh consists of, masses of its nodes, its stiffness
+   at rest and the longest stable step; what is known of its points. A mesh may have several laws,
+   by cells (cell_laws.h): those that are linear have one stiffness together. What they do in a
+   step: cells_engine.h. */
 #ifndef PERILAT_RUNTIME_CELLS_H
 #define PERILAT_RUNTIME_CELLS_H
 
@@ -76,10 +76,11 @@ void cells_step_limit(const cells *c, const unsigned char *held, step_limit *lim
    is taken. No frequency of the mesh is above the root of `stiffened.now` times the highest at rest. */
 void cells_watch_stiffness(cells *c, double part, double time);
 /* Of the state observed last, with a law that is not linear; false with one that is, whose points
-   keep nothing. Stress xx, yy, xy, zz (Pa) at a node: the mean of the points in the law's cells around. */
+   keep nothing. Stress xx, yy, xy, zz (Pa) at a node: the mean of the points in the law's cells
+   around. */
 bool cells_mean_stress(const cells *c, int law, int node, double stress[4]);
-/* Whether points of some law can fail; whether a cell is dead after the last step, as all of its points
-   have failed; how many are, and when the first one died (s; infinite: none did). */
+/* Whether points of some law can fail; whether a cell is dead after the last step, as all of its
+   points have failed; how many are, and when the first one died (s; infinite: none did). */
 bool cells_can_die(const cells *c);
 bool cells_dead(const cells *c, int cell);
 long cells_deaths(const cells *c, double *first);

@@ -187,8 +187,8 @@ static point_row points_of_row(const sweep *w, int row) {
   return sum;
 }
 
-/* Nodes have the means of the states of the points of the law around them, and their part of what was
-   lost. */
+/* Nodes have the means of the states of the points of the law around them, and their part of what
+   was lost. */
 static void show_states(const point_forces *p, const unsigned char *sites, sweep *w, int row) {
   const node_layout *l = &p->strips.layout;
   const long all = p->strips.count;
@@ -275,7 +275,8 @@ static void stored(sweep *w, double *values) {
   }
 }
 
-/* Of a linear law a point remembers nothing: asked for, it is looked at. J/m^3 stored, then outputs. */
+/* Of a linear law a point remembers nothing: asked for, it is looked at. J/m^3 stored, then
+   outputs. */
 static const double *look_at(const cells_part *of, int point) {
   const cells *c = of->engine->of;
   const double *at = c->points.at[point];

@@ -16,21 +16,22 @@
 #include "runtime/continuum/cells.h"
 #include "runtime/interaction/sweep.h"
 
-/* At rest; to be freed by sweep_free, before the cells. cracks[k->crack_count]: the laws of the deck's
-   cracks. states[where.count]: of each law its fields, outputs and what it stores; the first is what is
-   returned, and moves the body. */
+/* At rest; to be freed by sweep_free, before the cells. cracks[k->crack_count]: the laws of the
+   deck's cracks. states[where.count]: of each law its fields, outputs and what it stores; the first
+   is what is returned, and moves the body. */
 sweep *cells_sweep(cells *c, const deck *k, const tip_law *cracks, double time_step, int threads,
                    body_ledger ledger, sweep **states);
 /* Where a node had a velocity that is no number or too large: of the points that push it the one
-   with the largest stress, with the nodes where they were before the step. Number of its law; -1 where
-   all around are linear. `out` has memory for any law's fields. */
+   with the largest stress, with the nodes where they were before the step. Number of its law; -1
+   where all around are linear. `out` has memory for any law's fields. */
 int cells_worst_point(const sweep *w, long site, point_state *out);
 /* J stored in the cells of a law in the state observed last, where it has others beside it. */
 double cells_stored_by(const sweep *law);
 /* Stress intensities at the tips, where the body stands still. */
 void cells_look_at_tips(const sweep *w);
 
-/* What the engine remembers from step to step, for checkpoints, to be freed; and after one was read. */
+/* What the engine remembers from step to step, for checkpoints, to be freed; and after one was
+   read. */
 typedef struct cells_memory {
   int count;
   void **planes;

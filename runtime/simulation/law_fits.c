@@ -124,8 +124,8 @@ static bool kind_differs(const pl_law *law, span where, const deck *k, int latti
   return false;
 }
 
-/* Stress intensities, and what hides nodes from points, are of linear laws. With other laws beside it
-   depends on whose cells the tips are in (tip_laws.h). */
+/* Stress intensities, and what hides nodes from points, are of linear laws. With other laws beside
+   it depends on whose cells the tips are in (tip_laws.h). */
 static bool cracks_fit(const pl_law *law, const deck *k, const deck_mesh *m, diagnostics *d) {
   const int whole = deck_find_material(k, m->name);
   if (whole >= 0 && k->materials[whole].beside) return true;

@@ -21,8 +21,8 @@ bool law_fits_lattice(const pl_law *law, const deck_material *of, const deck *k,
 bool law_fits_motion(const pl_law *law, const deck *k, int lattice, diagnostics *d);
 /* A warning where the deck protects particles of the lattice in vain. */
 void law_fits_protection(const pl_law *law, const deck *k, int lattice, diagnostics *d);
-/* A warning where elements of a mesh in plane strain lock, as the law at rest hardly changes its volume;
-   `number`: of the law in the mesh. */
+/* A warning where elements of a mesh in plane strain lock, as the law at rest hardly changes its
+   volume; `number`: of the law in the mesh. */
 void law_fits_elements(const pl_law *law, const cells *c, int number, span where, diagnostics *d);
 /* Bodies of one run are all of the plane or all in space, and what the result calls after them has
    no other name there. */

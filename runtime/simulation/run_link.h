@@ -40,8 +40,8 @@ typedef struct run_link {
   bool known;  /* the forces of the present state are */
 } run_link;
 
-/* No link of bodies that are open reaches particles that ties move: its forces would not come to the
-   mesh. Else false after messages at the links' lines. */
+/* No link of bodies that are open reaches particles that ties move: its forces would not come to
+   the mesh. Else false after messages at the links' lines. */
 bool run_links_are_free(const run_body *bodies, int body_count, const deck *k, diagnostics *d);
 
 /* The links among bodies that have begun; *count of them. Their forces become loads of the bodies

@@ -1,5 +1,5 @@
-/* Several laws in one mesh: whose a cell is, the same law by both ways side by side, closed forms of
-   bars of two materials, ledgers, threads, resuming, cracks beside laws that are not linear. */
+/* Several laws in one mesh: whose a cell is, the same law by both ways side by side, closed forms
+   of bars of two materials, ledgers, threads, resuming, cracks beside laws that are not linear. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
