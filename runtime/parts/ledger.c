@@ -1,4 +1,4 @@
-#include "runtime/simulation/ledger.h"
+#include "runtime/parts/ledger.h"
 
 #include <math.h>
 #include <string.h>

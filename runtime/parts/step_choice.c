@@ -1,10 +1,10 @@
-#include "runtime/simulation/step_choice.h"
+#include "runtime/parts/step_choice.h"
 
 #include <math.h>
 
 #include "dsl/base/elementary.h"
 #include "runtime/analysis/stability.h"
-#include "runtime/simulation/law_fits.h"
+#include "runtime/parts/law_fits.h"
 
 static bool is_stable_at_rest(const step_limit *limit, const pl_law *law, span where,
                               diagnostics *d) {

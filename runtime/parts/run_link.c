@@ -1,4 +1,4 @@
-#include "runtime/simulation/run_link.h"
+#include "runtime/parts/run_link.h"
 
 #include <math.h>
 #include <stdlib.h>

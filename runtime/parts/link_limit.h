@@ -12,7 +12,7 @@
 #ifndef PERILAT_RUNTIME_LINK_LIMIT_H
 #define PERILAT_RUNTIME_LINK_LIMIT_H
 
-#include "runtime/simulation/run_body.h"
+#include "runtime/parts/run_body.h"
 
 /* Shortens `limit`, that of the shortest body alone, where the bodies that are joined or touch need
    it; *ruling becomes the body whose own modes are the fastest of these. touching[count]: omega^2

@@ -1,4 +1,4 @@
-#include "runtime/simulation/run_body.h"
+#include "runtime/parts/run_body.h"
 
 #include <math.h>
 #include <omp.h>
@@ -19,8 +19,8 @@
 #include "runtime/filling/lattice.h"
 #include "runtime/filling/linked.h"
 #include "runtime/interaction/interaction.h"
-#include "runtime/simulation/law_fits.h"
-#include "runtime/simulation/step_choice.h"
+#include "runtime/parts/law_fits.h"
+#include "runtime/parts/step_choice.h"
 
 /* --- what fits -------------------------------------------------------------------------------- */
 

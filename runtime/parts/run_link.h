@@ -11,7 +11,7 @@
 #ifndef PERILAT_RUNTIME_RUN_LINK_H
 #define PERILAT_RUNTIME_RUN_LINK_H
 
-#include "runtime/simulation/run_body.h"
+#include "runtime/parts/run_body.h"
 
 /* What a copy follows: particles, and of one that turns with a bar that of the bar, those before
    and after it. */

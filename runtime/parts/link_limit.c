@@ -1,4 +1,4 @@
-#include "runtime/simulation/link_limit.h"
+#include "runtime/parts/link_limit.h"
 
 #include <math.h>
 #include <stdlib.h>

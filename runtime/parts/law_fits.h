@@ -7,8 +7,7 @@
 #include "runtime/deck/deck.h"
 #include "runtime/kernel.h"
 #include "runtime/lattice/rows.h"
-#include "runtime/simulation/frame_field.h"
-#include "runtime/simulation/run_body.h"
+#include "runtime/parts/run_body.h"
 
 /* Where the deck says which law the lattice of that number has. */
 span law_fits_where(const deck *k, int lattice);
@@ -27,9 +26,5 @@ void law_fits_elements(const pl_law *law, const cells *c, int number, span where
 /* Bodies of one run are all of the plane or all in space, and what the result calls after them has
    no other name there. */
 bool bodies_fit(const deck *k, const run_body *bodies, int count, diagnostics *d);
-/* What the laws of a run store has other names than what stands beside it in the result: fields of
-   other laws, folders of lattices. */
-bool law_fits_result(const deck *k, const run_body *bodies, const frame_field *fields, int count,
-                     diagnostics *d);
 
 #endif

@@ -15,7 +15,7 @@
 #include "runtime/lattice/parameter_planes.h"
 #include "runtime/loads/loads.h"
 #include "runtime/loads/mesh_rest.h"
-#include "runtime/simulation/ledger.h"
+#include "runtime/parts/ledger.h"
 
 typedef struct run_law { /* a law at work on a body: an interaction of the run */
   const deck_interaction *from;

@@ -1,4 +1,4 @@
-#include "runtime/simulation/run_contact.h"
+#include "runtime/parts/run_contact.h"
 
 #include <math.h>
 #include <stdlib.h>

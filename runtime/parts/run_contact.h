@@ -17,7 +17,7 @@
 #define PERILAT_RUNTIME_RUN_CONTACT_H
 
 #include "runtime/interaction/contact.h"
-#include "runtime/simulation/run_body.h"
+#include "runtime/parts/run_body.h"
 
 typedef struct contact_peaks { /* of all states so far */
   int64_t pairs;               /* that touch at a time */
