@@ -24,6 +24,10 @@ bool damage_on_particles(const pl_law *law) {
   return has_damage(law, true);
 }
 
+bool damage_on_any(const pl_law *law) {
+  return damage_on_bonds(law) || damage_on_particles(law);
+}
+
 double damage_of_bond_in(const sweep *w, double *const *field, const rows_bond *bond) {
   double most = 0;
   for (int f = 0; f < w->law->field_count; f++) {

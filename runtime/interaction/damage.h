@@ -11,6 +11,8 @@
    mean). */
 bool damage_on_bonds(const pl_law *law);
 bool damage_on_particles(const pl_law *law);
+/* On either. */
+bool damage_on_any(const pl_law *law);
 
 /* 0 without. `field`: those of a state, [law's fields]. */
 double damage_of_bond(const sweep *w, const rows_bond *bond);

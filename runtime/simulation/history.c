@@ -7,6 +7,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/simulation/monitor_words.h"
 
 enum { INCREMENT_STEPS, INCREMENT_UNBALANCE, INCREMENT_SERIES };
 static const char *const increment_names[] = {"relaxation_steps", "relaxation_unbalance"};

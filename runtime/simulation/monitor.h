@@ -7,7 +7,9 @@
    the states of the last `average` seconds, the present one included, or all there were so far; of
    velocities the steps that led there, so that their mean is way over time, and that of
    accelerations velocity over time. Counts are taken as they are. Of the way of a crack's tip in
-   the window its speed is the slope of the straight line that fits it best. */
+   the window its speed is the slope of the straight line that fits it best.
+
+   Set up by monitor_setup.h; values at an instant: monitor_values.h; in words: monitor_words.h. */
 #ifndef PERILAT_RUNTIME_MONITOR_H
 #define PERILAT_RUNTIME_MONITOR_H
 
@@ -68,15 +70,10 @@ typedef struct monitors {
   long ring_size;
 } monitors;
 
-/* False with diagnostics where the deck watches what particles of the laws do not have. */
-bool monitors_check(const deck *k, const run_body *bodies, int count, diagnostics *d);
-/* Of a deck that was checked; bodies and links must stay. NULL with a diagnostic when a mean does
-   not fit into memory. */
-monitors *monitors_new(const deck *k, const run_body *bodies, int count, const run_link *links,
-                       int link_count, double interval, diagnostics *d);
-void monitors_free(monitors *m);
-/* "reaction along y of `loader`, times -1, mean over 0.0001 s": what a monitor watches. */
-char *monitor_words(const monitors *m, int index, arena *a);
+/* It watches this body, or all. */
+static inline bool monitor_watches(const monitors *all, const monitor *m, int b) {
+  return !m->of[0] || m->of[0] == &all->bodies[b];
+}
 
 /* In dynamic runs once at the start and after every step: into the windows what is known. */
 void monitors_step(monitors *m, long step);

@@ -13,6 +13,7 @@
 #include "runtime/parts/link_limit.h"
 #include "runtime/simulation/fields_fit.h"
 #include "runtime/simulation/modes.h"
+#include "runtime/simulation/monitor_setup.h"
 #include "runtime/simulation/simulation_state.h"
 #include "runtime/simulation/time_loop.h"
 

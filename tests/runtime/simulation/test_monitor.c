@@ -6,9 +6,12 @@
 
 #include <cmocka.h>
 
-#include "runtime/interaction/sweep.h"
 #include "runtime/filling/lattice.h"
-#include "runtime/simulation/monitor.h"
+#include "runtime/interaction/sweep.h"
+#include "runtime/simulation/monitor_field.h"
+#include "runtime/simulation/monitor_setup.h"
+#include "runtime/simulation/monitor_values.h"
+#include "runtime/simulation/monitor_words.h"
 #include "tests/runtime/simulation/chain.h"
 
 /* A pair that coasts at 2 m/s: means, zeros and scales have closed forms. */
@@ -193,6 +196,8 @@ static void a_window_holds_the_last_steps(void **state) {
     if (n == 5) zero = mean;
     monitors_sample(w.monitors, n, (double)n * 1e-7, values);
     assert_true(fabs(values[0] + 2 * s->body->displacement[0][left]) < 1e-18);
+    assert_true(fabs(monitor_value_now(w.monitors, &w.monitors->items[1], n) -
+                     1e-3 * (double)(n * n)) < 1e-18);
     assert_true(fabs(values[1] - (mean - zero)) < 1e-15);
   }
   assert_true(fabs(w.monitors->items[0].state.peak + 2 * 12e-3) < 1e-17); /* 24 is more than 20 */
@@ -215,6 +220,26 @@ static void the_first_stop_that_applies_is_told(void **state) {
   watch_no_more(&w);
 }
 
+/* Of points and particles, by their names in any case; what stands on bonds is none. */
+static void fields_are_found_by_name(void **state) {
+  (void)state;
+  static const pl_field fields[] = {{.name = "D", .place = PL_ON_BOND},
+                                    {.name = "kappa", .place = PL_ON_POINT}},
+                        outputs[] = {{.name = "heat", .place = PL_ON_PARTICLE}};
+  const pl_law law = {.field_count = 2, .fields = fields, .output_count = 1, .outputs = outputs};
+  static const struct {
+    const char *name;
+    int place;
+  } cases[] = {{"D", -1}, {"KAPPA", 1}, {"heat", 2}, {"none", -1}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    const deck_monitor m = {.kind = MONITOR_FIELD, .field = cases[k].name};
+    assert_int_equal(monitor_find_field(&m, &law), cases[k].place);
+  }
+  assert_string_equal(monitor_law_field(&law, 2)->name, "heat");
+  const double values[] = {1, 2, 4};
+  assert_true(monitor_mean_at(values, (const int32_t[]){0, 2}, 2) == 2.5);
+}
+
 static void what_is_watched_stands_in_words(void **state) {
   (void)state;
   watched w;
@@ -234,6 +259,7 @@ int main(void) {
       cmocka_unit_test(the_applied_force_is_the_sum_of_what_acts_on_the_region),
       cmocka_unit_test(a_window_holds_the_last_steps),
       cmocka_unit_test(the_first_stop_that_applies_is_told),
+      cmocka_unit_test(fields_are_found_by_name),
       cmocka_unit_test(what_is_watched_stands_in_words),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
