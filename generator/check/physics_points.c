@@ -19,8 +19,6 @@ static const double TANGENT_TOLERANCE = 1e-5; /* of its largest entry, against d
 static const double NO_STIFFNESS = 1e-3;      /* of that at rest: as a point at the tip of a cone */
 static const double SYMMETRY_TOLERANCE = 1e-9; /* of its largest entry */
 static const double PATH_TOLERANCE = 1e-6;     /* of the work of the absolute stresses */
-/* Of the work done: what a law that says it has no stored energy may gain on a way around. */
-static const double GAIN_OF_NONCONSERVATIVE = 0.1;
 static const double ROUNDING = 1e-12; /* of an energy */
 static const double TIME_STEP = 1e-6; /* s */
 
