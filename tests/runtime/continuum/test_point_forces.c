@@ -131,12 +131,14 @@ static void sized_observe(const pl_law *law, const double *uniforms, const pl_po
 }
 
 /* Cook's outline: cells are of many sizes. */
+static const double cook[4][2] = {{0, 0}, {48, 44}, {48, 60}, {0, 44}};
+
 static void laws_read_the_size_of_their_cell(void **state) {
   (void)state;
-  static const double cook[4][2] = {{0, 0}, {48, 44}, {48, 60}, {0, 44}};
   pl_law sized = hooke_law;
   sized.point_step = sized_step;
   sized.point_observe = sized_observe;
+  sized.reads_size = 1;
   mesh m;
   integration_points points;
   mesh_open_mapped(&m, (int[2]){12, 6}, cook, 1, 2.1);
@@ -165,6 +167,42 @@ static void laws_read_the_size_of_their_cell(void **state) {
   pool_free(memory);
   point_forces_free(p);
   integration_points_close(&points);
+  mesh_close(&m);
+}
+
+static long asked;
+
+static void sized_tangent(const pl_law *law, const double *uniforms, const pl_points *p) {
+  hooke_law.point_tangent(law, uniforms, p);
+  for (int c = 0; c < 9; c++)
+    for (long q = 0; q < p->count; q++)
+      p->tangent[c][q] *= p->cell_size[q];
+  asked++;
+}
+
+/* Of a law that reads sizes the stiffest of its cells counts; of another one any cell will do. */
+static void the_stiffest_cell_counts(void **state) {
+  (void)state;
+  const plane_stiffness of = isotropic(30e9, 0.2, false);
+  pl_law sized = hooke_law;
+  sized.point_tangent = sized_tangent;
+  mesh m;
+  mesh_open_mapped(&m, (int[2]){12, 6}, cook, 1, 2.1);
+  for (int k = 0; k < 3; k++) {
+    unsigned char own[55];
+    double D[3][3], most = 0;
+    for (int c = 0; c < mesh_cell_count(&m); c++) {
+      own[c] = k == 0 || c % 11 > 6;
+      if (own[c]) most = fmax(most, mesh_cell_size(&m, c));
+    }
+    sized.reads_size = k < 2;
+    asked = 0;
+    point_forces_rest(&m, k ? own : NULL, &sized, hooke_values, false, D);
+    if (k == 2) assert_int_equal(asked, 1);
+    for (int i = 0; i < 3 && k < 2; i++)
+      for (int j = 0; j < 3; j++)
+        assert_true(fabs(D[i][j] - most * of.D[i][j]) <= 1e-12 * most * of.D[0][0]);
+  }
   mesh_close(&m);
 }
 
@@ -655,6 +693,7 @@ int main(void) {
                                      cmocka_unit_test(nodes_share_all),
                                      cmocka_unit_test(nodes_beside_a_hole_show_states),
                                      cmocka_unit_test(laws_read_the_size_of_their_cell),
+                                     cmocka_unit_test(the_stiffest_cell_counts),
                                      cmocka_unit_test(tables_are_shared),
                                      cmocka_unit_test(rigid_motions_push_nothing),
                                      cmocka_unit_test(nothing_comes_from_beside),
