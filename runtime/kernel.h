@@ -466,15 +466,16 @@ typedef struct pl_law {
   /* Laws of cracks (kind PL_CRACK) have this alone. */
   pl_tip_function tip_look;
 
-  /* Of laws of a continuum whose points can fail: place in `fields` of what is 1 where the point has
-     failed, for good, else 0; -1 without such. A failed point has no stress, and stores nothing. */
+  /* Of laws of a continuum whose points can fail: place in `fields` of what is 1 where the point
+     has failed, for good, else 0; -1 without such. A failed point has no stress, and stores
+     nothing. */
   int failed_field;
 
   /* Of laws of a continuum: they read the size of the cell that a point stands for, which points of
      element-free cells do not have. */
   int reads_size;
-  /* Bounds of that size (m), as `bounds` gives those of a parameter: one of each; NULL: any is good.
-     And why, in the law's words; or NULL. */
+  /* Bounds of that size (m), as `bounds` gives those of a parameter: one of each; NULL: any is
+     good. And why, in the law's words; or NULL. */
   void (*size_bounds)(const struct pl_law *law, const double *parameters, double *lower,
                       double *upper, unsigned char *low_open, unsigned char *high_open);
   const char *size_reason;

@@ -78,8 +78,8 @@ enum { MOVES, FIXED };
   X(STRAIN_RATE, "strain_rate", "1/s", TENSOR, POINT, IN_CONTINUUM, MOVES,                         \
     "x = trace(strain_rate)/10 [1/s]", "time derivative of the strain")                            \
   X(CELL_SIZE, "h", "m", SCALAR, POINT, IN_CONTINUUM, FIXED, "x = h/1 [mm]",                       \
-    "size of the cell that the point stands for: in the plane the root of its area, of 3 nodes of "  \
-    "twice that")                                                                                  \
+    "size of the cell that the point stands for: in the plane the root of its area, of 3 "         \
+    "nodes of twice that")                                                                         \
   X(K_I, "K_I", "Pa*m^(1/2)", SCALAR, TIP, IN_CRACK, MOVES, "x = K_I/K_Ic",                        \
     "stress intensity factor of mode I: opening")                                                  \
   X(K_II, "K_II", "Pa*m^(1/2)", SCALAR, TIP, IN_CRACK, MOVES, "x = K_II/K_Ic",                     \

@@ -121,8 +121,8 @@ typedef struct operation {
 #define OPERATIONS_OF_FAMILIES(X)                                                                  \
   X(FAMILY_SUM, "family_sum", 1, OVER_FAMILY) X(FAMILY_MAX, "family_max", 1, OVER_FAMILY)          \
   X(FAMILY_MIN, "family_min", 1, OVER_FAMILY) X(NEIGHBOUR, "neighbour", 1, 0)
-/* The root that a search comes to (pl_search): from where, how far to go from IR_FROM_SEARCH, whether
-   to go on behind that. */
+/* The root that a search comes to (pl_search): from where, how far to go from IR_FROM_SEARCH,
+   whether to go on behind that. */
 #define OPERATIONS_OF_SEARCHES(X) X(SEARCH, "search", 3, 0)
 /* clang-format on */
 

@@ -56,7 +56,8 @@ bool same_file(const char *a, const char *b);
    be NULL); in $PERILAT_MODELS; in models/ under the working folder and its parents; in the
    models of this program's source or installation tree. */
 char *model_find(const char *name, const char *beside);
-/* Of a name that was not found: the hint "did you mean `x`?", x among the models where `elastic` is. */
+/* Of a name that was not found: the hint "did you mean `x`?", x among the models where `elastic`
+   is. */
 void model_suggest(const char *name, const char *beside, diagnostics *said);
 
 /* Reads, parses, checks. False on errors; they are in m->said. The model must be closed in any

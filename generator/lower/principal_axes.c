@@ -56,8 +56,8 @@ components tensor_product(ir *g, components a, components b) {
 
 /* --- in the plane ----------------------------------------------------------------------------- */
 
-/* In the plane (I + D/r)/2 is the direction of the larger value, with D the deviator there and r its
-   size; where that is 0, the direction is x. */
+/* In the plane (I + D/r)/2 is the direction of the larger value, with D the deviator there and r
+   its size; where that is 0, the direction is x. */
 static components larger_of_plane(ir *g, components a, ir_node *large, ir_node *small) {
   const ir_node middle = half(g, ir_add(g, a.of[TENSOR_XX], a.of[TENSOR_YY]));
   const ir_node d = half(g, ir_sub(g, a.of[TENSOR_XX], a.of[TENSOR_YY])), s = a.of[TENSOR_XY];

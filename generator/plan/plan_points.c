@@ -120,8 +120,8 @@ static ir_node is_far(planner *p, ir_node step) {
   return ir_unary(g, IR_NOT, ir_binary(g, IR_LE, ir_unary(g, IR_ABS, step), size));
 }
 
-/* The root of sigma_zz(z), searched from the root with the states at hand where that is found in one
-   step, else from 0; z itself counts for nothing where sigma_zz does not depend on it. */
+/* The root of sigma_zz(z), searched from the root with the states at hand where that is found in
+   one step, else from 0; z itself counts for nothing where sigma_zz does not depend on it. */
 static ir_node strain_without_stress(planner *p, ir_node sigma_zz, ir_node sigma_zz_at_hand) {
   ir *g = p->graph;
   const along_z a = along_z_of(p, sigma_zz), at_hand = along_z_of(p, sigma_zz_at_hand);
@@ -136,7 +136,8 @@ static ir_node strain_without_stress(planner *p, ir_node sigma_zz, ir_node sigma
   return ir_search(g, from, of[0], of[1]);
 }
 
-/* 0 where sigma_zz is as good as none at the z that is found, else not a number (explain_point.h). */
+/* 0 where sigma_zz is as good as none at the z that is found, else not a number
+   (explain_point.h). */
 static ir_node unless_free(planner *p, ir_node sigma_zz, ir_node z) {
   static const double FREE = 1e-9; /* of what is added up to it */
   ir *g = p->graph;

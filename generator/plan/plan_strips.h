@@ -6,7 +6,8 @@
 
 /* Fills in a plan of strips. False after a diagnostic. */
 bool plan_strips(kernel_plan *plan, diagnostics *d);
-/* Bounds of parameters and, with the number behind them, of the size of cells, of any law. False after a diagnostic. */
+/* Bounds of parameters and, with the number behind them, of the size of cells, of any law. False
+   after a diagnostic. */
 bool plan_bounds(kernel_plan *p, diagnostics *d);
 
 #endif

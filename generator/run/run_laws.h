@@ -2,7 +2,7 @@
 #ifndef PERILAT_GENERATOR_RUN_LAWS_H
 #define PERILAT_GENERATOR_RUN_LAWS_H
 
-#include "generator/run/run_state.h"
+#include "generator/report/run_state.h"
 
 /* Opens and compiles the law of an interaction and reads its parameters; what is wrong with them
    leaves them NULL. 0, or an exit status. What a law's own file has to answer for stays in

@@ -3,7 +3,7 @@
 #ifndef PERILAT_GENERATOR_RUN_MODES_H
 #define PERILAT_GENERATOR_RUN_MODES_H
 
-#include "generator/run/run_state.h"
+#include "generator/report/run_state.h"
 
 /* As many as the options ask for, of a simulation that has not begun. Returns the exit status. */
 int tell_modes(run *r);

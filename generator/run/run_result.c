@@ -12,8 +12,9 @@
 #include "generator/kernel/model.h"
 #include "generator/kernel/toolchain_compiler.h"
 #include "generator/kernel/version.h"
-#include "generator/run/moment.h"
-#include "generator/run/run_report.h"
+#include "generator/report/moment.h"
+#include "generator/report/report_end.h"
+#include "generator/report/resuming.h"
 #include "runtime/base/whole_file.h"
 #include "runtime/continuum/cells.h"
 #include "runtime/deck/lattice_kind.h"
@@ -321,8 +322,8 @@ static void bond_table(run *r, result_header *h) {
   h->bonds = bonds;
 }
 
-/* The nodes of a cell as particles of its mesh, corners counter-clockwise, behind the last -1; false:
-   one is not there. */
+/* The nodes of a cell as particles of its mesh, corners counter-clockwise, behind the last -1;
+   false: one is not there. */
 static bool corners_of(const mesh *m, const rows *w, const node_layout *l, int cell, int columns,
                        int32_t *around) {
   int node[ELEMENT_MOST_NODES];

@@ -2,7 +2,7 @@
 #ifndef PERILAT_GENERATOR_RUN_RESULT_H
 #define PERILAT_GENERATOR_RUN_RESULT_H
 
-#include "generator/run/run_state.h"
+#include "generator/report/run_state.h"
 
 void choose_paths(run *r);
 /* Errors at the deck's line: a result that cannot be written, or that would replace the deck or

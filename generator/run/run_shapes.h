@@ -2,7 +2,7 @@
 #ifndef PERILAT_GENERATOR_RUN_SHAPES_H
 #define PERILAT_GENERATOR_RUN_SHAPES_H
 
-#include "generator/run/run_state.h"
+#include "generator/report/run_state.h"
 #include "runtime/simulation/modes.h"
 
 /* Displacements, and rotations where particles turn, the largest displacement, or rotation times

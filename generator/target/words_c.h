@@ -108,7 +108,7 @@
     "    last[q - begin] = at_first.last, move[q - begin] = at_first.move;\n"                      \
     "    going[q - begin] = at_first.going;\n")                                                    \
   X(SEARCH_STEPS, "  uint64_t some_go_on = 1;\n"                                                   \
-    "  for (long step = 0; step < PL_SEARCH_STEPS && some_go_on != 0; step++) {\n"                  \
+    "  for (long step = 0; step < PL_SEARCH_STEPS && some_go_on != 0; step++) {\n"                 \
     "  some_go_on = 0;\n")                                                                         \
   X(SEARCH_STEP, "    pl_search_place place = {$1, low[q - begin], high[q - begin], "              \
     "last[q - begin],\n      move[q - begin], going[q - begin]};\n"                                \

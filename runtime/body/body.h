@@ -85,8 +85,8 @@ typedef struct body {
      NULL without. The rows in which it is not 0 have a mark, [row_count]. */
   double *outer[3];
   unsigned char *row_outer;
-  /* [size] m/s: of particles that are given away the velocity after the coming step, as the state was
-     observed; NULL without */
+  /* [size] m/s: of particles that are given away the velocity after the coming step, as the state
+     was observed; NULL without */
   double *ahead[3];
   double outer_work;  /* J: that it has done since the start */
   body_row *observed; /* [row_count] */
@@ -108,8 +108,9 @@ body *body_new(const rows *lattice, int dof, double time_step, int threads, body
 void body_free(body *w);
 /* A particle carries a mass beside its own (kg), and what turns with it (kg m^2). */
 void body_add_mass(body *w, long site, double mass, double inertia);
-/* Others say where the particle goes, and have its mass: from now on it has neither mass nor weight, but is
-   kicked by forces as before, by which these are known (body_kicked_by). It still turns by itself. */
+/* Others say where the particle goes, and have its mass: from now on it has neither mass nor
+   weight, but is kicked by forces as before, by which these are known (body_kicked_by). It still
+   turns by itself. */
 void body_give_away(body *w, long site);
 /* N: the force that has kicked it in a step, with the velocity before. */
 double body_kicked_by(const body *w, int component, long site, double before);

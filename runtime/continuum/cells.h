@@ -1,16 +1,7 @@
-/* The cells of a mesh at work: an engine (sweep.h) that finds the forces of nodes and moves them.
-   Linear laws have their stiffness assembled once (node_stencil.h), f = K u; of any other one, and of
-   laws with states, each point is asked in each step (point_forces.h). A mesh may have several laws,
-   by cells (cell_laws.h): those that are linear have one stiffness together, and what the others push
-   is added to that in their order.
-
-   Steps are those of the time loop, central differences. Newmark's method with beta_2 = 0 and
-   beta_1 > 1/2 is the same with the forces
-
-       f_n + (beta_1 - 1/2)(f_n - f_(n-1)),
-
-   which damps fast waves by (beta_1 - 1/2) omega dt/2 of the critical damping; what that takes is
-   in the ledger. Stable up to dt = sqrt(2/beta_1)/omega_max (Hughes 1987, 9.1). */
+/* The cells of a mesh with their laws: what a mesh consists of, masses of its nodes, its stiffness
+   at rest and the longest stable step; what is known of its points. A mesh may have several laws,
+   by cells (cell_laws.h): those that are linear have one stiffness together. What they do in a
+   step: cells_engine.h. */
 #ifndef PERILAT_RUNTIME_CELLS_H
 #define PERILAT_RUNTIME_CELLS_H
 
@@ -22,7 +13,6 @@
 #include "runtime/continuum/point_forces.h"
 #include "runtime/continuum/tips.h"
 #include "runtime/deck/deck.h"
-#include "runtime/interaction/sweep.h"
 
 /* How many times as stiff as at rest the stiffest point is: in the state observed last, and at most so
    far; 1 of linear laws. */
@@ -71,6 +61,9 @@ void cells_take_laws(cells *c, const cells_law *laws);
 void cells_densities(const cells *c, const double *density, double *at_site);
 /* node[nodes] becomes 1 where cells of laws that are not linear push. */
 void cells_mark_pushed(const cells *c, unsigned char *node);
+/* Some of the laws are linear, or all. */
+bool cells_some_linear(const cells *c);
+bool cells_all_linear(const cells *c);
 /* A point's strain as the law sees it, in a cell whose dilatation is the mean (element_modes.h);
    displacement: planes of the body. */
 void cells_mean_dilatation(const cells *c, int cell, const double *const displacement[2],
@@ -78,29 +71,19 @@ void cells_mean_dilatation(const cells *c, int cell, const double *const displac
 /* The longest stable step at rest; held[2 p + d]: freedoms of particles that do not move by
    themselves. */
 void cells_step_limit(const cells *c, const unsigned char *held, step_limit *limit);
-/* At rest; to be freed by sweep_free, before the cells. cracks[k->crack_count]: the laws of the deck's
-   cracks. states[where.count]: of each law its fields, outputs and what it stores; the first is what is
-   returned, and moves the body. */
-sweep *cells_sweep(cells *c, const deck *k, const tip_law *cracks, double time_step, int threads,
-                   body_ledger ledger, sweep **states);
 
 /* After a state was observed, at that time: how stiff points are. `part` of the longest step at rest
    is taken. No frequency of the mesh is above the root of `stiffened.now` times the highest at rest. */
 void cells_watch_stiffness(cells *c, double part, double time);
-/* Where a node had a velocity that is no number or too large: of the points that push it the one
-   with the largest stress, with the nodes where they were before the step. Number of its law; -1 where
-   all around are linear. `out` has memory for any law's fields. */
-int cells_worst_point(const sweep *w, long site, point_state *out);
 /* Of the state observed last, with a law that is not linear; false with one that is, whose points
-   keep nothing. Stress xx, yy, xy, zz (Pa) at a node: the mean of the points in the law's cells around. */
+   keep nothing. Stress xx, yy, xy, zz (Pa) at a node: the mean of the points in the law's cells
+   around. */
 bool cells_mean_stress(const cells *c, int law, int node, double stress[4]);
-/* Whether points of some law can fail; whether a cell is dead after the last step, as all of its points
-   have failed; how many are, and when the first one died (s; infinite: none did). */
+/* Whether points of some law can fail; whether a cell is dead after the last step, as all of its
+   points have failed; how many are, and when the first one died (s; infinite: none did). */
 bool cells_can_die(const cells *c);
 bool cells_dead(const cells *c, int cell);
 long cells_deaths(const cells *c, double *first);
-/* J stored in the cells of a law in the state observed last, where it has others beside it. */
-double cells_stored_by(const sweep *law);
 /* The law of a cell. */
 static inline const cells_law *cells_law_at(const cells *c, int cell) {
   return &c->laws[cell_laws_at(&c->where, cell)];
@@ -109,17 +92,5 @@ static inline const cells_law *cells_law_at(const cells *c, int cell) {
 bool cells_states_near(const cells *c, const double at[2], double *field);
 /* B, of what the body does not count. */
 double cells_bytes(const cells *c);
-/* Stress intensities at the tips, where the body stands still. */
-void cells_look_at_tips(const sweep *w);
-
-/* What the engine remembers from step to step, for checkpoints, to be freed; and after one was read. */
-typedef struct cells_memory {
-  int count;
-  void **planes;
-  size_t *bytes;
-} cells_memory;
-cells_memory cells_remembered(const sweep *w);
-void cells_memory_free(cells_memory *m);
-void cells_restored(sweep *w);
 
 #endif

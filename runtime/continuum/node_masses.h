@@ -1,6 +1,6 @@
 /* Masses of nodes, by the row sums of the consistent matrix: M_I = t sum rho w N_I over the points,
-   as the functions sum to 1 (Karlsson 2006, 2.35); in lists as element.h says. Together they are the
-   mesh's mass. */
+   as the functions sum to 1 (Karlsson 2006, 2.35); in lists as element.h says. Together they are
+   the mesh's mass. */
 #ifndef PERILAT_RUNTIME_NODE_MASSES_H
 #define PERILAT_RUNTIME_NODE_MASSES_H
 

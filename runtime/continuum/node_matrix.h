@@ -1,5 +1,6 @@
-/* The stiffness matrix of a linear law on a mesh of lists: 2 x 2 blocks, row by row, from every node to
-   those that share a cell with it. Sums have one order: results do not depend on threads. */
+/* The stiffness matrix of a linear law on a mesh of lists: 2 x 2 blocks, row by row, from every
+   node to those that share a cell with it. Sums have one order: results do not depend on
+   threads. */
 #ifndef PERILAT_RUNTIME_NODE_MATRIX_H
 #define PERILAT_RUNTIME_NODE_MATRIX_H
 
@@ -13,7 +14,8 @@ typedef struct node_matrix {
   double (*block)[4];     /* N/m: xx, xy, yx, yy */
 } node_matrix;
 
-/* K = t sum B^T D B over the points; laws as in node_stencil.h. Nothing is kept of what is pointed at. */
+/* K = t sum B^T D B over the points; laws as in node_stencil.h. Nothing is kept of what is pointed
+   at. */
 void node_matrix_open(node_matrix *k, const mesh *m, const integration_points *p,
                       const plane_stiffness *laws, const unsigned char *law_of_cell);
 /* Adds what quadrilaterals resist their hourglass modes by (element_modes.h). */

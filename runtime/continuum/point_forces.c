@@ -267,8 +267,8 @@ static pl_points view_of(const point_forces *p, const strip *s, point_scratch *o
                      .time_step = at->time_step};
 }
 
-/* Takes the cells' mean dilatation in place of the points' own, of strains xx, yy; and of tractions (a
-   stress times the volume) what is due to it: the transpose. */
+/* Takes the cells' mean dilatation in place of the points' own, of strains xx, yy; and of tractions
+   (a stress times the volume) what is due to it: the transpose. */
 static void take_mean(const point_forces *p, const strip *s, double *xx, double *yy,
                       bool tractions) {
   for (int g = s->first; g < s->last; g++) {
@@ -287,8 +287,8 @@ static void take_mean(const point_forces *p, const strip *s, double *xx, double 
   }
 }
 
-/* dead[PL_LANES] 1 in cells of a group all of whose points have failed by these states, a plane that
-   begins with it. */
+/* dead[PL_LANES] 1 in cells of a group all of whose points have failed by these states, a plane
+   that begins with it. */
 static void find_dead(const cell_group *g, const double *failed, double dead[PL_LANES]) {
   for (int lane = 0; lane < PL_LANES; lane++)
     dead[lane] = lane < g->count;
@@ -415,9 +415,9 @@ static void find_alive(const point_forces *p, int g, const double *fields, doubl
     alive[lane] = 1 - dead[lane];
 }
 
-/* What elements resist their hourglass modes by. Of the point that each of them has, J/m^3: `stored` is
-   added to; and what cells that die in this step had stored so is `lost`, with the term that is due to
-   forces halfway (ledger.h). Either may be NULL. */
+/* What elements resist their hourglass modes by. Of the point that each of them has, J/m^3:
+   `stored` is added to; and what cells that die in this step had stored so is `lost`, with the term
+   that is due to forces halfway (ledger.h). Either may be NULL. */
 static void resist_hourglass(const point_forces *p, const strip *s, const point_motion *at,
                              double *lost, double *stored) {
   for (int g = s->first; g < s->last && p->hourglass; g++) {

@@ -7,8 +7,8 @@
 
    States stand at points, old ones and new ones, and change places after a step.
 
-   A cell all of whose points have failed is dead: it pushes nothing and strains no more, so that nodes
-   that fly away from it do no harm. Which cells these are the states tell at any time. */
+   A cell all of whose points have failed is dead: it pushes nothing and strains no more, so that
+   nodes that fly away from it do no harm. Which cells these are the states tell at any time. */
 #ifndef PERILAT_RUNTIME_POINT_FORCES_H
 #define PERILAT_RUNTIME_POINT_FORCES_H
 
@@ -40,9 +40,9 @@ typedef struct point_forces {
   double *size;       /* [strips.count] m: of the points' cells */
   double scale[3][3]; /* Pa^(-1/2): L^-1 of the tangent at rest, L L^T */
   double strip;       /* Pa: element_strip_stiffness of that tangent */
-  /* Of element_modes.h; NULL without. Mean dilatation: [groups][PL_LANES] 1 where a cell takes it, and
-     [strips.count] the point's part of its cell. Hourglass modes: [groups][5][PL_LANES] gamma of the
-     corners, and C, N/m. */
+  /* Of element_modes.h; NULL without. Mean dilatation: [groups][PL_LANES] 1 where a cell takes it,
+     and [strips.count] the point's part of its cell. Hourglass modes: [groups][5][PL_LANES] gamma
+     of the corners, and C, N/m. */
   double *mean, *part, *hourglass;
   point_row *rows;               /* [strips.rows] */
   int failed;                    /* the law's field that tells so; -1: points do not fail */
@@ -54,8 +54,8 @@ typedef struct point_forces {
 } point_forces;
 
 /* Tangent at rest (Pa), or how the stress there follows the strain rate (Pa s), xx, yy, xy by xx, yy,
-   xy; of a law that reads the size of a cell that of the cell where its trace is largest. own[cells]
-   marks cells of the law; NULL: all are. */
+   xy; of a law that reads the size of a cell that of the cell where its trace is largest.
+   own[cells] marks cells of the law; NULL: all are. */
 void point_forces_rest(const mesh *m, const unsigned char *own, const pl_law *law,
                        const double *parameters, bool viscous, double tangent[3][3]);
 
@@ -77,13 +77,14 @@ typedef struct point_motion {
    is how stiff the rows are. */
 void point_forces_find(point_forces *p, int block, int from, int to, const point_motion *at,
                        bool seen);
-/* N: adds up what pushes a row of nodes; force[2]: planes of the layout. `more`: to what is there. */
+/* N: adds up what pushes a row of nodes; force[2]: planes of the layout. `more`: to what is
+   there. */
 void point_forces_take(const point_forces *p, int row, bool more, double *const force[2]);
 /* After a step to that time: new states are old ones. */
 void point_forces_turn(point_forces *p, double time);
 
-/* Whether a cell of the law is dead, by the states after the last step or by those observed since; and
-   how many are. */
+/* Whether a cell of the law is dead, by the states after the last step or by those observed since;
+   and how many are. */
 bool point_forces_dead(const point_forces *p, int cell);
 long point_forces_deaths(const point_forces *p);
 

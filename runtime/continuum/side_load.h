@@ -1,5 +1,5 @@
-/* Tractions on sides of elements, straight or curved, as a file lists them: nodes bear the integral of
-   their functions along the side, by four Gauss points. */
+/* Tractions on sides of elements, straight or curved, as a file lists them: nodes bear the integral
+   of their functions along the side, by four Gauss points. */
 #ifndef PERILAT_RUNTIME_SIDE_LOAD_H
 #define PERILAT_RUNTIME_SIDE_LOAD_H
 
@@ -7,8 +7,8 @@
 #include "runtime/mesh/mesh.h"
 #include "runtime/mesh/moving_least_squares.h"
 
-/* At a point of a side whose part of it has `area` (m^2): the functions of its nodes, and the normal out
-   of its cell; of a line inside that to the right of its direction. */
+/* At a point of a side whose part of it has `area` (m^2): the functions of its nodes, and the
+   normal out of its cell; of a line inside that to the right of its direction. */
 typedef void side_visitor(void *context, const double at[2], const double normal[2], double area,
                           const point_shape *s);
 /* Visits the lines of a group; returns their length, m. */

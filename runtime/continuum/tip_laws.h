@@ -6,9 +6,9 @@
 #include "runtime/continuum/cell_laws.h"
 #include "runtime/continuum/tips.h"
 
-/* Of the mesh called `name`. Finds the law around the tips, t->law. linear[cells] as cells.h has it. False with a diagnostic:
-   tips in laws that differ, or that are not linear, such a law in cells that are no finite elements.
-   A box that reaches into another law is warned of. */
+/* Of the mesh called `name`. Finds the law around the tips, t->law. linear[cells] as cells.h has
+   it. False with a diagnostic: tips in laws that differ, or that are not linear, such a law in
+   cells that are no finite elements. A box that reaches into another law is warned of. */
 bool tip_laws_fit(tips *t, const deck *k, const char *name, const cell_laws *where,
                   const unsigned char *linear, const mesh *m, diagnostics *d);
 

@@ -458,8 +458,8 @@ static int points_of_mesh(tips *t, const body *w, const node_stencil *k, const t
   return count;
 }
 
-/* Own points of the box: cells of 2 x 2 in each quadrant. Those outside the mesh are left out, and so
-   are those in cells of laws that are not linear. */
+/* Own points of the box: cells of 2 x 2 in each quadrant. Those outside the mesh are left out, and
+   so are those in cells of laws that are not linear. */
 static int points_of_box(tips *t, const body *w, const node_stencil *k, const tip_box *b) {
   const int cells = t->options->points;
   const double c = pl_cos(b->angle), s = pl_sin(b->angle), gauss = 1 / sqrt(3.0);
@@ -566,8 +566,8 @@ static bool is_near_law(const tips *t, const mesh_tip *p, const node_stencil *k)
   return false;
 }
 
-/* A grown tip near the edge of the mesh, a hole or another law keeps its direction: the box around it
-   is cut. */
+/* A grown tip near the edge of the mesh, a hole or another law keeps its direction: the box around
+   it is cut. */
 static bool is_near_edge(const tips *t, const mesh_tip *p, const node_stencil *k) {
   const mesh *m = k->of;
   bool near = holes_near(&m->holes, p->now.at, t->half_size) || is_near_law(t, p, k);

@@ -262,15 +262,15 @@ typedef struct deck_force { /* on the region, shared equally by its particles */
   int component;       /* a rotation: moment in N*m */
   bool per_length;     /* by the particles' parts of their row */
   time_function force; /* N; per length N/m; of a traction Pa */
-  /* of a traction: the mesh (else NULL), and the ends of the line that it acts on, or the name of lines
-     of the mesh's file */
+  /* of a traction: the mesh (else NULL), and the ends of the line that it acts on, or the name of
+     lines of the mesh's file */
   const char *mesh;
   double from[3], to[3]; /* m */
   const char *edge;
 } deck_force;
 typedef deck_force deck_traction;
-/* Of a traction on an edge, beside x and y: along the normal out of the body, or that turned by a right
-   angle, counter-clockwise around the body. */
+/* Of a traction on an edge, beside x and y: along the normal out of the body, or that turned by a
+   right angle, counter-clockwise around the body. */
 enum { TRACTION_NORMAL = 2, TRACTION_TANGENTIAL };
 
 typedef struct deck_end_moment { /* horizontal forces, linear in y over the region, without

@@ -441,8 +441,8 @@ static bool is_region_of(const deck *k, const char *name, const char *lattice) {
   return region >= 0 && deck_same_name(k->regions[region].lattice, lattice);
 }
 
-/* A law of its own in a part of the lattice, of a mesh also its law with other values; what is wrong
-   has been said. */
+/* A law of its own in a part of the lattice, of a mesh also its law with other values; what is
+   wrong has been said. */
 static bool is_law_beside(const deck *k, int material, const char *lattice) {
   const deck_material *m = &k->materials[material];
   if (!deck_same_name(m->lattice, lattice) || !m->model) return false;

@@ -19,7 +19,8 @@ typedef struct tree {
 
 /* --- the tree --------------------------------------------------------------------------------- */
 
-/* So that those before `middle` have no larger coordinates than it, those behind no smaller ones. */
+/* So that those before `middle` have no larger coordinates than it, those behind no smaller
+   ones. */
 static void part(const tree *t, long first, long last, long middle, int axis) {
   while (first < last) {
     const double pivot = t->at[t->order[first + (last - first) / 2]][axis];

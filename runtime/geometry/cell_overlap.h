@@ -1,5 +1,5 @@
-/* Do cells lie over each other? Nodes and middles of cells that lie inside of another cell, and nodes
-   that hang: they lie on a side of a cell that has them not. Time grows as n log n. */
+/* Do cells lie over each other? Nodes and middles of cells that lie inside of another cell, and
+   nodes that hang: they lie on a side of a cell that has them not. Time grows as n log n. */
 #ifndef PERILAT_RUNTIME_CELL_OVERLAP_H
 #define PERILAT_RUNTIME_CELL_OVERLAP_H
 

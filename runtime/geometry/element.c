@@ -101,8 +101,8 @@ double element_outside(int nodes, const double u[2]) {
 
 /* --- soundness -------------------------------------------------------------------------------- */
 
-/* The Jacobian of a quadratic triangle is quadratic: with coefficients of Bernstein's polynomials in a
-   part of the triangle that are all positive it is positive there. */
+/* The Jacobian of a quadratic triangle is quadratic: with coefficients of Bernstein's polynomials
+   in a part of the triangle that are all positive it is positive there. */
 typedef struct part {
   double u[3][2];
 } part;

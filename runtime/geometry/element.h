@@ -7,7 +7,8 @@
 #include <stdbool.h>
 
 enum { ELEMENT_MOST_NODES = 6, ELEMENT_MOST_POINTS = 6 };
-/* Elements around a node: a double has a bit for each of those that begin with it (mesh_views.h). */
+/* Elements around a node: a double has a bit for each of those that begin with it
+   (mesh_views.h). */
 enum { ELEMENT_MOST_AROUND = 52 };
 
 static inline int element_corners(int nodes) {
@@ -17,7 +18,8 @@ static inline int element_corners(int nodes) {
 /* Functions and their slopes along u and v. */
 void element_functions(int nodes, const double u[2], double n[ELEMENT_MOST_NODES],
                        double slope[ELEMENT_MOST_NODES][2]);
-/* Where u lies, m; returns the Jacobian d(x, y)/d(u, v), m^2. `along` (may be NULL): d x_i/d u_k. */
+/* Where u lies, m; returns the Jacobian d(x, y)/d(u, v), m^2. `along` (may be NULL):
+   d x_i/d u_k. */
 double element_map(int nodes, const double place[][2], const double u[2], double at[2],
                    double along[2][2]);
 /* Functions at u, with their gradients in x and y, 1/m. */
@@ -37,8 +39,8 @@ double element_area(int nodes, const double place[][2]); /* m^2 */
 int element_rule(int nodes, int gauss, double u[ELEMENT_MOST_POINTS][2],
                  double weight[ELEMENT_MOST_POINTS]);
 
-/* The part of an element's mass at each node: row sums of the consistent matrix, of 6 nodes its diagonal
-   scaled to the whole mass, which leaves all positive (Hinton, Rock and Zienkiewicz 1976).
+/* The part of an element's mass at each node: row sums of the consistent matrix, of 6 nodes its
+   diagonal scaled to the whole mass, which leaves all positive (Hinton, Rock and Zienkiewicz 1976).
    share[nodes]: m^2, together the area. */
 void element_mass(int nodes, const double place[][2], double share[ELEMENT_MOST_NODES]);
 

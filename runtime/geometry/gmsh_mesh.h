@@ -1,6 +1,6 @@
-/* The plane mesh of a Gmsh file (gmsh_text.h): nodes of cells, cells, lines, and the physical groups
-   of these. Nodes are numbered along a Hilbert curve, cells by their first nodes, so that what lies
-   near each other stands near each other in memory; the file's own numbers are kept. */
+/* The plane mesh of a Gmsh file (gmsh_text.h): nodes of cells, cells, lines, and the physical
+   groups of these. Nodes are numbered along a Hilbert curve, cells by their first nodes, so that
+   what lies near each other stands near each other in memory; the file's own numbers are kept. */
 #ifndef PERILAT_RUNTIME_GMSH_MESH_H
 #define PERILAT_RUNTIME_GMSH_MESH_H
 

@@ -42,8 +42,8 @@ typedef struct deck_shape { /* m */
      points counter-clockwise; NULL: straight edges */
   const double *bulge;
   int bulge_count;
-  /* What a file lists instead: particles by their numbers, ascending; the rectangle is the box around
-     them. NULL: none */
+  /* What a file lists instead: particles by their numbers, ascending; the rectangle is the box
+     around them. NULL: none */
   const int32_t *members;
   int member_count;
 } deck_shape;

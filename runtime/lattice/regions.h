@@ -15,8 +15,8 @@ typedef struct region_sites { /* of a region of the deck */
 /* [deck->region_count] whether anything names the region; to be freed. */
 bool *regions_used(const deck *k);
 /* [deck->region_count], to be freed by regions_free. Diagnostics of those that are empty, warnings
-   of those that nothing names, without the groups of a file; regions of other lattices than the one of
-   that name are left out. */
+   of those that nothing names, without the groups of a file; regions of other lattices than the one
+   of that name are left out. */
 region_sites *regions_select(const deck *k, const char *lattice, const rows *w, diagnostics *d);
 void regions_free(const deck *k, region_sites *regions);
 

@@ -65,8 +65,8 @@ void load_steps_turn(const loads *l, body *w, long step);
 void load_steps_take_links(loads *l, body *w, int block);
 /* In a step, when all rows have moved but before load_steps_apply: what ties exert. */
 void load_steps_take_ties(loads *l, const body *w, long step);
-/* Of the state observed after `step` steps, before load_steps_observe: the same of one tie; returns the
-   work that it has done up to there, J. */
+/* Of the state observed after `step` steps, before load_steps_observe: the same of one tie; returns
+   the work that it has done up to there, J. */
 double load_steps_see_tie(loads *l, const body *w, int tie, long step);
 load_sums load_steps_total(const loads *l);
 

@@ -43,8 +43,8 @@ typedef struct applied { /* part of a force that acts on one component of one pa
   int64_t place;  /* of what differs from place to place: one of loads.places + 1; 0: the site */
   int64_t holder; /* index of the constraint on the same component, or -1 */
   double share;   /* force = share * time function */
-  /* A tie's: it is known when the particles of the lattice have moved, and acts in the same step; in
-     between `seen` (N) is that of the state observed. */
+  /* A tie's: it is known when the particles of the lattice have moved, and acts in the same step;
+     in between `seen` (N) is that of the state observed. */
   int64_t tied;
   double seen;
   double now;      /* N: force of the coming step; of a tie of the last one */

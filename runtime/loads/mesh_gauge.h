@@ -12,7 +12,8 @@ typedef struct mesh_gauge mesh_gauge;
 
 /* At the monitor's place, or on `count` sites of its region. What is pointed at must outlive it;
    NULL with a diagnostic where the place is not in the mesh. A
-   stress is that of the law there at the strain there, with the states of the point of integration nearest to it. */
+   stress is that of the law there at the strain there, with the states of the point of integration
+   nearest to it. */
 mesh_gauge *mesh_gauge_new(const deck_monitor *m, const int32_t *sites, long count, const cells *c,
                            const loads *l, const body *w, diagnostics *d);
 void mesh_gauge_free(mesh_gauge *g);

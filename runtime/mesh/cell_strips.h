@@ -72,9 +72,10 @@ void cell_strips_strain(const cell_strips *s, int row, const cell_group *g,
 void cell_strips_push(const cell_strips *s, int row, const cell_group *g,
                       const double *const traction[3], double *const pushed[2]);
 long cell_strips_pushed(const cell_strips *s);
-/* The part gamma of quadrilaterals of a group in their nodes' motion along an axis, m, and forces along it
-   that it adds: gamma[4][PL_LANES] in the order of element_hourglass, 0 where a cell has none; u: a
-   plane of the layout; by[PL_LANES], N; pushed: one of cell_strips_push, which comes first. */
+/* The part gamma of quadrilaterals of a group in their nodes' motion along an axis, m, and forces
+   along it that it adds: gamma[4][PL_LANES] in the order of element_hourglass, 0 where a cell has
+   none; u: a plane of the layout; by[PL_LANES], N; pushed: one of cell_strips_push, which comes
+   first. */
 void cell_strips_mode(const cell_strips *s, int row, const cell_group *g, const double *gamma,
                       const double *u, double mode[PL_LANES]);
 void cell_strips_push_mode(const cell_strips *s, int row, const cell_group *g, const double *gamma,
@@ -96,8 +97,8 @@ int cell_strips_cell(const cell_strips *s, const mesh *m, int row, const cell_gr
 /* Whether the points of a lane's cell may push a node. */
 bool cell_strips_reach(const cell_strips *s, const mesh *m, const cell_group *g, int lane,
                        int node);
-/* Where the point at that place stands, m, and the lower left node of its cell; of lists the cell's number
-   and -1. */
+/* Where the point at that place stands, m, and the lower left node of its cell; of lists the cell's
+   number and -1. */
 void cell_strips_place(const cell_strips *s, const mesh *m, const integration_points *p, int row,
                        const cell_group *g, int at, double place[2], int cell[2]);
 

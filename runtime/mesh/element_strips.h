@@ -1,7 +1,7 @@
-/* Points of integration of a mesh of lists, side by side: PL_LANES elements with as many nodes and points
-   each are a group, and a vector holds the same point of all of them. Nodes stand anywhere, so each
-   group has lists of them; what its elements push stands in a storage of its own, a slot for each
-   node of each element:
+/* Points of integration of a mesh of lists, side by side: PL_LANES elements with as many nodes and
+   points each are a group, and a vector holds the same point of all of them. Nodes stand anywhere,
+   so each group has lists of them; what its elements push stands in a storage of its own, a slot
+   for each node of each element:
 
        gather  u[site[node][lane]]   ->  strains, stresses (lanes)  ->  slot[node][lane]  ->  nodes
 
@@ -46,8 +46,8 @@ void element_strips_strain(const element_strips *s, int group, const double *con
                            double *const strain[3]);
 void element_strips_push(const element_strips *s, int group, const double *const traction[3],
                          double *const pushed[2]);
-/* sum_q gamma_q u_q of the elements of a group of quadrilaterals, m; and what this adds to the forces that
-   the group pushes by: gamma[4][PL_LANES], 1; by[PL_LANES], N. */
+/* sum_q gamma_q u_q of the elements of a group of quadrilaterals, m; and what this adds to the
+   forces that the group pushes by: gamma[4][PL_LANES], 1; by[PL_LANES], N. */
 void element_strips_mode(const element_strips *s, int group, const double *gamma, const double *u,
                          double mode[PL_LANES]);
 void element_strips_push_mode(const element_strips *s, int group, const double *gamma,

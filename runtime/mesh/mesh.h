@@ -54,8 +54,8 @@ typedef struct mesh {
   unsigned char *moving;        /* [nodes] 1: has a moving least squares function */
   unsigned char *cell;          /* [cells] mesh_cell */
   unsigned char *element_gauss; /* [cells] rule of a bilinear element: 1 or 2 */
-  /* [cells] of elements (element_modes.h): 1: with 2 x 2 points their dilatation is the mean; with one
-     point they resist hourglass modes by that part of their stiffness */
+  /* [cells] of elements (element_modes.h): 1: with 2 x 2 points their dilatation is the mean; with
+     one point they resist hourglass modes by that part of their stiffness */
   unsigned char *mean_dilatation;
   double *hourglass;
 } mesh;
@@ -107,8 +107,8 @@ static inline void mesh_place(const mesh *m, int n, double at[2]) {
   at[0] = mesh_at(m, 0, i);
   at[1] = mesh_at(m, 1, j);
 }
-/* Of a grid: number of the cell at place (i, j), and its corners: lower left and right, upper left and
-   right. */
+/* Of a grid: number of the cell at place (i, j), and its corners: lower left and right, upper left
+   and right. */
 static inline int mesh_cell_at(const mesh *m, int i, int j) {
   return j * (m->nodes[0] - 1) + i;
 }
@@ -129,7 +129,8 @@ int mesh_cell_nodes(const mesh *m, int cell, int node[ELEMENT_MOST_NODES]);
 int mesh_cells_around(const mesh *m, int node, int around[ELEMENT_MOST_AROUND]);
 /* h, m: the root of the cell's area, of a triangle of 3 nodes of twice its area; holes included. */
 double mesh_cell_size(const mesh *m, int cell);
-/* How many times longer a quadrilateral is than wide, by means of opposite sides; 1 of triangles. */
+/* How many times longer a quadrilateral is than wide, by means of opposite sides; 1 of
+   triangles. */
 double mesh_cell_slender(const mesh *m, int cell);
 /* Where an element with one point knows the strain: its middle, whatever the place in it; what its
    corners do beside is no strain of the law's. Of other cells the place itself. */

@@ -4,7 +4,8 @@
 
 #include "runtime/kernel.h"
 
-/* Wider than a register they are taken apart; what has them is inlined, so that no call passes them. */
+/* Wider than a register they are taken apart; what has them is inlined, so that no call passes
+   them. */
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 typedef double lanes

@@ -20,12 +20,12 @@ typedef struct plot_mesh {
   char name[80];
   long cell_count;
   long all_count; /* with those that have died, which stand behind */
-  /* [all_count][4] particles, counter-clockwise; a triangle has its last one twice, one of 6 nodes is
-     four of them */
+  /* [all_count][4] particles, counter-clockwise; a triangle has its last one twice, one of 6 nodes
+     is four of them */
   int32_t *cells;
-  int32_t *
-      first; /* [all_count] of a file: the first node of the cell; -1: of the same as the one before;
-                     NULL: cells[.][0] */
+  /* [all_count] of a file: the first node of the cell; -1: of the same as the one before; NULL:
+     cells[.][0] */
+  int32_t *first;
   double size; /* m: a side of a cell of the same area */
   crack_lines lines;
 } plot_mesh;

@@ -6,8 +6,9 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "runtime/analysis/bond_probe.h"
+#include "runtime/continuum/cells_engine.h"
 #include "runtime/continuum/point_forces.h"
-#include "runtime/simulation/run_body.h"
+#include "runtime/parts/run_body.h"
 #include "runtime/simulation/run_clock.h"
 
 struct bad_search {

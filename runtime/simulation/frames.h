@@ -9,9 +9,9 @@
 
 #include "dsl/base/diagnostics.h"
 #include "runtime/deck/deck.h"
+#include "runtime/parts/run_body.h"
 #include "runtime/simulation/frame_field.h"
 #include "runtime/simulation/monitor.h"
-#include "runtime/simulation/run_body.h"
 #include "runtime/simulation/run_clock.h"
 
 typedef struct frame_set frame_set;

@@ -3,10 +3,10 @@
 #ifndef PERILAT_RUNTIME_HISTORY_H
 #define PERILAT_RUNTIME_HISTORY_H
 
-#include "runtime/simulation/ledger.h"
+#include "runtime/parts/ledger.h"
+#include "runtime/parts/run_contact.h"
 #include "runtime/simulation/monitor.h"
 #include "runtime/simulation/relaxation.h"
-#include "runtime/simulation/run_contact.h"
 
 /* Series: the deck's monitors; the energy terms, in sum, then, of several bodies, those of each,
    and of each contact, and of laws beside the first one of a body what they store and take; what an

@@ -331,8 +331,8 @@ static const run_law *law_watched(const monitor *m) {
   return law_with_field(m->deck, of);
 }
 
-/* What of a node's value is a law's: by the areas of its cells around, among those of laws that have
-   the field. */
+/* What of a node's value is a law's: by the areas of its cells around, among those of laws that
+   have the field. */
 static double part_of_node(const monitor *m, const run_law *law, long site) {
   double all = 0;
   if (!law->share) return 1;

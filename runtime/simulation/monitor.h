@@ -15,8 +15,8 @@
 #include "runtime/analysis/watched.h"
 #include "runtime/deck/deck.h"
 #include "runtime/loads/mesh_gauge.h"
-#include "runtime/simulation/run_body.h"
-#include "runtime/simulation/run_link.h"
+#include "runtime/parts/run_body.h"
+#include "runtime/parts/run_link.h"
 
 typedef struct monitor_state { /* what a later step depends on */
   double zero;                 /* value subtracted */

@@ -4,7 +4,7 @@
 #ifndef PERILAT_RUNTIME_PROFILE_H
 #define PERILAT_RUNTIME_PROFILE_H
 
-#include "runtime/simulation/run_body.h"
+#include "runtime/parts/run_body.h"
 
 /* X(code, name) */
 #define PROFILE_PARTS(X)                                                                           \

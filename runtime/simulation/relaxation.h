@@ -20,7 +20,7 @@
 #ifndef PERILAT_RUNTIME_RELAXATION_H
 #define PERILAT_RUNTIME_RELAXATION_H
 
-#include "runtime/simulation/run_body.h"
+#include "runtime/parts/run_body.h"
 
 typedef struct relaxation_state { /* what a later step depends on */
   int64_t done;                   /* increments */

@@ -9,8 +9,9 @@
 #include "runtime/base/subnormals.h"
 #include "runtime/continuum/point_law.h"
 #include "runtime/deck/group_run.h"
-#include "runtime/simulation/law_fits.h"
-#include "runtime/simulation/link_limit.h"
+#include "runtime/parts/law_fits.h"
+#include "runtime/parts/link_limit.h"
+#include "runtime/simulation/fields_fit.h"
 #include "runtime/simulation/modes.h"
 #include "runtime/simulation/simulation_state.h"
 #include "runtime/simulation/time_loop.h"
@@ -254,7 +255,7 @@ static bool open_frames(simulation *s, diagnostics *d) {
   const frame_field *fields;
   s->frames = frames_new(&s->deck->output, s->bodies, s->body_count, s->monitors, &s->clock);
   const int count = frames_fields(s->frames, &fields);
-  return law_fits_result(s->deck, s->bodies, fields, count, d);
+  return fields_fit_result(s->deck, s->bodies, fields, count, d);
 }
 
 static bool set_up(simulation *s, rows *const *lattices, diagnostics *d) {

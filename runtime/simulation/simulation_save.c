@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/continuum/cells_engine.h"
 #include "runtime/result/checkpoint.h"
 #include "runtime/simulation/simulation_state.h"
 

@@ -4,17 +4,17 @@
 
 #include "runtime/base/team.h"
 #include "runtime/loads/tie_steps.h"
+#include "runtime/parts/run_body.h"
+#include "runtime/parts/run_contact.h"
+#include "runtime/parts/run_link.h"
+#include "runtime/parts/step_choice.h"
 #include "runtime/simulation/frames.h"
 #include "runtime/simulation/history.h"
 #include "runtime/simulation/monitor.h"
 #include "runtime/simulation/profile.h"
 #include "runtime/simulation/relaxation.h"
-#include "runtime/simulation/run_body.h"
 #include "runtime/simulation/run_clock.h"
-#include "runtime/simulation/run_contact.h"
-#include "runtime/simulation/run_link.h"
 #include "runtime/simulation/simulation.h"
-#include "runtime/simulation/step_choice.h"
 
 struct simulation {
   const deck *deck; /* `own` */

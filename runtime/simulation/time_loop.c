@@ -5,6 +5,7 @@
 #include "dsl/base/elementary.h"
 #include "runtime/base/clock.h"
 #include "runtime/base/subnormals.h"
+#include "runtime/continuum/cells_engine.h"
 #include "runtime/loads/load_steps.h"
 
 /* --- samples ---------------------------------------------------------------------------------- */

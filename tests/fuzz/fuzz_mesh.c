@@ -1,5 +1,5 @@
-/* A mesh of Gmsh. A mesh and errors exclude each other; its numbers name what is there, its cells have an
-   area, and places of messages lie in the text. */
+/* A mesh of Gmsh. A mesh and errors exclude each other; its numbers name what is there, its cells
+   have an area, and places of messages lie in the text. */
 #include <math.h>
 #include <string.h>
 

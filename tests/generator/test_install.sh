@@ -74,7 +74,7 @@ while IFS= read -r header; do
   [ -z "$cpp" ] || "$cpp" -x c++ -std=c++17 -Wall -Wextra -Werror -fsyntax-only -I"$include" one.c || fail "$header in C++17"
 done < <(cd "$include" && find . -name '*.h' | sed 's/^..//')
 [ "$headers" -gt 20 ] && [ -f "$include/runtime/kernel.h" ] && [ -f "$include/generator/kernel/model.h" ] || fail "$headers headers"
-for inner in runtime/interaction/sweep.h runtime/simulation/simulation_state.h generator/plan/plan.h generator/run/run_state.h dsl/syntax/parsing.h; do
+for inner in runtime/interaction/sweep.h runtime/simulation/simulation_state.h generator/plan/plan.h generator/report/run_state.h dsl/syntax/parsing.h; do
   [ ! -e "$include/$inner" ] || fail "$inner is installed"
 done
 

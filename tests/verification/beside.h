@@ -1,5 +1,5 @@
-/* Specimens of examples/ as meshes of finite elements, beside the lattice: the peak of the load, and
-   what their pages say of it. To be included after cmocka.h. */
+/* Specimens of examples/ as meshes of finite elements, beside the lattice: the peak of the load,
+   and what their pages say of it. To be included after cmocka.h. */
 #ifndef PERILAT_TESTS_BESIDE_H
 #define PERILAT_TESTS_BESIDE_H
 

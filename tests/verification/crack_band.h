@@ -1,5 +1,5 @@
-/* What tears the bars of examples/crack_band, over the fracture energy times their section; and what
-   their page says of it. To be included after cmocka.h. */
+/* What tears the bars of examples/crack_band, over the fracture energy times their section; and
+   what their page says of it. To be included after cmocka.h. */
 #ifndef PERILAT_TESTS_CRACK_BAND_H
 #define PERILAT_TESTS_CRACK_BAND_H
 

@@ -38,9 +38,9 @@ static void the_dog_bone(void **state) {
   assert_true(fabs(plastic / lattice - 1) < 0.02);
 }
 
-/* On a third of the cells. Where the disc begins to split the stress across is f_t for Rankine; under
-   three times as much pressure Lubliner's surface has 0.81 f_t, from where the load is yet to grow.
-   Brittle cracking knows no crushing: the disc splits, and bears more and more. */
+/* On a third of the cells. Where the disc begins to split the stress across is f_t for Rankine;
+   under three times as much pressure Lubliner's surface has 0.81 f_t, from where the load is yet to
+   grow. Brittle cracking knows no crushing: the disc splits, and bears more and more. */
 static void the_split_cylinder(void **state) {
   (void)state;
   const double theory = 236.0e3;

@@ -1,5 +1,5 @@
-/* The finest bars of the crack band, the larger dog-bone and the split discs on finite elements, beside
-   the lattice and theory. */
+/* The finest bars of the crack band, the larger dog-bone and the split discs on finite elements,
+   beside the lattice and theory. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -26,8 +26,8 @@ static void bands_of_5_mm(void **state) {
   finest("mazars", "0.2", true, sqrt(2), sqrt(2) * held);
 }
 
-/* The stress at the sides of the neck is above the mean, and the crack begins there while the middle is
-   sound: less than the strength of all of the neck. */
+/* The stress at the sides of the neck is above the mean, and the crack begins there while the
+   middle is sound: less than the strength of all of the neck. */
 static void the_larger_dog_bone(void **state) {
   (void)state;
   const double theory = 57.96e3,
@@ -38,8 +38,8 @@ static void the_larger_dog_bone(void **state) {
   assert_true(fabs(brittle / plastic - 1) < 0.03);
 }
 
-/* Lubliner's surface has 0.81 and 0.77 f_t under three times as much pressure across; from there the
-   load is yet to grow, as the stress moves away from the middle. */
+/* Lubliner's surface has 0.81 and 0.77 f_t under three times as much pressure across; from there
+   the load is yet to grow, as the stress moves away from the middle. */
 static void split_discs_under_plastic_damage(void **state) {
   (void)state;
   beside_check(&(beside){"cylinder", "rot0_continuum", "6.5 ms", 236.0e3, 0.81, 1, NULL});

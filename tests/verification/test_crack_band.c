@@ -26,8 +26,8 @@ static void a_row_of_cells_costs_the_fracture_energy(void **state) {
   assert_true(fabs(measured("brittle_cracking", "0.2", 10, false) - 1) < 1e-3);
 }
 
-/* Mazars' damage takes the contraction across the crack as well: the rows beside it hold the band, as
-   in plane strain, and E/(1 - nu^2) stands for E, the more the smaller the cells are beside the
+/* Mazars' damage takes the contraction across the crack as well: the rows beside it hold the band,
+   as in plane strain, and E/(1 - nu^2) stands for E, the more the smaller the cells are beside the
    width. */
 static void held_sideways_it_costs_more(void **state) {
   (void)state;
@@ -36,8 +36,8 @@ static void held_sideways_it_costs_more(void **state) {
   assert_true(1.03 < coarse && coarse < fine && fine < most);
 }
 
-/* A crack across the corners of cells runs over sqrt(2) of their size; half cells at the edges, which
-   are the smaller ones, add to that. */
+/* A crack across the corners of cells runs over sqrt(2) of their size; half cells at the edges,
+   which are the smaller ones, add to that. */
 static void across_corners_the_band_is_wider(void **state) {
   (void)state;
   const double coarse = measured("mazars", "0.2", 20, true),

@@ -37,7 +37,8 @@ static void says(const char *row, const char *format, double value) {
   page_line_says(PLATE "README.md", row, figure);
 }
 
-/* The force through the line above the hole: the integral of 1 + 1/(2 r^2) + 3/(2 r^4) from 1 to 5. */
+/* The force through the line above the hole: the integral of 1 + 1/(2 r^2) + 3/(2 r^4) from 1 to
+   5. */
 static void a_hole_is_as_kirsch_says(void **state) {
   (void)state;
   static const char *const file[] = {"mesh.file=hole_t3.msh"};
@@ -71,8 +72,8 @@ static void the_plate_with_holes(void **state) {
   says("| stored energy", "| %.3f |", three.energy);
 }
 
-/* The sections through the large hole and through both small ones have 80 mm x 10 mm: they flow at 250 MPa
-   times that, and harden by a few per cent. */
+/* The sections through the large hole and through both small ones have 80 mm x 10 mm: they flow at
+   250 MPa times that, and harden by a few per cent. */
 static void the_plate_that_yields(void **state) {
   (void)state;
   deck_case c;

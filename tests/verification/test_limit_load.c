@@ -1,6 +1,6 @@
 /* A strip with notches on both sides in plane strain, of a metal without hardening: with the mean
-   dilatation its load comes to the limit (Ewing and Hill 1967; Nagtegaal, Parks and Rice 1974), with a
-   dilatation at each point it rises on. */
+   dilatation its load comes to the limit (Ewing and Hill 1967; Nagtegaal, Parks and Rice 1974),
+   with a dilatation at each point it rises on. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -13,8 +13,8 @@
 enum { INCREMENTS = 100 };
 static const double f_y = 243e6, half_ligament = 2.5, half_width = 5; /* Pa, m, m */
 
-/* A half of the strip's upper half. load[INCREMENTS + 1], over that of a strip of the ligament's width
-   alone, 2/sqrt(3) f_y times that. */
+/* A half of the strip's upper half. load[INCREMENTS + 1], over that of a strip of the ligament's
+   width alone, 2/sqrt(3) f_y times that. */
 static void draw_out(const char *elements, int cells, double *load) {
   char text[4096];
   deck_case c;

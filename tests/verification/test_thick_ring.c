@@ -1,5 +1,6 @@
-/* The thick ring of examples/thick_ring under pressure inside, in plane strain: elastic beside Lame,
-   then yielding beside Hill (1950), who takes Tresca's condition with the shear strength k. */
+/* The thick ring of examples/thick_ring under pressure inside, in plane strain: elastic beside
+   Lame, then yielding beside Hill (1950), who takes Tresca's condition with the shear strength
+   k. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -28,8 +29,8 @@ static double yielded(double p) {
   return low;
 }
 
-/* Of the inner edge. Elastic: Lame; else the change of volume is elastic and the shear at the border
-   is k: u = 2 k c^2 (1 - nu^2)/(E a) - (1 - 2 nu)(1 + nu) a p/E. */
+/* Of the inner edge. Elastic: Lame; else the change of volume is elastic and the shear at the
+   border is k: u = 2 k c^2 (1 - nu^2)/(E a) - (1 - 2 nu)(1 + nu) a p/E. */
 static double moved(double p) {
   const double c = yielded(p);
   if (c <= a * (1 + 1e-9))

@@ -18,8 +18,8 @@ static double intensity(double stress) {
   return stress * sqrt(M_PI * half / cos(M_PI * half / width));
 }
 
-/* 2.5 %: 6 cells along the crack. After yield the ends harden by 2 GPa of their strain, and the elastic
-   zone holds them sideways. */
+/* 2.5 %: 6 cells along the crack. After yield the ends harden by 2 GPa of their strain, and the
+   elastic zone holds them sideways. */
 static void the_ends_limit_the_crack(void **state) {
   (void)state;
   static const char *const overrides[] = {"simulation.threads=1", "output.frames=0"};

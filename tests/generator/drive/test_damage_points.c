@@ -1,6 +1,7 @@
-/* Laws of a continuum that soften and fail, at one point: directions of principal values in space and in
-   the plane, points that fail, the work of fracture of the damage laws in models/ for cells of three
-   sizes, a crack at an angle against its closed form, and cells of sizes that a law does not hold for. */
+/* Laws of a continuum that soften and fail, at one point: directions of principal values in space
+   and in the plane, points that fail, the work of fracture of the damage laws in models/ for cells
+   of three sizes, a crack at an angle against its closed form, and cells of sizes that a law does
+   not hold for. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>

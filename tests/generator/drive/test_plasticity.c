@@ -1,6 +1,6 @@
-/* Laws that yield, along paths drawn by chance: von Mises against the radial return (Wilkins 1964) by
-   hand, in plane stress with the strain along z by bisection; Drucker and Prager against what makes a
-   return one, on the cone and at its apex; tangents against differences. */
+/* Laws that yield, along paths drawn by chance: von Mises against the radial return (Wilkins 1964)
+   by hand, in plane stress with the strain along z by bisection; Drucker and Prager against what
+   makes a return one, on the cone and at its apex; tangents against differences. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -259,8 +259,8 @@ static grain grain_of(const opened *o) {
 }
 
 /* A step that has led from `old` to `now`: inside or on the cone; plastic strain along the stress
-   that is left and, on the cone, as much volume as the dilatancy asks; at the apex at least that. 0:
-   elastic, 1: on the cone, 2: at the apex. */
+   that is left and, on the cone, as much volume as the dilatancy asks; at the apex at least that.
+   0: elastic, 1: on the cone, 2: at the apex. */
 static int is_a_return(const cone *c, const grain *old, const grain *now, const double *stress) {
   double dev[MOST], slip[MOST], part[MOST];
   const double p = invariants(stress, dev), tau = sqrt(half_square(dev)), near = 1e-12 * c->c,
@@ -329,8 +329,8 @@ static void cones_and_apexes(void **state) {
     assert_true(seen[k] > 30);
 }
 
-/* The stress that plane stress leaves is that of space with the strain along z that leaves none there:
-   both points undergo the same. */
+/* The stress that plane stress leaves is that of space with the strain along z that leaves none
+   there: both points undergo the same. */
 static void sheets_are_thin_plates(void **state) {
   (void)state;
   opened sheet, block;

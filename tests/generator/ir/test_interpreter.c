@@ -220,7 +220,8 @@ static void graph_may_grow(void **unused) {
   ir_free(NULL);
 }
 
-/* max(z, flat)^3 + max(z, flat) - y, which is flat below `flat`: a Newton's step there leads nowhere. */
+/* max(z, flat)^3 + max(z, flat) - y, which is flat below `flat`: a Newton's step there leads
+   nowhere. */
 static ir_node cubic_less(ir *g, ir_node z, ir_node flat, ir_node y) {
   const ir_node x = ir_binary(g, IR_MAX, z, flat);
   return ir_sub(g, ir_add(g, ir_mul(g, x, ir_mul(g, x, x)), x), y);

@@ -207,7 +207,8 @@ static void marks_stand_where_the_field_says(void **state) {
   assert_int_equal(marks_in(w, "displacement < 1.5"), 1);
 }
 
-/* Cells of three nodes beside cells of four: each has its colour, with or without its law's field. */
+/* Cells of three nodes beside cells of four: each has its colour, with or without its law's
+   field. */
 static void triangles_among_quadrilaterals(void **state) {
   workplace *w = *state;
   expect(w,

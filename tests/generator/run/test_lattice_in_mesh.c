@@ -26,7 +26,8 @@ typedef struct strip {
   int beyond; /* columns of the lattice inside the right mesh */
 } strip;
 
-/* Of the meshes: density and stiffness over the lattice's; how far the lattice reaches into them, mm. */
+/* Of the meshes: density and stiffness over the lattice's; how far the lattice reaches into them,
+   mm. */
 static double light = 1, overlap = 0;
 
 static double width_of(const strip *s) {
@@ -243,8 +244,8 @@ static const double *stress_yy(deck_case *c, double *values) {
   return NULL;
 }
 
-/* In a uniform strain a free particle has the stress of the solid, and a tied one none rather than that
-   of the half of its bonds. */
+/* In a uniform strain a free particle has the stress of the solid, and a tied one none rather than
+   that of the half of its bonds. */
 static void tied_particles_show_no_stress(void **state) {
   (void)state;
   const strip s = {8, 0.12, 0.06, 10e-3, MICROPOLAR, 0};
@@ -562,8 +563,8 @@ static void step_is_near(const strip *s, double part) {
   deck_case_close(&c);
 }
 
-/* A lattice that is much stiffer, and one that is much softer than the mesh, whose own limits say little
-   of the nodes between. */
+/* A lattice that is much stiffer, and one that is much softer than the mesh, whose own limits say
+   little of the nodes between. */
 static void the_step_is_near_the_longest(void **state) {
   (void)state;
   static const char *const laws[] = {MICROPOLAR, "model = 'elastic_micropolar' E = 30e11 nu = 0.2",
@@ -574,8 +575,8 @@ static void the_step_is_near_the_longest(void **state) {
   }
 }
 
-/* Bonds of particles that lie inside a mesh and give it little mass pull at nodes that have little of
-   their own: faster than all that moves in the lattice or in the mesh alone. */
+/* Bonds of particles that lie inside a mesh and give it little mass pull at nodes that have little
+   of their own: faster than all that moves in the lattice or in the mesh alone. */
 static void light_nodes_limit_the_step(void **state) {
   (void)state;
   const strip s = {5, 0.04, 0.02, 5e-3, MICROPOLAR, 0};

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "runtime/simulation/run_link.h"
+#include "runtime/parts/run_link.h"
 #include "runtime/simulation/simulation_state.h"
 #include "tests/generator/command_tools.h"
 #include "tests/runtime/hand_over.h"

@@ -1,5 +1,6 @@
-/* Laws whose return or whose strain along z is not found: the run stops and names the point, its states
-   and the line of the law, and writes a path that shows it; `check` and `drive` say so, too. */
+/* Laws whose return or whose strain along z is not found: the run stops and names the point, its
+   states and the line of the law, and writes a path that shows it; `check` and `drive` say so,
+   too. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "runtime/analysis/bar_force.h"
-#include "runtime/simulation/run_link.h"
+#include "runtime/parts/run_link.h"
 #include "runtime/simulation/simulation_state.h"
 #include "tests/verification/case.h"
 #include "tests/verification/long_bar.h"

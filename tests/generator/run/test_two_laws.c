@@ -11,10 +11,10 @@
 
 #include "generator/ir/random_values.h"
 #include "runtime/interaction/joint.h"
+#include "runtime/parts/ledger.h"
 #include "runtime/result/result_fields.h"
 #include "runtime/result/result_file.h"
 #include "runtime/result/result_read.h"
-#include "runtime/simulation/ledger.h"
 #include "tests/generator/command_tools.h"
 #include "tests/runtime/hand_over.h"
 #include "tests/runtime/same_runs.h"

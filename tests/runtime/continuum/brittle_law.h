@@ -1,5 +1,5 @@
-/* Hooke's law in plane stress whose points fail, for good, at a largest principal strain: parameters E,
-   nu, rho, eps_u. */
+/* Hooke's law in plane stress whose points fail, for good, at a largest principal strain:
+   parameters E, nu, rho, eps_u. */
 #ifndef PERILAT_TESTS_BRITTLE_LAW_H
 #define PERILAT_TESTS_BRITTLE_LAW_H
 

@@ -1,5 +1,5 @@
-/* A run with several laws by hand, one for each interaction of its deck, and one for all cracks that
-   grow. Include after cmocka.h. */
+/* A run with several laws by hand, one for each interaction of its deck, and one for all cracks
+   that grow. Include after cmocka.h. */
 #ifndef PERILAT_TESTS_LAWS_RUN_H
 #define PERILAT_TESTS_LAWS_RUN_H
 

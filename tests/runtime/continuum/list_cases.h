@@ -1,5 +1,5 @@
-/* Meshes of lists for tests: a square of n x n cells whose inner nodes are moved, of triangles of 3 or 6
-   nodes or of quadrilaterals. */
+/* Meshes of lists for tests: a square of n x n cells whose inner nodes are moved, of triangles of 3
+   or 6 nodes or of quadrilaterals. */
 #ifndef PERILAT_TESTS_LIST_CASES_H
 #define PERILAT_TESTS_LIST_CASES_H
 

@@ -1,5 +1,5 @@
-/* Cells that die as all of their points fail: what they stored is booked, their nodes go on, results
-   tell; threads, resuming, and a law beside that does not fail. */
+/* Cells that die as all of their points fail: what they stored is booked, their nodes go on,
+   results tell; threads, resuming, and a law beside that does not fail. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
-/* Several laws in one mesh: whose a cell is, the same law by both ways side by side, closed forms of
-   bars of two materials, ledgers, threads, resuming, cracks beside laws that are not linear. */
+/* Several laws in one mesh: whose a cell is, the same law by both ways side by side, closed forms
+   of bars of two materials, ledgers, threads, resuming, cracks beside laws that are not linear. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,6 +10,7 @@
 #include "laws_run.h"
 #include "runtime/continuum/cell_laws.h"
 #include "runtime/continuum/cells.h"
+#include "runtime/continuum/cells_engine.h"
 #include "runtime/continuum/tip_laws.h"
 #include "softening_law.h"
 
@@ -147,6 +148,13 @@ static void both_ways_agree_side_by_side(void **state) {
   small_close(&a.r);
 }
 
+/* What the engine says of the second law in the state observed last. */
+static void check_stored_by(const laws_run *c) {
+  const double stored = cells_stored_by(c->r.simulation->bodies[0].laws[1].state),
+               last = small_last(&c->r, "plate.right/stored");
+  assert_true(stored > 0 && fabs(stored / last - 1) < 1e-12);
+}
+
 /* Whichever of the two is asked point by point. */
 static void each_law_knows_what_it_stores(void **state) {
   (void)state;
@@ -162,6 +170,9 @@ static void each_law_knows_what_it_stores(void **state) {
     laws_go(&c, linear, decks[k]);
     agree(&a, &b, "plate.right/stored", 1e-10);
     agree(&a, &c, "plate.right/stored", 1e-10);
+    check_stored_by(&a);
+    check_stored_by(&b);
+    check_stored_by(&c);
     small_close(&a.r);
     small_close(&b.r);
     small_close(&c.r);

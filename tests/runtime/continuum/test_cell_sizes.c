@@ -1,5 +1,5 @@
-/* Whether the cells of a mesh are of sizes that a law holds for: bounds, open and closed; whose cells
-   count; elements and element-free cells; cells whose sides differ. */
+/* Whether the cells of a mesh are of sizes that a law holds for: bounds, open and closed; whose
+   cells count; elements and element-free cells; cells whose sides differ. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -13,6 +13,7 @@
 #include "runtime/continuum/tips.h"
 #include "runtime/deck/group_mesh.h"
 #include "runtime/filling/mesh_rows.h"
+#include "runtime/interaction/sweep.h"
 #include "runtime/mesh/node_layout.h"
 #include "tests/runtime/hand_over.h"
 #include "tests/runtime/small_run.h"

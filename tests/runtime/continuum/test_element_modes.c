@@ -1,6 +1,6 @@
 /* Mean dilatation and hourglass modes of elements: both ways to the forces agree, linear fields are
-   exact, ranks and energies of a single element, a membrane that hardly changes its volume, ledgers,
-   threads, resuming, cells that die. */
+   exact, ranks and energies of a single element, a membrane that hardly changes its volume,
+   ledgers, threads, resuming, cells that die. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -382,8 +382,8 @@ static void a_membrane_does_not_lock(void **state) {
 #define MIXED PLATE("gauss = 2 dilatation = 'mean'")
 #define SOFT  MIXED "&material mesh = 'plate' model = 'softening' k = 3e-4 /\n"
 
-/* After the first step of an element at rest u_x = a x y dt: in a gauge the dilatation is that of the
-   middle, half of the difference in either strain. */
+/* After the first step of an element at rest u_x = a x y dt: in a gauge the dilatation is that of
+   the middle, half of the difference in either strain. */
 static void gauges_see_the_mean_dilatation(void **state) {
   (void)state;
   const double a = 1, dt = 1e-6, y = 0.07, shift = 0.5 * a * dt * (0.05 - y);

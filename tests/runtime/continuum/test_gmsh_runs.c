@@ -1,5 +1,5 @@
-/* Runs of meshes from Gmsh: regions of physical groups, loads on edges, materials of groups, the same
-   bits for any number of threads; and decks that do not suit their file. */
+/* Runs of meshes from Gmsh: regions of physical groups, loads on edges, materials of groups, the
+   same bits for any number of threads; and decks that do not suit their file. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -15,8 +15,8 @@
 #include "runtime/simulation/frame_field.h"
 #include "tests/runtime/small_run.h"
 
-/* A square of 1 mm, its quadrant at the upper right an arc of radius 1 mm about (0, 0): two triangles of
-   6 nodes. */
+/* A square of 1 mm, its quadrant at the upper right an arc of radius 1 mm about (0, 0): two
+   triangles of 6 nodes. */
 static const char disc[] =
     "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
     "$PhysicalNames\n4\n1 1 \"base\"\n1 2 \"arc\"\n2 1 \"lower\"\n2 2 "
@@ -244,8 +244,9 @@ static void open_two(small_run *r, const pl_law *const law[2], const char *msh, 
   assert_non_null(r->simulation);
 }
 
-/* Two squares of h = 1 mm apart from each other, nu = 0: the highest modes of each are uniform strains,
-   omega^2 = 4 E/(rho h^2). Of the longest step, 2/omega of the stiffer one, 0.98 is taken. */
+/* Two squares of h = 1 mm apart from each other, nu = 0: the highest modes of each are uniform
+   strains, omega^2 = 4 E/(rho h^2). Of the longest step, 2/omega of the stiffer one, 0.98 is
+   taken. */
 static const char squares[] =
     TWO_SURFACES "$Nodes\n1 8 1 8\n2 1 0 8\n1 2 3 4 5 6 7 8\n0 0 0 1 0 0 1 1 0 0 1 0\n"
                  "3 0 0 4 0 0 4 1 0 3 1 0\n$EndNodes\n"
@@ -314,7 +315,8 @@ static void each_law_resists_its_own_hourglass(void **state) {
   assert_true(fabs(ratio - 10) < 0.2); /* as E: after the same way, nearly */
 }
 
-/* A square and a rectangle three times as wide side by side: at nodes of both, laws count by area. */
+/* A square and a rectangle three times as wide side by side: at nodes of both, laws count by
+   area. */
 static void laws_share_nodes_by_area(void **state) {
   (void)state;
   static const char sides[] =
@@ -337,8 +339,8 @@ static void laws_share_nodes_by_area(void **state) {
   small_close(&r);
 }
 
-/* A fan of four triangles about a node that all begin with: the second and the fourth are weak. Pulled
-   alike, these two die, and the node's bits are theirs. */
+/* A fan of four triangles about a node that all begin with: the second and the fourth are weak.
+   Pulled alike, these two die, and the node's bits are theirs. */
 static void two_cells_of_one_node_die(void **state) {
   (void)state;
   static const char fan[] =

@@ -1,5 +1,5 @@
-/* Meshes of lists with linear laws: patch tests, order of convergence, the matrix beside points, the cell
-   that holds a place, the highest frequency, what is loose. */
+/* Meshes of lists with linear laws: patch tests, order of convergence, the matrix beside points,
+   the cell that holds a place, the highest frequency, what is loose. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -157,8 +157,8 @@ static void patches_are_exact(void **state) {
   }
 }
 
-/* Bending, sigma_xx = y: displacements are quadratic, and triangles of 6 nodes with straight sides have
-   them. */
+/* Bending, sigma_xx = y: displacements are quadratic, and triangles of 6 nodes with straight sides
+   have them. */
 static void bending(const double at[2], double u[2], double gradient[2][2]) {
   u[0] = at[0] * at[1];
   u[1] = -0.5 * at[0] * at[0] - 0.5 * 0.3 * at[1] * at[1];
@@ -179,9 +179,9 @@ static void quadratic_triangles_bend_exactly(void **state) {
   close_case(&s);
 }
 
-/* A square that hardly changes its volume and is bent: quadrilaterals lock unless they take the mean
-   dilatation. The energy over that of the exact field, which is a bound from below: displacements are
-   prescribed all around. */
+/* A square that hardly changes its volume and is bent: quadrilaterals lock unless they take the
+   mean dilatation. The energy over that of the exact field, which is a bound from below:
+   displacements are prescribed all around. */
 static void bent_without_volume(const double at[2], double u[2], double gradient[2][2]) {
   u[0] = at[0] * at[1];
   u[1] = -0.5 * at[0] * at[0] - 0.5 * at[1] * at[1];
@@ -213,8 +213,8 @@ static void the_mean_dilatation_unlocks(void **state) {
 
 /* --- convergence ------------------------------------------------------------------------------ */
 
-/* In balance without forces: of the complex potentials phi = e^z, psi = 0 (Kolosov and Muskhelishvili),
-   2 mu (u + i v) = kappa phi - z conj(phi'). */
+/* In balance without forces: of the complex potentials phi = e^z, psi = 0 (Kolosov and
+   Muskhelishvili), 2 mu (u + i v) = kappa phi - z conj(phi'). */
 static void of_potentials(const double at[2], double u[2], double gradient[2][2]) {
   const double nu = 0.3, mu = 1 / (2 * (1 + nu)), kappa = (3 - nu) / (1 + nu), x = at[0], y = at[1],
                e = exp(x), c = cos(y), s = sin(y), by = 1 / (2 * mu);
@@ -255,8 +255,8 @@ static double draw(int k) {
   return random_unit(random_mix((uint64_t)k)) - 0.5;
 }
 
-/* Forces by points, of a third of the cells and of the others one by one, are those of the matrix; the
-   third has another law. */
+/* Forces by points, of a third of the cells and of the others one by one, are those of the matrix;
+   the third has another law. */
 static void points_and_matrix_agree(void **state) {
   (void)state;
   static const double values[2][3] = {{30e9, 0.2, 2400}, {4e9, 0.35, 2400}};
@@ -332,8 +332,8 @@ static void cells_of_places_are_found(void **state) {
 }
 
 /* Masses sum to that of the square; all are positive. */
-/* Parallel cells that lie aslant, 4000 times as long as wide: boxes of their mean side would hold most
-   of them each. */
+/* Parallel cells that lie aslant, 4000 times as long as wide: boxes of their mean side would hold
+   most of them each. */
 static void slivers_lie_in_few_boxes(void **state) {
   (void)state;
   enum { SLIVERS = 400 };
@@ -380,8 +380,8 @@ static void masses_are_those_of_the_body(void **state) {
   }
 }
 
-/* A free square with E = 1, nu = 0, t = 1/2 and a mass of 1 at each corner: the highest modes are uniform
-   strains, u = +-1/2 at the corners, for which u K u = t E = 1/2 and u M u = 1. */
+/* A free square with E = 1, nu = 0, t = 1/2 and a mass of 1 at each corner: the highest modes are
+   uniform strains, u = +-1/2 at the corners, for which u K u = t E = 1/2 and u M u = 1. */
 static void the_highest_frequency_is_known(void **state) {
   (void)state;
   list_mesh l;

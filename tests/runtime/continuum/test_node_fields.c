@@ -104,8 +104,9 @@ static void linear_fields_are_exact(void **state) {
   }
 }
 
-/* u_x = a x y in elements with the mean dilatation: that of an element, a y, is a y_middle instead, and
-   the half of the difference is in either strain. Around a node inside differences cancel out. */
+/* u_x = a x y in elements with the mean dilatation: that of an element, a y, is a y_middle instead,
+   and the half of the difference is in either strain. Around a node inside differences cancel
+   out. */
 static void the_mean_dilatation_shows(void **state) {
   (void)state;
   const double a = 1e-3, E = 30e9, nu = 0.2, height = 0.5;

@@ -134,8 +134,8 @@ static void the_scaled_diagonal_is_that_of_the_paper(void **state) {
   }
 }
 
-/* A side's node moved along its side: the Jacobian is 0 at the corner when it stands a quarter of the
-   side from there, and negative beyond. */
+/* A side's node moved along its side: the Jacobian is 0 at the corner when it stands a quarter of
+   the side from there, and negative beyond. */
 static void unsound_elements_are_known(void **state) {
   (void)state;
   double u[2], moved[6][2] = {{0, 0}, {1, 0}, {0, 1}, {0.26, 0}, {0.5, 0.5}, {0, 0.5}};

@@ -34,8 +34,8 @@ static void end_reading(reading *r) {
   arena_free(r->memory);
 }
 
-/* Two triangles and a quadrilateral, 0 .. 3 x 0 .. 1; the quadrilateral's surface is clockwise. Node 9
-   is in no cell. */
+/* Two triangles and a quadrilateral, 0 .. 3 x 0 .. 1; the quadrilateral's surface is clockwise.
+   Node 9 is in no cell. */
 #define HEAD "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
 #define NAMES                                                                                      \
   "$PhysicalNames\n4\n0 3 \"foot\"\n1 2 \"right edge\"\n2 1 \"left part\"\n2 5 \"right part\"\n"   \
@@ -114,7 +114,8 @@ static void version_4_0_is_read(void **state) {
   end_reading(&r);
 }
 
-/* Of nodes with their places along lines and in surfaces (Mesh.SaveParametric), which are not asked for. */
+/* Of nodes with their places along lines and in surfaces (Mesh.SaveParametric), which are not asked
+   for. */
 static void parametric_nodes_are_read(void **state) {
   (void)state;
   reading r;

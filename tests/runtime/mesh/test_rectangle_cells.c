@@ -1,4 +1,5 @@
-/* Cells by their edges: strains of a field that is bilinear, work of forces, cells beside the last. */
+/* Cells by their edges: strains of a field that is bilinear, work of forces, cells beside the
+   last. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -14,7 +14,7 @@
 #include "dsl/base/arena.h"
 #include "runtime/deck/deck_read.h"
 #include "runtime/interaction/sweep.h"
-#include "runtime/simulation/run_body.h"
+#include "runtime/parts/run_body.h"
 #include "runtime/simulation/simulation.h"
 #include "runtime/simulation/simulation_save.h"
 #include "tests/runtime/elastic_law.h"

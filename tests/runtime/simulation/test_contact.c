@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "runtime/simulation/run_contact.h"
+#include "runtime/parts/run_contact.h"
 #include "runtime/simulation/simulation_save.h"
 #include "tests/runtime/same_runs.h"
 #include "tests/runtime/small_bodies.h"

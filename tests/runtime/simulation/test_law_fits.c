@@ -7,7 +7,8 @@
 
 #include <cmocka.h>
 
-#include "runtime/simulation/law_fits.h"
+#include "runtime/parts/law_fits.h"
+#include "runtime/simulation/fields_fit.h"
 #include "tests/runtime/built_rows.h"
 #include "tests/runtime/elastic_law.h"
 #include "tests/runtime/family_law.h"
@@ -128,14 +129,14 @@ static void fields_are_named_once_in_a_result(void **state) {
   built_rows b;
   read_deck(&b, PLANE(NEAREST));
   law.from = b.deck->interactions;
-  assert_true(law_fits_result(b.deck, &bar, fields + 4, 3, &b.said));
-  assert_true(law_fits_result(b.deck, &bar, fields, 1, &b.said));
+  assert_true(fields_fit_result(b.deck, &bar, fields + 4, 3, &b.said));
+  assert_true(fields_fit_result(b.deck, &bar, fields, 1, &b.said));
   assert_int_equal(b.said.count, 0);
   const frame_field parameter[] = {{.name = "c", .kind = "other", .of_law = true}, fields[5]};
-  assert_false(law_fits_result(b.deck, &bar, parameter, 2, &b.said)); /* stands in frames, too */
+  assert_false(fields_fit_result(b.deck, &bar, parameter, 2, &b.said)); /* stands in frames, too */
   diag_clear(&b.said);
   diag_begin(&b.said, &b.sources);
-  assert_false(law_fits_result(b.deck, &bar, fields, 7, &b.said));
+  assert_false(fields_fit_result(b.deck, &bar, fields, 7, &b.said));
   assert_int_equal(b.said.count, 3);
   static const char *const refused[] = {"`velocity` of", "`time` of", "`c` of"};
   for (int k = 0; k < 3; k++) {

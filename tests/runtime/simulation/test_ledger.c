@@ -7,9 +7,9 @@
 
 #include <cmocka.h>
 
-#include "runtime/interaction/sweep.h"
 #include "runtime/filling/lattice.h"
-#include "runtime/simulation/ledger.h"
+#include "runtime/interaction/sweep.h"
+#include "runtime/parts/ledger.h"
 #include "tests/runtime/simulation/chain.h"
 
 typedef struct balance {

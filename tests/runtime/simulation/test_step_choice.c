@@ -9,7 +9,7 @@
 
 #include <math.h>
 
-#include "runtime/simulation/step_choice.h"
+#include "runtime/parts/step_choice.h"
 #include "tests/runtime/built_rows.h"
 #include "tests/runtime/elastic_law.h"
 

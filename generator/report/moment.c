@@ -1,0 +1,14 @@
+#include "generator/report/moment.h"
+
+#include <math.h>
+#include <stdio.h>
+
+const char *moment(const run *r, double time, char text[MOMENT_TEXT]) {
+  const int increments = r->deck->relaxation.increments;
+  if (increments > 0)
+    snprintf(text, MOMENT_TEXT, "increment %ld of %d",
+             lround(time / r->deck->simulation.end_time * increments), increments);
+  else
+    snprintf(text, MOMENT_TEXT, "t = %.5g ms", 1e3 * time);
+  return text;
+}

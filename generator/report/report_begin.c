@@ -1,0 +1,118 @@
+#include "generator/report/report_begin.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <strings.h>
+
+#include "generator/report/print_quantity.h"
+#include "generator/report/report_bodies.h"
+#include "generator/report/report_laws.h"
+#include "generator/report/report_mesh.h"
+
+/* "mass       0.2 kg on 3 particles of `tip`" */
+static void announce_point_mass(const run *r, int index) {
+  long particles;
+  const double mass = simulation_point_mass(r->simulation, index, &particles);
+  printf("  mass       %.6g kg on %ld particle%s of `%s`\n", mass, particles,
+         particles == 1 ? "" : "s", r->deck->point_masss[index].region);
+}
+
+static bool is_written(const deck_item *item, const char *key) {
+  for (int k = 0; k < item->key_count; k++)
+    if (strcasecmp(item->keys[k].name, key) == 0) return true;
+  return false;
+}
+
+/* "load       -42 kN/m on 1.2 m of `top`, 60 particles: -50.4 kN along y" */
+static void announce_line_load(const run *r, int force) {
+  const deck_force *f = &r->deck->forces[force];
+  const int region = deck_find_region(r->deck, f->region);
+  const int lattice = deck_find_lattice(r->deck, r->deck->regions[region].lattice);
+  const int dimensions = simulation_rows(r->simulation, lattice)->dimensions;
+  long particles;
+  const double length = simulation_loaded_length(r->simulation, force, &particles);
+  const bool known = is_written(&f->item, "per_length");
+  fputs("  load      ", stdout);
+  if (known) print_quantity(" ", f->force.value, "N/m");
+  printf("%s %.6g m of `%s`, %ld particles", known ? " on" : " by length on", length, f->region,
+         particles);
+  if (known) print_quantity(": ", f->force.value * length, "N");
+  printf(" along %s\n", deck_component_name(dimensions, f->component));
+}
+
+/* Loads come in the deck's time, which has nothing to do with that of the steps. */
+static void announce_increments(const run *r) {
+  const deck_relaxation *k = &r->deck->relaxation;
+  if (k->solved) {
+    printf("  static     %d increment%s, each the solution of K u = F\n", k->increments,
+           k->increments == 1 ? "" : "s");
+    return;
+  }
+  printf(
+      "  increments %d, quasi-static, each until the unbalanced force is %.4g of the reactions or "
+      "loads, or for %ld steps\n",
+      k->increments, k->tolerance, (long)k->most_steps);
+  fputs("  steps      of ", stdout);
+}
+
+static double hertz(double omega) {
+  return omega / (2 * M_PI);
+}
+
+/* What the deck gives by frequencies. */
+static void announce_frequencies(const run *r) {
+  const deck *k = simulation_deck(r->simulation);
+  if (k->simulation.periods > 0) {
+    const double frequency = hertz(simulation_omega(r->simulation, 1));
+    printf("  periods    %.6g of %.6g ms, mode 1 at %.6g Hz\n", k->simulation.periods,
+           1e3 / frequency, frequency);
+  }
+  for (int n = 0; n < k->damping_count; n++) {
+    const deck_damping *b = &k->dampings[n];
+    if (b->ratio > 0)
+      printf("  damping    %.4g of the critical one of mode %d at %.6g Hz: rate %.6g 1/s\n",
+             b->ratio, b->mode, hertz(simulation_omega(r->simulation, b->mode)), b->rate);
+  }
+}
+
+/* "0.3061 us: 0.25 of the stable step 1.224 us (rotation mode rules)" */
+static void announce_step(const run *r) {
+  const step_limit *limit = simulation_step_limit(r->simulation);
+  printf("%.4g us: %.3g of the stable step %.4g us (%s mode%s", 1e6 * limit->step,
+         limit->step / limit->limit, 1e6 * limit->limit, limit->mode,
+         limit->at_surface ? " at a surface" : "");
+  if (r->deck->lattice_count > 1)
+    printf(" of %s", r->deck->lattices[simulation_ruling_body(r->simulation)].name);
+  puts(" rules)");
+}
+
+void announce(const run *r) {
+  const deck_simulation *s = &simulation_deck(r->simulation)->simulation;
+  printf("%s\n", s->title ? s->title : r->options->deck_path);
+  for (int k = 0; k < r->deck->lattice_count; k++) {
+    if (deck_lattice_is_mesh(&r->deck->lattices[k])) {
+      announce_mesh(r, k);
+      continue;
+    }
+    announce_body(r, k);
+    announce_ties(r, k);
+    announce_notches(r, k);
+    announce_laws(r, k);
+  }
+  for (int p = 0; p < r->deck->point_mass_count; p++)
+    announce_point_mass(r, p);
+  for (int f = 0; f < r->deck->force_count; f++)
+    if (r->deck->forces[f].per_length) announce_line_load(r, f);
+  if (r->deck->relaxation.increments > 0)
+    announce_increments(r);
+  else
+    printf("  time       %.6g ms in %ld steps of ", 1e3 * s->end_time,
+           simulation_step_count(r->simulation));
+  if (!r->deck->relaxation.solved) announce_step(r);
+  announce_frequencies(r);
+  printf("  machine    %d thread%s, %.1f MiB\n", simulation_threads(r->simulation),
+         simulation_threads(r->simulation) == 1 ? "" : "s",
+         simulation_memory(r->simulation) / 1048576.0);
+  printf("  result     %s\n", r->result_path);
+  fflush(stdout);
+}

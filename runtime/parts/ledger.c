@@ -1,0 +1,118 @@
+#include "runtime/parts/ledger.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "dsl/base/elementary.h"
+#include "runtime/continuum/cells_engine.h"
+#include "runtime/interaction/family.h"
+
+const char *const ledger_names[LEDGER_COUNT] = {
+#define X(code, name, words) name,
+    LEDGER_TERMS(X)
+#undef X
+};
+const char *const ledger_words[LEDGER_COUNT] = {
+#define X(code, name, words) words,
+    LEDGER_TERMS(X)
+#undef X
+};
+
+const char *ledger_unchecked(const pl_law *law, bool kept) {
+  if (!law->stores) return "the law does not say all that its bonds store";
+  if (sweep_knows_losses(law, kept)) return NULL;
+  return sweep_knows_losses(law, true)
+             ? "what a law of families loses is kept with `losses = .true.` in &output alone"
+             : "the law does not say what it takes";
+}
+
+void ledger_add_law(ledger_laws *of, const pl_law *law, bool kept) {
+  if (!of->unchecked) of->unchecked = ledger_unchecked(law, kept);
+  of->families = of->families || law->kind == PL_STATE;
+  of->silent = of->silent || !law->stores;
+  of->reads_rates = of->reads_rates || law->reads_rates;
+}
+
+/* What the laws have taken by states and damage; where some of families do not say it, all that is
+   missing. */
+static double taken(const ledger *g, const ledger_laws *of, const body_totals *t, double lost) {
+  return of->unchecked && of->families ? lost - g->lost : t->dissipated_state;
+}
+
+static bool is_sound(const ledger *g, const ledger_laws *of, double step, const body_totals *t,
+                     const load_look *look, double omega) {
+  const double phase = step * omega, part = pl_fmin(0.5 * phase * phase, 1);
+  if (of->silent || (of->families && of->reads_rates)) return true;
+  return !(t->free + look->free + part * (t->stored + look->stored) <
+           -1e-6 * g->largest); /* numbers that are none are found by the next step */
+}
+
+static double imbalance(const ledger *g, const ledger_laws *of, const double *terms) {
+  const double held = terms[LEDGER_KINETIC] + terms[LEDGER_STORED];
+  if (of->unchecked) return NAN;
+  return terms[LEDGER_EXTERNAL] - (held - g->initial) - terms[LEDGER_DISSIPATED_DAMAGE] -
+         terms[LEDGER_DISSIPATED_DAMPING];
+}
+
+double ledger_stored_by(const sweep *law) {
+  double sum = 0;
+  if (law->law->kind == PL_CONTINUUM) return law->law->stores ? cells_stored_by(law) : NAN;
+  for (int row = 0; row < law->lattice->row_count; row++)
+    sum += family_stored_in_row(law, row);
+  return law->law->stores ? sum : NAN;
+}
+
+double ledger_taken_by(const sweep *law) {
+  double sum = 0;
+  if (!law->lost_state) return law->law->field_count > 0 ? NAN : 0;
+  for (long q = 0; q < law->lattice->size; q++)
+    sum += law->dissipated_state[q] + law->lost_state[q];
+  return sum;
+}
+
+void ledger_sample_link(ledger *g, const ledger_laws *of, const body *state, double work,
+                        double terms[LEDGER_COUNT]) {
+  const body_totals t = body_sum(state);
+  const double lost = work - t.stored;
+  if (!g->begun) {
+    *g = (ledger){.begun = 1, .lost = lost, .pending = t.dissipated_rate};
+    g->initial = t.stored + taken(g, of, &t, lost);
+  }
+  terms[LEDGER_KINETIC] = 0;
+  terms[LEDGER_STORED] = t.stored;
+  terms[LEDGER_EXTERNAL] = work;
+  terms[LEDGER_DISSIPATED_DAMPING] = t.dissipated_rate - g->pending;
+  terms[LEDGER_DISSIPATED_DAMAGE] = taken(g, of, &t, lost);
+  terms[LEDGER_IMBALANCE] = imbalance(g, of, terms);
+}
+
+void ledger_sample_contact(ledger *g, double stored, double work, double terms[LEDGER_COUNT]) {
+  if (!g->begun) *g = (ledger){.begun = 1, .initial = stored};
+  memset(terms, 0, LEDGER_COUNT * sizeof *terms);
+  terms[LEDGER_STORED] = stored;
+  terms[LEDGER_EXTERNAL] = work;
+  terms[LEDGER_IMBALANCE] = work - (stored - g->initial);
+}
+
+bool ledger_sample(ledger *g, const ledger_laws *of, const body *state, const loads *l,
+                   const load_look *look, double omega, double terms[LEDGER_COUNT]) {
+  const body_totals t = body_sum(state);
+  const load_sums s = load_steps_total(l);
+  const double damping = t.dissipated_rate + t.dissipated + s.dissipated + look->dissipated;
+  const double kinetic = t.kinetic + look->kinetic, stored = t.stored + look->stored,
+               held = kinetic + stored;
+  const double lost = t.internal + s.internal + look->internal - t.stored;
+  if (!g->begun) {
+    *g = (ledger){.begun = 1, .lost = lost, .pending = damping};
+    g->initial = held + taken(g, of, &t, lost); /* what breaks in the first state was held before */
+  }
+  terms[LEDGER_KINETIC] = kinetic;
+  terms[LEDGER_STORED] = stored;
+  terms[LEDGER_EXTERNAL] = s.work + look->work + t.gravity + t.outer;
+  terms[LEDGER_DISSIPATED_DAMPING] = damping - g->pending;
+  terms[LEDGER_DISSIPATED_DAMAGE] = taken(g, of, &t, lost);
+  terms[LEDGER_IMBALANCE] = imbalance(g, of, terms);
+  g->largest = pl_fmax(pl_fmax(g->largest, fabs(kinetic)),
+                       pl_fmax(fabs(stored), fabs(terms[LEDGER_EXTERNAL])));
+  return is_sound(g, of, state->time_step, &t, look, omega);
+}
