@@ -19,6 +19,6 @@ draw() { # ending of the names, picture, title
 draw ""         thesis.png    "Prism in compression, law as published"
 draw _objective objective.png "Prism in compression, objective profile"
 [[ -s rot0_continuum.h5 ]] || "$perilat" run rot0_continuum.nml
-"$perilat" plot rot0_continuum.h5 --map damage_now --factor 20 -o rot0_continuum_damage.png
+"$perilat" plot rot0_continuum.h5 --map D --frame 22 --factor 20 -o rot0_continuum_damage.png
 "$perilat" plot rot0.h5 rot0_continuum.h5 --x displacement --y load --title "Prism in compression" \
   --label lattice --label "finite elements, Mazars" --line "f_c A = 620.6 kN" -o beside.png

@@ -20,7 +20,7 @@ beside() { # size, lattice, theory
     [[ -s $1_$law.h5 ]] || "$perilat" run "$1_$law.nml"
   done
   "$perilat" plot "$1_continuum.h5" --map damage_t --factor 50 -o "$1_continuum_damage.png"
-  "$perilat" plot "$1_brittle.h5" --map crack_opening --factor 50 -o "$1_brittle_crack.png"
+  "$perilat" plot "$1_brittle.h5" --map crack_opening --frame 20 --factor 50 -o "$1_brittle_crack.png"
   "$perilat" plot "$2.h5" "$1_continuum.h5" "$1_brittle.h5" --x displacement --y load --title "Dog-bone ${1^}" \
     --label lattice --label "plastic damage" --label "brittle cracking" --line "f_t A = $3 kN" -o "$1_beside.png"
 }

@@ -18,7 +18,7 @@ done
 for deck in rot0_continuum rot0_brittle; do
   [[ -s $deck.h5 ]] || "$perilat" run "$deck.nml"
 done
-"$perilat" plot rot0_continuum.h5 --map damage_now --factor 50 -o rot0_continuum_damage.png
+"$perilat" plot rot0_continuum.h5 --map D --factor 50 -o rot0_continuum_damage.png
 "$perilat" plot rot0_brittle.h5 --map crack_opening --frame 20 --factor 50 -o rot0_brittle_crack.png
 "$perilat" plot rot0.h5 rot0_continuum.h5 rot0_brittle.h5 --x displacement --y load --title "Prism in tension" \
   --label lattice --label "finite elements, Mazars" --label "finite elements, brittle cracking" \

@@ -14,8 +14,6 @@ static const double SIDES_TOLERANCE = 1e-9; /* of the largest value of the field
 static const double JUMP_TOLERANCE =
     1e-6; /* of the largest force, between two states that are nearly one */
 static const double GAIN_TOLERANCE = 1e-6; /* of a cycle's peak energy */
-/* Of laws that are conservative only while whole, only a gain beyond this share is an error. */
-static const double GAIN_OF_NONCONSERVATIVE = 0.1;
 
 /* --- one leg of a history --------------------------------------------------------------------- */
 

@@ -11,9 +11,6 @@
 #include "generator/ir/random_values.h"
 
 static const double GAIN_TOLERANCE = 1e-6; /* of the path's peak energy */
-/* A law that is conservative only while whole can be taken round a loop at any damage, again and
-   again: of such laws only a gain beyond this share is an error. */
-static const double GAIN_OF_NONCONSERVATIVE = 0.1;
 
 enum { CORNERS = 9, LEGS = CORNERS - 1 };
 

@@ -1,42 +1,32 @@
 #include "generator/drive/explain_bad.h"
 
 #include <math.h>
-#include <stdlib.h>
 
-#include "generator/drive/explain_point.h"
+#include "generator/drive/explain_values.h"
 #include "generator/interpreter/comparison.h"
 #include "generator/lower/law_inputs.h"
 
 /* The largest of the law's results, or -1 when all are zero. */
-static int largest_result(const kernel_plan *p, const ir_node *named, int count,
-                          double *const *values) {
+static int largest_result(const kernel_plan *p, const explained *e) {
   const segment *states = plan_segment(p, PROGRAM_STATES);
   int largest = -1;
-  for (int k = 0; k < count; k++)
+  for (int k = 0; k < e->count; k++)
     for (int r = 0; r < states->root_count && r < PL_STATE_RESULTS; r++)
-      if (states->roots[r].node == named[k] &&
-          fabs(values[k][0]) > (largest < 0 ? 0 : fabs(values[largest][0])))
+      if (states->roots[r].node == e->named[k] &&
+          fabs(e->values[k][0]) > (largest < 0 ? 0 : fabs(e->values[largest][0])))
         largest = k;
   return largest;
 }
 
 /* The first that is not finite; when all are, the force or moment that is too large. */
 static void report(const kernel_plan *p, const interpreter_inputs *in, FILE *out) {
-  int count;
-  ir_node *named = explain_named_values(p, PROGRAM_STATES, &count);
-  double **values = planes_new(count + 1, 1);
-  interpreter *program = interpreter_new(p->graph, named, count);
-  interpreter_run(program, in, 1, values);
-  int k = 0;
-  while (k < count && isfinite(values[k][0]))
-    k++;
+  explained e = explain_values(p, PROGRAM_STATES, in);
   char what[64] = "stops being finite";
-  if (k == count && (k = largest_result(p, named, count, values)) >= 0)
-    snprintf(what, sizeof what, "is %.6g (SI)", values[k][0]);
-  if (k >= 0) explain_line(p, named[k], what, out);
-  interpreter_free(program);
-  planes_free(values, count + 1);
-  free(named);
+  int k = e.bad;
+  if (k == e.count && (k = largest_result(p, &e)) >= 0)
+    snprintf(what, sizeof what, "is %.6g (SI)", e.values[k][0]);
+  if (k >= 0) explain_line(p, e.named[k], what, out);
+  explained_free(&e);
 }
 
 void explain_bad(const kernel_plan *p, const double *parameters, const pl_bond_class *bonds,

@@ -4,31 +4,10 @@
 #include <stdlib.h>
 
 #include "dsl/base/arena.h"
-#include "generator/interpreter/comparison.h"
-#include "generator/ir/interpret.h"
+#include "generator/drive/explain_values.h"
 #include "generator/lower/lower.h"
 #include "generator/lower/lower_inputs.h"
 #include "generator/lower/point_inputs.h"
-
-ir_node *explain_named_values(const kernel_plan *p, program_task task, int *count) {
-  const ir *g = p->graph;
-  unsigned char *marks = segment_needed(g, plan_segment(p, task));
-  ir_node *named = must_calloc((size_t)ir_count(g) + 1, sizeof *named);
-  *count = 0;
-  for (ir_node n = 0; n < ir_count(g); n++)
-    if (marks[n] && ir_name(g, n) && !ir_is_sought(g, n) && ir_operation(g, n) != IR_INPUT &&
-        ir_where(g, n).end > 0)
-      named[(*count)++] = n;
-  free(marks);
-  return named;
-}
-
-void explain_line(const kernel_plan *p, ir_node n, const char *what, FILE *out) {
-  span where = ir_where(p->graph, n);
-  place at = source_place(p->law->sources, where.file, where.begin);
-  fprintf(out, "  %s:%d: the law's `%s` %s there\n", p->law->sources->items[where.file].name,
-          at.line, ir_name(p->graph, n), what);
-}
 
 /* Whether the value is a state of a flow that is solved for. */
 static bool is_returned(const kernel_plan *p, ir_node n) {
@@ -81,28 +60,19 @@ static bool report_slope(const kernel_plan *p, ir_node n, const interpreter_inpu
 }
 
 static bool report_point(const kernel_plan *p, const interpreter_inputs *in, FILE *out) {
-  int count;
-  ir_node *named = explain_named_values(p, PROGRAM_STEP, &count);
-  double **values = planes_new(count + 1, 1);
-  interpreter *program = interpreter_new(p->graph, named, count);
-  interpreter_run(program, in, 1, values);
-  int k = 0;
-  while (k < count && isfinite(values[k][0]))
-    k++;
+  explained e = explain_values(p, PROGRAM_STEP, in);
+  const bool bad = e.bad < e.count, flow = bad && is_returned(p, e.named[e.bad]);
   bool no_slope = false;
-  const bool flow = k < count && is_returned(p, named[k]);
-  if (k < count)
-    explain_line(p, named[k],
+  if (bad)
+    explain_line(p, e.named[e.bad],
                  flow ? "does not come back to its limit: the flow is not found"
                       : "stops being finite",
                  out);
   if (flow)
-    no_slope = report_slope(p, named[k], in, out);
-  else if (k == count && p->law->setting == SETTING_PLANE_STRESS)
+    no_slope = report_slope(p, e.named[e.bad], in, out);
+  else if (!bad && p->law->setting == SETTING_PLANE_STRESS)
     fputs("  no strain along z is found that leaves no stress there\n", out);
-  interpreter_free(program);
-  planes_free(values, count + 1);
-  free(named);
+  explained_free(&e);
   return no_slope;
 }
 

@@ -1,5 +1,4 @@
-/* The line of a law that first stops being finite at a point of a continuum; what lines are named
-   by. */
+/* The line of a law that first stops being finite at a point of a continuum. */
 #ifndef PERILAT_GENERATOR_EXPLAIN_POINT_H
 #define PERILAT_GENERATOR_EXPLAIN_POINT_H
 
@@ -19,11 +18,5 @@ typedef struct asked_point {
    too): no step is small enough for it. */
 bool explain_point(const kernel_plan *p, const double *parameters, const asked_point *at,
                    FILE *out);
-
-/* Named values that a program of one segment needs, in the order of evaluation; to be freed. An
-   unnamed one may be infinite and yet not matter: it may stand in a case that is not taken. */
-ir_node *explain_named_values(const kernel_plan *p, program_task task, int *count);
-/* "  FILE:LINE: the law's `NAME` WHAT there" */
-void explain_line(const kernel_plan *p, ir_node n, const char *what, FILE *out);
 
 #endif

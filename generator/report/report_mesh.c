@@ -18,7 +18,7 @@ static long count_set(const unsigned char *flags, int size) {
   return count;
 }
 
-/* "336 finite elements, 1362 element-free, 54 blended; 24 cut by holes, which take 60 nodes" */
+/* ": 336 finite elements, 54 blended, 1362 element-free; 24 cut by holes, which take 60 nodes" */
 static void print_cells(const mesh *m) {
   static const char *const words[] = {"absent", "finite elements", "blended", "element-free"};
   long count[4] = {0};
@@ -100,7 +100,7 @@ static int cells_of_law(const cells *c, int number) {
 }
 
 /* "law        elastic (elastic.plm): linear; waves of 3690 and 2334 m/s"; of several laws also
-   "in 336 cells of `steel`" */
+   "in 336 cells of steel" */
 static void announce_law(const run *r, int interaction, int number, const cells *c) {
   const pl_law *kernel = r->laws[interaction].law;
   const char *path = path_of(r, interaction);
@@ -116,7 +116,7 @@ static void announce_law(const run *r, int interaction, int number, const cells 
 }
 
 /* "crack      notch: 19.05 mm, grows by lefm; its tip is looked at every 42 us, a sample every
-   84" */
+   84 us" */
 static void announce_crack(const run *r, const tips *t, const deck_crack *k) {
   int count = 0;
   double length = 0;

@@ -16,7 +16,8 @@ static span option_text(const char *name, const char *text, diagnostics *d) {
 }
 
 static void name_after_file(measured *m) {
-  const char *slash = strrchr(m->table.path, '/'), *name = slash ? slash + 1 : m->table.path;
+  const char *slash = strrchr(m->table.file.path, '/'),
+             *name = slash ? slash + 1 : m->table.file.path;
   const char *dot = strrchr(name, '.');
   snprintf(m->label, sizeof m->label, "%.*s",
            (int)(dot && dot > name ? dot - name : (long)strlen(name)), name);
@@ -112,7 +113,7 @@ static bool read_band(measured *m, const char *band, const measured_axes *axes, 
 
 static bool has_rows(measured *m, span where, diagnostics *d) {
   if (m->table.rows > 0) return true;
-  diag_report(d, DIAG_BAD_VALUE, where, "`%s` holds no numbers", m->table.path);
+  diag_report(d, DIAG_BAD_VALUE, where, "`%s` holds no numbers", m->table.file.path);
   return false;
 }
 

@@ -167,7 +167,7 @@ static bool read_target(fit *f, int k, const study_row *row) {
 static bool find_table(fit *f, const target *t) {
   study_request *r = f->request;
   const char *columns;
-  text_table table = {.path = NULL};
+  text_table table = {.rows = 0};
   const bool good =
       text_table_read(&table, text_table_split(t->table.text, &columns), t->table.where, &r->said);
   text_table_free(&table);

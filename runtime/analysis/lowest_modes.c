@@ -6,9 +6,8 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/base/cholesky.h"
 #include "runtime/base/random_number.h"
-
-#include <cholmod.h>
 
 /* LAPACK: eigenvalues and vectors of a symmetric tridiagonal matrix, ascending. */
 void dstev_(const char *job, const int *n, double *diagonal, double *beside, double *vectors,
@@ -24,68 +23,19 @@ enum { LOOK_EVERY = 5, SPARE_VECTORS = 200 };
 /* --- the inverse ------------------------------------------------------------------------------ */
 
 typedef struct inverse {
-  cholmod_common library;
-  cholmod_factor *factor;
-  cholmod_dense *in, *out, *work, *more_work;
+  sparse_upper upper;
+  cholesky *factors;
   double shift;
 } inverse;
-
-static cholmod_sparse shown(const sparse_matrix *a) {
-  return (cholmod_sparse){.nrow = (size_t)a->order,
-                          .ncol = (size_t)a->order,
-                          .nzmax = (size_t)a->begin[a->order],
-                          .p = a->begin,
-                          .i = a->row,
-                          .x = a->value,
-                          .stype = 1,
-                          .itype = CHOLMOD_LONG,
-                          .xtype = CHOLMOD_REAL,
-                          .dtype = CHOLMOD_DOUBLE,
-                          .sorted = 1,
-                          .packed = 1};
-}
 
 static const char no_memory[] = "there is not enough memory to factorise their stiffness",
                   unstable[] = "the bodies are unstable at rest",
                   no_convergence[] = "the method of Lanczos did not converge";
 
-static const char *analyse(inverse *v, const sparse_matrix *a) {
-  cholmod_sparse matrix = shown(a);
-  cholmod_l_start(&v->library);
-  v->library.print = 0;
-  v->library.quick_return_if_not_posdef = 1;
-  v->library.final_ll = 1; /* which tells negative pivots */
-  v->factor = cholmod_l_analyze(&matrix, &v->library);
-  v->in = cholmod_l_zeros(matrix.nrow, 1, CHOLMOD_REAL, &v->library);
-  return v->factor && v->in ? NULL : no_memory;
-}
-
-static const char *factorise(inverse *v, const sparse_matrix *a) {
-  cholmod_sparse matrix = shown(a);
-  double beta[2] = {v->shift, 0};
-  v->library.status = CHOLMOD_OK;
-  cholmod_l_factorize_p(&matrix, beta, NULL, 0, v->factor, &v->library);
-  if (v->library.status < CHOLMOD_OK) return no_memory;
-  return v->library.status == CHOLMOD_OK ? NULL : unstable;
-}
-
-static void inverse_free(inverse *v) {
-  cholmod_l_free_factor(&v->factor, &v->library);
-  cholmod_l_free_dense(&v->in, &v->library);
-  cholmod_l_free_dense(&v->out, &v->library);
-  cholmod_l_free_dense(&v->work, &v->library);
-  cholmod_l_free_dense(&v->more_work, &v->library);
-  cholmod_l_finish(&v->library);
-}
-
-/* False without memory. */
-static bool solve(inverse *v, long order, const double *x, double *y) {
-  memcpy(v->in->x, x, (size_t)order * sizeof *x);
-  if (!cholmod_l_solve2(CHOLMOD_A, v->factor, v->in, NULL, &v->out, NULL, &v->work, &v->more_work,
-                        &v->library))
-    return false;
-  memcpy(y, v->out->x, (size_t)order * sizeof *y);
-  return true;
+static const char *factorise(inverse *v) {
+  const cholesky_end end = cholesky_factorise(v->factors, &v->upper, v->shift);
+  if (end == CHOLESKY_NO_MEMORY) return no_memory;
+  return end == CHOLESKY_DONE ? NULL : unstable;
 }
 
 /* --- vectors ---------------------------------------------------------------------------------- */
@@ -169,7 +119,7 @@ static bool extend(lanczos *l) {
   make_room(l);
   const double *now = l->vector[l->steps];
   double *next = vector_of(l->order);
-  if (!solve(l->of, l->order, now, next)) {
+  if (!cholesky_solve(l->of->factors, now, next)) {
     free(next);
     return false;
   }
@@ -343,7 +293,7 @@ static void clear(mode_list *list) {
 
 static const char *find(inverse *v, const sparse_matrix *a, known_modes *known) {
   uint64_t asked = 0;
-  const char *why = factorise(v, a);
+  const char *why = factorise(v);
   int found = 1;
   while (!why && found > 0 && known->zeros.count + known->others.count < a->order)
     found = pass(v, a, &asked, known);
@@ -359,15 +309,16 @@ const char *lowest_modes_find(const sparse_matrix *a, double nothing, int most, 
   lowest_mode rigid[LOWEST_MOST_ZEROS] = {{0}};
   known_modes known = {
       .zeros = {rigid, 0, LOWEST_MOST_ZEROS}, .others = {modes, 0, most}, .nothing = nothing};
-  inverse v = {.factor = NULL};
+  inverse v = {.upper = {a->order, a->begin, a->row, a->value}};
   memset(modes, 0, (size_t)most * sizeof *modes);
-  const char *why = analyse(&v, a);
+  v.factors = cholesky_new(&v.upper);
+  const char *why = v.factors ? NULL : no_memory;
   for (double s = least_shift; !(why == no_memory) && s <= largest_shift; s *= next_shift) {
     v.shift = s * a->size;
     why = find(&v, a, &known);
     if (!why) break;
   }
-  inverse_free(&v);
+  cholesky_free(v.factors);
   lowest_modes_free(rigid, known.zeros.count);
   *zeros = known.zeros.count;
   *count = known.others.count;

@@ -1,64 +1,17 @@
 #include "runtime/base/text_table.h"
 
 #include <ctype.h>
-#include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "dsl/base/unit_hint.h"
-#include "runtime/base/ordinary_file.h"
-
-#define LONGEST ((long long)1 << 31) /* bytes: places in the text are spans */
 
 enum { WORDS_LENGTH = 300 };
-
-/* --- the file --------------------------------------------------------------------------------- */
-
-static bool refuse_file(const text_table *t, span where, diagnostics *d, const char *why) {
-  diag_report(d, DIAG_FILE, where, "cannot read `%s`: %s", t->path, why);
-  return false;
-}
-
-static bool load(text_table *t, span where, diagnostics *d) {
-  struct stat about;
-  const char *why = NULL;
-  const int file = ordinary_file_open(t->path, O_RDONLY, &why);
-  FILE *in = file >= 0 ? fdopen(file, "rb") : NULL;
-  if (!in || fstat(file, &about) != 0) return refuse_file(t, where, d, why ? why : strerror(errno));
-  if (about.st_size >= LONGEST) {
-    fclose(in);
-    return refuse_file(t, where, d, "it is longer than 2 GiB");
-  }
-  t->text = t->owned = must_alloc((size_t)about.st_size + 1);
-  t->length = fread(t->owned, 1, (size_t)about.st_size, in);
-  t->owned[t->length] = 0;
-  const bool failed = ferror(in) != 0;
-  fclose(in);
-  return failed ? refuse_file(t, where, d, strerror(errno)) : true;
-}
-
-static bool take_source(text_table *t, const source_set *sources) {
-  for (int k = 0; k < sources->count; k++) {
-    if (strcmp(sources->items[k].name, t->path) != 0) continue;
-    t->text = sources->items[k].text;
-    t->length = sources->items[k].length;
-    t->source = k;
-    return true;
-  }
-  return false;
-}
-
-int text_table_source(text_table *t, diagnostics *d) {
-  if (t->source < 0) t->source = source_add(d->sources, t->path, t->text, t->length);
-  return t->source;
-}
 
 /* --- fields of a line ------------------------------------------------------------------------- */
 
@@ -139,33 +92,29 @@ static bool begins_line(const char *p, const char *end) {
 
 /* The next line that is neither blank nor a comment; NULL behind the last. */
 static const char *find_line(const text_table *t, const char *p) {
-  while (p < t->text + t->length) {
+  while (p < t->file.text + t->file.length) {
     const char *end = line_end(p);
     if (begins_line(p, end)) return p;
-    p = end < t->text + t->length ? end + 1 : end;
+    p = end < t->file.text + t->file.length ? end + 1 : end;
   }
   return NULL;
 }
 
 static const char *line_after(const text_table *t, const char *line) {
   const char *end = line_end(line);
-  return end < t->text + t->length ? end + 1 : end;
+  return end < t->file.text + t->file.length ? end + 1 : end;
 }
 
 static uint32_t at(const text_table *t, const char *p) {
-  return (uint32_t)(p - t->text);
-}
-
-static span text_span(text_table *t, const char *from, const char *to, diagnostics *d) {
-  return (span){at(t, from), at(t, to), (uint16_t)text_table_source(t, d)};
+  return (uint32_t)(p - t->file.text);
 }
 
 static span line_span(text_table *t, const char *line, diagnostics *d) {
-  return text_span(t, line, line + strcspn(line, "\r\n"), d);
+  return file_text_span(&t->file, line, line + strcspn(line, "\r\n"), d);
 }
 
 static field cell_of(const text_table *t, long row, int column) {
-  const char *p = t->text + t->begin[row], *end = line_end(p);
+  const char *p = t->file.text + t->begin[row], *end = line_end(p);
   field f = {p, p};
   for (int k = 0; k <= column && p; k++)
     f = read_field(t, p, end, &p);
@@ -219,7 +168,8 @@ static bool read_title(text_table *t, field f, text_column *c, diagnostics *d) {
   const char *bracket = memchr(f.from, '[', (size_t)(f.to - f.from));
   const char *open = bracket ? bracket : find_parenthesis(f);
   if (bracket && f.to[-1] != ']') {
-    diag_report(d, DIAG_SYNTAX, text_span(t, bracket, f.to, d), "this unit has no closing `]`");
+    diag_report(d, DIAG_SYNTAX, file_text_span(&t->file, bracket, f.to, d),
+                "this unit has no closing `]`");
     return false;
   }
   const field name = trimmed(f.from, open ? open : f.to);
@@ -259,18 +209,19 @@ static bool is_table(const text_table *t, const char *row, span where, diagnosti
   if (!row && t->separator != ' ') return true; /* names of columns, and nothing below */
   for (const char *p = row, *end = row ? line_end(row) : NULL; p;)
     if (as_number(read_field(t, p, end, &p), &value)) return true;
-  diag_report(d, DIAG_FILE, where, "`%s` is not a table", t->path);
+  diag_report(d, DIAG_FILE, where, "`%s` is not a table", t->file.path);
   diag_hint(d,
             "its first line names the columns, e.g. time [ms], F [kN]; those below hold numbers");
   return false;
 }
 
 bool text_table_read(text_table *t, char *path, span where, diagnostics *d) {
-  *t = (text_table){.path = path, .source = -1};
-  if (!take_source(t, d->sources) && !load(t, where, d)) return false;
-  if (strlen(t->text) != t->length) return refuse_file(t, where, d, "it is not a text");
-  const bool marked = t->length >= 3 && memcmp(t->text, "\xef\xbb\xbf", 3) == 0;
-  const char *line = find_line(t, t->text + (marked ? 3 : 0));
+  *t = (text_table){.rows = 0};
+  if (!file_text_open(&t->file, path, where, d)) return false;
+  if (strlen(t->file.text) != t->file.length)
+    return file_text_refuse(&t->file, where, d, "it is not a text");
+  const bool marked = t->file.length >= 3 && memcmp(t->file.text, "\xef\xbb\xbf", 3) == 0;
+  const char *line = find_line(t, t->file.text + (marked ? 3 : 0));
   if (!line) return true;
   t->header = at(t, line);
   t->separator = separator_of(line);
@@ -284,8 +235,7 @@ void text_table_free(text_table *t) {
     free(t->columns[k].name);
   free(t->columns);
   free(t->begin);
-  free(t->owned);
-  free(t->path);
+  file_text_close(&t->file);
 }
 
 /* --- finding a column ------------------------------------------------------------------------- */
@@ -325,7 +275,7 @@ int text_table_column(text_table *t, const char *name, span where, diagnostics *
   char words[WORDS_LENGTH];
   const int column = text_table_find(t, name, d);
   if (column != TEXT_TABLE_NONE) return column;
-  diag_report(d, DIAG_UNKNOWN_NAME, where, "`%s` has no column `%s`", t->path, name);
+  diag_report(d, DIAG_UNKNOWN_NAME, where, "`%s` has no column `%s`", t->file.path, name);
   list_columns(t, words, sizeof words);
   if (t->column_count) diag_hint(d, "its columns are %s", words);
   return column;
@@ -339,14 +289,14 @@ bool text_table_has_unit(const text_table *t, int column) {
 
 bool text_table_unit(text_table *t, int column, unit *u, diagnostics *d) {
   const text_column *c = &t->columns[column];
-  const char *from = t->text + c->unit_begin, *bad;
+  const char *from = t->file.text + c->unit_begin, *bad;
   const size_t length = c->unit_end - c->unit_begin;
   size_t bad_length;
   *u = (unit){.dim = DIMENSIONLESS, .factor = 1};
   if (length == 0 || (length == 1 && *from == '-')) return true;
   if (unit_parse(from, length, u, &bad, &bad_length)) return true;
-  diag_report(d, DIAG_UNKNOWN_UNIT, text_span(t, from, from + length, d), "there is no unit `%.*s`",
-              (int)pl_fmin((double)bad_length, 40), bad);
+  diag_report(d, DIAG_UNKNOWN_UNIT, file_text_span(&t->file, from, from + length, d),
+              "there is no unit `%.*s`", (int)pl_fmin((double)bad_length, 40), bad);
   unit_hint(d, bad, bad_length);
   return false;
 }
@@ -362,7 +312,8 @@ static bool unit_fits(text_table *t, int column, const char *si_unit, double *fa
   *factor = given.factor;
   if (!text_table_has_unit(t, column) || dim_equal(given.dim, needed.dim)) return true;
   const text_column *c = &t->columns[column];
-  diag_report(d, DIAG_UNITS, text_span(t, t->text + c->unit_begin, t->text + c->unit_end, d),
+  diag_report(d, DIAG_UNITS,
+              file_text_span(&t->file, t->file.text + c->unit_begin, t->file.text + c->unit_end, d),
               "the unit of `%s` is one of `%s`", c->name, si_unit);
   return false;
 }
@@ -383,7 +334,7 @@ static bool read_number(text_table *t, long row, int column, double factor, doub
   const bool number = as_number(f, value);
   *value *= factor;
   if (number && isfinite(*value)) return true;
-  const span where = text_span(t, f.from, f.to, d);
+  const span where = file_text_span(&t->file, f.from, f.to, d);
   name_of(t, column, words);
   if (f.from == f.to) {
     diag_report(d, DIAG_BAD_VALUE, where, "here is no value of %s", words);
@@ -414,26 +365,26 @@ double *text_table_values(text_table *t, int column, const char *si_unit, bool g
 /* --- places ----------------------------------------------------------------------------------- */
 
 span text_table_header(text_table *t, diagnostics *d) {
-  return line_span(t, t->text + t->header, d);
+  return line_span(t, t->file.text + t->header, d);
 }
 
 span text_table_title(text_table *t, int column, diagnostics *d) {
   const text_column *c = &t->columns[column];
-  return text_span(t, t->text + c->begin, t->text + c->end, d);
+  return file_text_span(&t->file, t->file.text + c->begin, t->file.text + c->end, d);
 }
 
 span text_table_line(text_table *t, long row, diagnostics *d) {
-  return line_span(t, t->text + t->begin[row], d);
+  return line_span(t, t->file.text + t->begin[row], d);
 }
 
 span text_table_cell(text_table *t, long row, int column, diagnostics *d) {
   const field f = cell_of(t, row, column);
-  return text_span(t, f.from, f.to, d);
+  return file_text_span(&t->file, f.from, f.to, d);
 }
 
 long text_table_line_number(const text_table *t, long row) {
   long line = 1;
-  for (const char *p = t->text; p < t->text + t->begin[row]; p++)
+  for (const char *p = t->file.text; p < t->file.text + t->begin[row]; p++)
     line += *p == '\n';
   return line;
 }

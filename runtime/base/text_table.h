@@ -15,8 +15,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "dsl/base/diagnostics.h"
 #include "dsl/base/units.h"
+#include "runtime/base/file_text.h"
 
 typedef struct text_column {
   char *name;                    /* without its unit; "" in a table without names; owned */
@@ -25,11 +25,7 @@ typedef struct text_column {
 } text_column;
 
 typedef struct text_table {
-  char *path;
-  const char *text;
-  size_t length;
-  char *owned; /* the text, when it is not one of the sources */
-  int source;  /* of the text among the sources, or -1 until a message has pointed into it */
+  file_text file;
   char separator;
   text_column *columns;
   int column_count;
@@ -66,8 +62,6 @@ span text_table_title(text_table *t, int column, diagnostics *d);
 span text_table_line(text_table *t, long row, diagnostics *d);
 span text_table_cell(text_table *t, long row, int column, diagnostics *d);
 long text_table_line_number(const text_table *t, long row);
-/* Puts the text among the sources, where it stays. Its number there. */
-int text_table_source(text_table *t, diagnostics *d);
 
 /* "lab.csv:cmod,load" is a file and, behind a colon that follows its ending, columns of it. The
    path (malloc'ed); *columns is the text behind the colon, or NULL. */

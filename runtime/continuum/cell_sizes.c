@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "runtime/continuum/point_law.h"
 #include "runtime/lattice/rows.h"
 
 static const double MM = 1e-3, SLENDER = 1.5;
@@ -91,7 +92,7 @@ static void warn_of_slender(const mesh *m, const unsigned char *own, const pl_la
 
 bool cell_sizes_fit(const mesh *m, const unsigned char *own, const pl_law *law,
                     const double *parameters, span where, diagnostics *d) {
-  const bool reads = PL_HAS(law, reads_size) && law->reads_size;
+  const bool reads = point_law_reads_size(law);
   if (reads && !has_size(m, own, law, where, d)) return false;
   if (reads) warn_of_slender(m, own, law, where, d);
   if (!PL_HAS(law, size_bounds) || !law->size_bounds) return true;

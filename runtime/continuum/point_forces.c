@@ -107,10 +107,11 @@ void point_forces_rest(const mesh *m, const unsigned char *own, const pl_law *la
                        const double *parameters, bool viscous, double tangent[3][3]) {
   const double rest[STRAINS] = {0};
   point_law *one = point_law_new(law, parameters);
+  const bool differ = (m->mapped || m->lists) && point_law_reads_size(law);
   double most = -INFINITY;
-  for (int cell = 0; cell < mesh_cell_count(m) && (m->mapped || m->lists || cell == 0); cell++) {
+  for (int cell = 0; cell < (differ ? mesh_cell_count(m) : 1); cell++) {
     double here[STRAINS][STRAINS];
-    if ((m->mapped || m->lists) && own && !own[cell]) continue;
+    if (differ && own && !own[cell]) continue;
     if (viscous)
       point_law_viscosity(one, mesh_cell_size(m, cell), here);
     else

@@ -14,6 +14,10 @@ int point_law_failed(const pl_law *law) {
              : -1;
 }
 
+bool point_law_reads_size(const pl_law *law) {
+  return PL_HAS(law, reads_size) && law->reads_size;
+}
+
 struct point_law {
   const pl_law *law;
   double *uniforms;

@@ -3,10 +3,15 @@
 #ifndef PERILAT_RUNTIME_POINT_LAW_H
 #define PERILAT_RUNTIME_POINT_LAW_H
 
+#include <stdbool.h>
+
 #include "runtime/kernel.h"
 
 /* Which of the law's fields is 1 where a point has failed; -1: points do not fail. */
 int point_law_failed(const pl_law *law);
+
+/* Whether it asks how large the cell of a point is. */
+bool point_law_reads_size(const pl_law *law);
 
 typedef struct point_law point_law;
 

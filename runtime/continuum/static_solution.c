@@ -6,7 +6,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "runtime/continuum/sparse_cholesky.h"
+#include "runtime/continuum/node_factors.h"
 
 /* LAPACK: factors of a symmetric positive band matrix, and a solution by them. The last argument is
    the hidden text length. */
@@ -136,7 +136,7 @@ static bool stays_positive(const band *b, const double *diagonal, static_result 
 struct static_factors {
   stiffness of;
   band b;
-  sparse_cholesky *sparse;     /* in its place, of a matrix */
+  cholesky *sparse;            /* in its place, of a matrix */
   unsigned char *held, *fixed; /* [2 nodes]; fixed: held, or alone */
 };
 
@@ -198,7 +198,7 @@ static_factors *static_factors_of_matrix(const node_matrix *k, const unsigned ch
   long loose = -1;
   for (int n = 2 * k->nodes; n < 2 * node_count(&of); n++)
     f->fixed[n] = 1;
-  f->sparse = sparse_cholesky_new(k, f->fixed, &loose);
+  f->sparse = node_factors_new(k, f->fixed, &loose);
   *r = (static_result){.solved = f->sparse != NULL};
   if (loose >= 0) {
     r->loose = (int)(loose / 2);
@@ -209,7 +209,7 @@ static_factors *static_factors_of_matrix(const node_matrix *k, const unsigned ch
 
 void static_factors_free(static_factors *f) {
   if (!f) return;
-  sparse_cholesky_free(f->sparse);
+  cholesky_free(f->sparse);
   free(f->b.matrix);
   free(f->held);
   free(f->fixed);
@@ -225,7 +225,7 @@ static bool solve(const static_factors *f, double *right) {
   const band *b = &f->b;
   const int one = 1;
   int info = 0;
-  if (f->sparse) return sparse_cholesky_solve(f->sparse, right);
+  if (f->sparse) return cholesky_solve(f->sparse, right, right);
   dpbtrs_("L", &b->n, &b->bands, &one, b->matrix, &b->rows, right, &b->n, &info, 1);
   return info == 0;
 }

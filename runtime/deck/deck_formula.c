@@ -71,7 +71,7 @@ static bool keep_text(const char *path, span where, diagnostics *d) {
   text_table t;
   if (ends_with(path, ".h5")) return true;
   const bool good = text_table_read(&t, must_copy(path), where, d);
-  if (good) text_table_source(&t, d);
+  if (good) file_text_source(&t.file, d);
   text_table_free(&t);
   return good;
 }

@@ -132,7 +132,7 @@ typedef struct load_file {
 
 static bool report_columns(const load_file *l, span where, diagnostics *d) {
   diag_report(d, DIAG_BAD_VALUE, where, "`%s` has %d column%s; a load has two, time and value",
-              l->text.path, l->text.column_count, l->text.column_count == 1 ? "" : "s");
+              l->text.file.path, l->text.column_count, l->text.column_count == 1 ? "" : "s");
   if (l->text.column_count > PAIR)
     diag_hint(d, "say which, by names or numbers: file = 'FILE:%s,%s'",
               *l->text.columns[0].name ? l->text.columns[0].name : "1",
@@ -160,7 +160,7 @@ static bool choose_columns(load_file *l, const char *columns, span where, diagno
 static bool open_file(load_file *l, const namelist_group *g, diagnostics *d) {
   const namelist_key *key = namelist_find(g, "file");
   const char *columns;
-  *l = (load_file){.text = {.source = -1}};
+  *l = (load_file){.column = {0}};
   if (!deck_values_counted(key, 1, d)) return false;
   const namelist_value *v = &key->values[0];
   if (v->kind != NAMELIST_TEXT || !*v->text) {
@@ -171,7 +171,7 @@ static bool open_file(load_file *l, const namelist_group *g, diagnostics *d) {
   char *path = deck_file_path(d->sources->items[g->where.file].name, name);
   free(name);
   if (!text_table_read(&l->text, path, v->where, d)) return false;
-  text_table_source(&l->text, d);
+  file_text_source(&l->text.file, d);
   return choose_columns(l, columns, v->where, d);
 }
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/base/elementary.h"
+#include "dsl/base/units.h"
 #include "runtime/deck/deck_check.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/group_lattice.h"
@@ -322,16 +323,13 @@ static void refuse_keys_of_quadrilaterals(deck_reader *r, const deck_mesh *item)
   diag_hint(r->d, "leave it out");
 }
 
+/* m, of one of the choices. */
 static double unit_of(const char *name) {
-  static const struct {
-    const char *name;
-    double size; /* m */
-  } units[] = {{"m", 1},    {"cm", 1e-2},   {"mm", 1e-3},  {"um", 1e-6},
-               {"km", 1e3}, {"in", 0.0254}, {"ft", 0.3048}};
-  size_t k = 0;
-  while (strcmp(units[k].name, name) != 0)
-    k++;
-  return units[k].size;
+  unit u = {.factor = 1};
+  const char *bad;
+  size_t bad_length;
+  (void)unit_parse(name, strlen(name), &u, &bad, &bad_length);
+  return u.factor;
 }
 
 /* The smallest rectangle around nodes; all of them where `list` is NULL. */

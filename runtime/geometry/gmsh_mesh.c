@@ -23,7 +23,7 @@ typedef struct maker {
 static const double ONE_PLACE = 1e-6; /* of the shortest side: nodes that near are twins */
 
 static span line_of(const maker *k, uint32_t at) {
-  return gmsh_text_line(k->t, at, k->d);
+  return file_text_line(&k->t->file, k->t->file.text + at, k->d);
 }
 
 static span line_of_cell(const maker *k, int cell) {
@@ -728,7 +728,7 @@ const gmsh_mesh *gmsh_mesh_read(arena *a, char *path, double unit, span where, d
   if (good) {
     const size_t nodes = (size_t)t.node_count + 1;
     m->path = arena_text(a, path, strlen(path));
-    gmsh_text_line(&t, 0, d); /* it is a source from now on: groups point into it */
+    file_text_source(&t.file, d); /* it is a source from now on: groups point into it */
     maker k = {.t = &t,
                .m = m,
                .memory = a,

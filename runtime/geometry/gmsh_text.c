@@ -2,18 +2,14 @@
 
 #include <ctype.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "dsl/base/arena.h"
-#include "runtime/base/ordinary_file.h"
 
-#define LONGEST  ((long long)1 << 31) /* bytes: places in the text are spans */
-#define FARTHEST 1e30                 /* m: squares are finite */
+#define FARTHEST 1e30 /* m: squares are finite */
 
 enum { MOST = 1 << 28, WORD = 64 };
 
@@ -25,52 +21,6 @@ typedef struct reader {
   diagnostics *d;
 } reader;
 
-/* --- the file --------------------------------------------------------------------------------- */
-
-static bool refuse_file(const gmsh_text *t, span where, diagnostics *d, const char *why) {
-  diag_report(d, DIAG_FILE, where, "cannot read `%s`: %s", t->path, why);
-  return false;
-}
-
-static bool load(gmsh_text *t, span where, diagnostics *d) {
-  struct stat about;
-  const char *why = NULL;
-  const int file = ordinary_file_open(t->path, O_RDONLY, &why);
-  FILE *in = file >= 0 ? fdopen(file, "rb") : NULL;
-  if (!in || fstat(file, &about) != 0) return refuse_file(t, where, d, why ? why : strerror(errno));
-  if (about.st_size >= LONGEST) {
-    fclose(in);
-    return refuse_file(t, where, d, "it is longer than 2 GiB");
-  }
-  t->text = t->owned = must_alloc((size_t)about.st_size + 1);
-  t->length = fread(t->owned, 1, (size_t)about.st_size, in);
-  t->owned[t->length] = 0;
-  const bool failed = ferror(in) != 0;
-  fclose(in);
-  return failed ? refuse_file(t, where, d, strerror(errno)) : true;
-}
-
-static bool take_source(gmsh_text *t, const source_set *sources) {
-  for (int k = 0; k < sources->count; k++) {
-    if (strcmp(sources->items[k].name, t->path) != 0) continue;
-    t->text = sources->items[k].text;
-    t->length = sources->items[k].length;
-    t->source = k;
-    return true;
-  }
-  return false;
-}
-
-span gmsh_text_line(gmsh_text *t, uint32_t at, diagnostics *d) {
-  uint32_t from = at, to = at;
-  if (t->source < 0) t->source = source_add(d->sources, t->path, t->text, t->length);
-  while (from > 0 && t->text[from - 1] != '\n')
-    from--;
-  while (to < t->length && t->text[to] != '\n' && t->text[to] != '\r')
-    to++;
-  return (span){from, to, (uint16_t)t->source};
-}
-
 void gmsh_text_free(gmsh_text *t) {
   for (int k = 0; k < t->name_count; k++)
     free(t->names[k].name);
@@ -79,20 +29,18 @@ void gmsh_text_free(gmsh_text *t) {
   free(t->groups);
   free(t->nodes);
   free(t->elements);
-  free(t->owned);
-  free(t->path);
-  *t = (gmsh_text){.source = -1};
+  file_text_close(&t->file);
 }
 
 /* --- words ------------------------------------------------------------------------------------ */
 
 static uint32_t offset(const reader *r, const char *p) {
-  return (uint32_t)(p - r->of->text);
+  return (uint32_t)(p - r->of->file.text);
 }
 
 /* The line that p stands in. */
 static span line_of(const reader *r, const char *p) {
-  return gmsh_text_line(r->of, offset(r, p), r->d);
+  return file_text_line(&r->of->file, p, r->d);
 }
 
 static void skip_blanks(reader *r) {
@@ -467,7 +415,7 @@ static bool is_at_end(reader *r) {
 static bool is_gmsh(reader *r) {
   skip_blanks(r);
   if (is_word(r->p, sections[0].name)) return true;
-  diag_report(r->d, DIAG_FILE, line_of(r, r->p < r->end ? r->p : r->of->text),
+  diag_report(r->d, DIAG_FILE, line_of(r, r->p < r->end ? r->p : r->of->file.text),
               "this is no mesh of Gmsh: it does not begin with `$MeshFormat`");
   diag_hint(r->d, "`gmsh -2 -format msh41 plate.geo -o plate.msh` writes one");
   return false;
@@ -491,12 +439,12 @@ static bool read_sections(reader *r) {
 }
 
 bool gmsh_text_read(gmsh_text *t, char *path, double unit, span where, diagnostics *d) {
-  *t = (gmsh_text){.path = path, .source = -1};
-  if (!take_source(t, d->sources) && !load(t, where, d)) return false;
+  *t = (gmsh_text){.name_count = 0};
+  if (!file_text_open(&t->file, path, where, d)) return false;
   reader r = {.of = t,
-              .p = t->text,
-              .end = t->text + strlen(t->text), /* not beyond a zero byte */
-              .section = t->text,
+              .p = t->file.text,
+              .end = t->file.text + strlen(t->file.text), /* not beyond a zero byte */
+              .section = t->file.text,
               .unit = unit,
               .d = d};
   return read_sections(&r);

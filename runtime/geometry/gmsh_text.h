@@ -11,7 +11,7 @@
 
 #include <stdint.h>
 
-#include "dsl/base/diagnostics.h"
+#include "runtime/base/file_text.h"
 #include "runtime/geometry/element.h"
 
 enum { GMSH_MOST_GROUPS = 1000 };
@@ -44,12 +44,8 @@ typedef struct gmsh_element {
 } gmsh_element;
 
 typedef struct gmsh_text {
-  char *path;
-  const char *text;
-  size_t length;
-  char *owned; /* the text, where it is not one of the sources */
-  int source;  /* among the sources, -1 until a message has pointed into it */
-  bool one;    /* version 4.1, not 4.0 */
+  file_text file;
+  bool one; /* version 4.1, not 4.0 */
   gmsh_name *names;
   gmsh_entity *entities;
   int64_t *groups; /* tags; a surface on whose other side the group is has a negative one */
@@ -63,7 +59,5 @@ typedef struct gmsh_text {
    case. */
 bool gmsh_text_read(gmsh_text *t, char *path, double unit, span where, diagnostics *d);
 void gmsh_text_free(gmsh_text *t);
-/* The line that holds a place of the text. */
-span gmsh_text_line(gmsh_text *t, uint32_t at, diagnostics *d);
 
 #endif

@@ -28,7 +28,7 @@ static int only_column(text_table *t, int dimensions, diagnostics *d) {
   }
   if (others == 1) return found;
   diag_report(d, DIAG_BAD_VALUE, text_table_header(t, d),
-              "`%s` has %d columns beside those of the places", t->path, others);
+              "`%s` has %d columns beside those of the places", t->file.path, others);
   diag_hint(d, "name the one that is meant: 'FILE:NAME'");
   return -1;
 }

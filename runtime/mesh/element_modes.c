@@ -4,19 +4,15 @@
 
 #include "dsl/base/elementary.h"
 
-/* Of lists, too, 0, 1, 3, 2 around the cell. */
+/* Of any mesh in the order of mesh_corners. */
 static void corners_of(const mesh *m, int cell, double at[4][2]) {
-  int corner[4];
-  if (m->lists)
-    for (int q = 0; q < 4; q++)
-      corner[q] = m->lists->cell[cell][q < 2 ? q : 5 - q];
-  else
-    mesh_corners(m, cell, corner);
+  int node[ELEMENT_MOST_NODES];
+  mesh_cell_nodes(m, cell, node);
   for (int q = 0; q < 4; q++)
-    mesh_place(m, corner[q], at[q]);
+    mesh_place(m, node[mesh_corner_around(q)], at[q]);
 }
 
-/* Corners stand 0, 1, 3, 2 around the cell. */
+/* Corners in the order of mesh_corners. */
 static double of_quadrilateral(double at[4][2], double mean[4][2]) {
   const double x30 = at[3][0] - at[0][0], y30 = at[3][1] - at[0][1], x21 = at[2][0] - at[1][0],
                y21 = at[2][1] - at[1][1], area = 0.5 * (x30 * y21 - x21 * y30);
@@ -89,13 +85,9 @@ double element_hourglass(const mesh *m, int cell, double gamma[4]) {
     for (int a = 0; a < 2 && (m->mapped || m->lists); a++) /* 0 in a rectangle */
       along[a] += h[q] * (at[q][a] - at[0][a]);
   for (int q = 0; q < 4; q++) {
-    gamma[q] = 0.25 * (h[q] - along[0] * mean[q][0] - along[1] * mean[q][1]);
+    gamma[m->lists ? mesh_corner_around(q) : q] =
+        0.25 * (h[q] - along[0] * mean[q][0] - along[1] * mean[q][1]);
     sum += mean[q][0] * mean[q][0] + mean[q][1] * mean[q][1];
-  }
-  if (m->lists) {
-    const double last = gamma[2];
-    gamma[2] = gamma[3];
-    gamma[3] = last;
   }
   return 4 * m->hourglass[cell] * area * sum;
 }

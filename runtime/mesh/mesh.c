@@ -108,7 +108,7 @@ int mesh_cell_nodes(const mesh *m, int cell, int node[ELEMENT_MOST_NODES]) {
   }
   mesh_corners(m, cell, corner);
   for (int k = 0; k < 4; k++)
-    node[k] = corner[k < 2 ? k : 5 - k];
+    node[k] = corner[mesh_corner_around(k)];
   return 4;
 }
 

@@ -119,6 +119,10 @@ static inline void mesh_corners(const mesh *m, int cell, int corner[4]) {
   corner[2] = corner[0] + m->nodes[0];
   corner[3] = corner[2] + 1;
 }
+/* The order of these where corners are counted counter-clockwise, and the other way round: 0, 1, 3, 2. */
+static inline int mesh_corner_around(int q) {
+  return q < 2 ? q : 5 - q;
+}
 /* Of any mesh: a cell's nodes, corners counter-clockwise, then those between. How many. */
 int mesh_cell_nodes(const mesh *m, int cell, int node[ELEMENT_MOST_NODES]);
 /* The cells around a node that are not absent, by their numbers: how many, of a grid 4 at most. */

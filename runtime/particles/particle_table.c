@@ -40,7 +40,8 @@ const char *particle_table_name(const particle_table *t, long particle,
 }
 
 static bool no_particles(const reader *r) {
-  diag_report(r->d, DIAG_EMPTY_REGION, r->where, "`%s` holds no particle", r->table->text.path);
+  diag_report(r->d, DIAG_EMPTY_REGION, r->where, "`%s` holds no particle",
+              r->table->text.file.path);
   return false;
 }
 
@@ -134,7 +135,7 @@ static bool read_text(reader *r) {
 /* --- results ---------------------------------------------------------------------------------- */
 
 static bool refuse_file(const reader *r, const char *why) {
-  diag_report(r->d, DIAG_FILE, r->where, "cannot read `%s`: %s", r->table->text.path, why);
+  diag_report(r->d, DIAG_FILE, r->where, "cannot read `%s`: %s", r->table->text.file.path, why);
   return false;
 }
 
@@ -181,7 +182,7 @@ static bool take_result(const reader *r, result_file *f) {
     refuse_file(r, "its particles are damaged");
   else if (dimensions != t->dimensions)
     diag_report(r->d, DIAG_CONFLICT, r->where,
-                "the particles of `%s` are in %s, the lattice is in %s", t->text.path,
+                "the particles of `%s` are in %s, the lattice is in %s", t->text.file.path,
                 dimensions == 2 ? "the plane" : "space", dimensions == 2 ? "space" : "the plane");
   else if (t->count == 0)
     no_particles(r);
@@ -193,7 +194,7 @@ static bool take_result(const reader *r, result_file *f) {
 
 static bool read_result(reader *r) {
   char error[1024];
-  result_file *f = result_read(r->table->text.path, error, sizeof error);
+  result_file *f = result_read(r->table->text.file.path, error, sizeof error);
   if (!f) {
     diag_report(r->d, DIAG_FILE, r->where, "%s", error);
     return false;
@@ -205,7 +206,7 @@ static bool read_result(reader *r) {
 
 bool particle_table_read(particle_table *t, char *path, int dimensions, double thickness,
                          span where, diagnostics *d) {
-  *t = (particle_table){.dimensions = dimensions, .text = {.path = path}};
+  *t = (particle_table){.dimensions = dimensions, .text = {.file = {.path = path}}};
   reader r = {.table = t, .where = where, .thickness = thickness, .d = d};
   if (is_result(path)) return read_result(&r);
   return text_table_read(&t->text, path, where, d) && read_text(&r);

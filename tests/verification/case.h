@@ -15,8 +15,8 @@
 #include "generator/plan/plan.h"
 #include "generator/run/run.h"
 #include "runtime/deck/deck_read.h"
-#include "runtime/interaction/pairwise.h"
 #include "runtime/filling/lattice.h"
+#include "runtime/interaction/pairwise.h"
 #include "runtime/simulation/simulation.h"
 
 /* A law as the interpreter and as the compiled kernel have it, with one set of parameters. */
@@ -226,6 +226,16 @@ static inline const double *deck_case_series(const deck_case *c, const char *nam
 
 static inline double deck_case_last(const deck_case *c, const char *name) {
   return deck_case_series(c, name)[simulation_history(c->simulation, NULL) - 1];
+}
+
+/* Whether kinetic and stored energy together were never so many times what they are first. */
+static inline bool deck_case_stays_below(const deck_case *c, double times) {
+  const double *kinetic = deck_case_series(c, "energy/kinetic"),
+               *stored = deck_case_series(c, "energy/stored");
+  const double most = times * (kinetic[0] + stored[0]);
+  for (long k = 0; k < simulation_history(c->simulation, NULL); k++)
+    if (!(kinetic[k] + stored[k] < most)) return false;
+  return true;
 }
 
 /* The largest size of a series so far. */

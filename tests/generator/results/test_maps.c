@@ -216,7 +216,7 @@ static void triangles_among_quadrilaterals(void **state) {
          "/examples/crack_band/turned.nml --threads 1 --set relaxation.increments=1 "
          "--set mesh.file=turned_20.msh --set output.result=turned.h5 --set output.frames=1",
          0, "12 triangles");
-  expect(w, "plot turned.h5 --map damage_now -o damage.svg", 0, "damage.svg");
+  expect(w, "plot turned.h5 --map D -o damage.svg", 0, "damage.svg");
   expect(w, "plot turned.h5 --map displacement -o moved.png", 0, "moved.png");
 }
 

@@ -9,14 +9,7 @@
 
 #include <cmocka.h>
 
-#include "tests/generator/command_tools.h"
-
-#define FOLDER SOURCE_DIR "/tests/generator/run/bad_ties/"
-
-typedef struct fault {
-  const char *name, *right, *wrong;
-  bool warns; /* the deck runs all the same */
-} fault;
+#include "tests/generator/run/wrong_decks.h"
 
 static const fault faults[] = {
     {"nothing_in_mesh", "corner = '-40 mm', 0", "corner = '-60 mm', 0", false},
@@ -69,55 +62,8 @@ static const fault faults[] = {
 };
 enum { FAULTS = sizeof faults / sizeof *faults };
 
-static char *file_text(const char *path) {
-  FILE *in = fopen(path, "rb");
-  if (!in) return NULL;
-  char *text = calloc(SAID_SIZE, 1);
-  assert_non_null(text);
-  assert_true(fread(text, 1, SAID_SIZE - 1, in) < SAID_SIZE - 1);
-  fclose(in);
-  return text;
-}
-
-/* The deck with one part of it replaced. */
-static void write_wrong(const workplace *w, const char *deck, const fault *f) {
-  const char *at = strstr(deck, f->right);
-  char text[SAID_SIZE];
-  assert_non_null(at);
-  snprintf(text, sizeof text, "%.*s%s%s", (int)(at - deck), deck, f->wrong, at + strlen(f->right));
-  write_text(w, "strip.nml", text);
-}
-
-static bool as_expected(const fault *f, const char *said) {
-  char path[400];
-  snprintf(path, sizeof path, FOLDER "%s.txt", f->name);
-  if (getenv("PERILAT_BLESS")) {
-    FILE *out = fopen(path, "wb");
-    assert_non_null(out);
-    fputs(said, out);
-    fclose(out);
-  }
-  char *expected = file_text(path);
-  const bool same = expected && strcmp(expected, said) == 0;
-  if (!same)
-    print_message("%s\n--- expected\n%s--- got\n%s", path, expected ? expected : "(no file)\n",
-                  said);
-  free(expected);
-  return same;
-}
-
 static void test_faults(void **state) {
-  workplace *w = *state;
-  char *deck = file_text(FOLDER "strip.nml");
-  int different = 0;
-  assert_non_null(deck);
-  for (int k = 0; k < FAULTS; k++) {
-    write_wrong(w, deck, &faults[k]);
-    assert_int_equal(shell(w, "$P check strip.nml 2>&1 >/dev/null"), faults[k].warns ? 0 : 1);
-    different += !as_expected(&faults[k], w->said);
-  }
-  free(deck);
-  assert_int_equal(different, 0);
+  check_faults(*state, SOURCE_DIR "/tests/generator/run/bad_ties", "strip.nml", faults, FAULTS);
 }
 
 int main(void) {

@@ -4,16 +4,12 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <unistd.h>
 
 #include <cmocka.h>
 
 #include "brittle_law.h"
 #include "laws_run.h"
 #include "runtime/continuum/cells.h"
-#include "runtime/simulation/frame_field.h"
-#include "runtime/simulation/simulation_save.h"
-#include "tests/runtime/same_runs.h"
 
 /* A bar with a weak place in the middle, pulled at both ends. */
 #define BAR                                                                                        \
@@ -40,38 +36,20 @@ static int set_up(void **state) {
   return 0;
 }
 
-static void go(laws_run *c, const char *text) {
-  laws_open(c, laws, text);
-  if (!c->r.simulation) small_print(&c->r);
-  assert_non_null(c->r.simulation);
-  assert_int_equal(small_go(&c->r), STEP_END);
-}
-
-static void values_of(const laws_run *c, const char *name, double *values) {
-  const frame_field *fields;
-  const int count = simulation_frame_fields(c->r.simulation, &fields);
-  for (int k = 0; k < count; k++)
-    if (strcmp(fields[k].name, name) == 0) {
-      simulation_frame_values(c->r.simulation, k, values);
-      return;
-    }
-  fail_msg("no field %s", name);
-}
-
 /* All of the weak cells die; of a quadratic energy the books are exact. */
 static void a_bar_breaks_in_two(void **state) {
   (void)state;
   enum { NODES = 41 * 11 };
   laws_run c;
   double dead[NODES], first;
-  go(&c, RUN BAR);
+  laws_go(&c, laws, RUN BAR);
   const cells *of = simulation_cells(c.r.simulation, 0);
   assert_true(cells_can_die(of));
   const long died = cells_deaths(of, &first);
   print_message("%ld died, the first at %.4g ms\n", died, 1e3 * first);
   assert_int_equal(died, 2 * 10);
   assert_true(first > 0 && first < 0.2e-3);
-  values_of(&c, "dead_cells", dead);
+  laws_field(&c, "dead_cells", dead);
   for (int n = 0; n < NODES; n++)
     assert_true(dead[n] == ((n % 41 == 19 || n % 41 == 20) && n / 41 < 10));
   const double external = small_largest(&c.r, "energy/external");
@@ -104,21 +82,14 @@ static void nodes_of_dead_cells_fly_on(void **state) {
 
 static void threads_change_no_bit(void **state) {
   (void)state;
-  laws_run c[3];
-  for (int k = 0; k < 3; k++) {
-    char text[8192];
-    double first[2];
-    snprintf(text, sizeof text,
-             "&simulation end_time = '0.2 ms' step_safety = 0.7 threads = %d /\n%s", k + 1, BAR);
-    go(&c[k], text);
-    if (k == 0) continue;
-    same_runs(c[0].r.simulation, c[k].r.simulation);
-    cells_deaths(simulation_cells(c[0].r.simulation, 0), &first[0]);
-    cells_deaths(simulation_cells(c[k].r.simulation, 0), &first[1]);
-    assert_true(first[0] == first[1]);
-  }
-  for (int k = 0; k < 3; k++)
+  laws_run c[LAWS_RUN_THREADS];
+  double first[LAWS_RUN_THREADS];
+  laws_go_with_threads(c, laws, "end_time = '0.2 ms' step_safety = 0.7", BAR);
+  for (int k = 0; k < LAWS_RUN_THREADS; k++) {
+    cells_deaths(simulation_cells(c[k].r.simulation, 0), &first[k]);
+    assert_true(first[k] == first[0]);
     small_close(&c[k].r);
+  }
 }
 
 /* Stopped before the first cell dies, and after some have. */
@@ -126,22 +97,14 @@ static void a_resumed_run_is_the_same(void **state) {
   (void)state;
   static const int stops[] = {20, 130};
   for (int k = 0; k < 2; k++) {
-    char path[] = "/tmp/perilat_deaths_XXXXXX", error[512];
-    const int file = mkstemp(path);
-    assert_true(file >= 0);
-    close(file);
     laws_run r, s;
     double first[2];
-    frame_mark frames = {0};
     laws_open(&r, laws, RUN BAR);
     laws_open(&s, laws, RUN BAR);
-    while (simulation_step_done(r.r.simulation) < stops[k])
-      simulation_advance(r.r.simulation, 1, NULL);
+    hand_over(r.r.simulation, stops[k], s.r.simulation);
     const long died = cells_deaths(simulation_cells(r.r.simulation, 0), &first[0]);
     print_message("%ld cells are dead\n", died);
     assert_true(k ? died > 0 : died == 0);
-    assert_true(simulation_save(r.r.simulation, path, "print", &frames, error, sizeof error));
-    assert_true(simulation_restore(s.r.simulation, path, "print", &frames, error, sizeof error));
     assert_int_equal(cells_deaths(simulation_cells(s.r.simulation, 0), &first[1]), died);
     small_go(&r.r);
     small_go(&s.r);
@@ -149,7 +112,6 @@ static void a_resumed_run_is_the_same(void **state) {
     cells_deaths(simulation_cells(r.r.simulation, 0), &first[0]);
     cells_deaths(simulation_cells(s.r.simulation, 0), &first[1]);
     assert_true(first[0] == first[1]);
-    unlink(path);
     small_close(&r.r);
     small_close(&s.r);
   }

@@ -4,7 +4,6 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -13,11 +12,7 @@
 #include "runtime/continuum/cells.h"
 #include "runtime/continuum/cells_engine.h"
 #include "runtime/continuum/tip_laws.h"
-#include "runtime/simulation/frame_field.h"
-#include "runtime/simulation/simulation_save.h"
-#include "runtime/simulation/simulation_state.h"
 #include "softening_law.h"
-#include "tests/runtime/same_runs.h"
 
 #define PLATE(method) BARE(method) "&output sample = '1 us' /\n"
 #define BARE(method)                                                                               \
@@ -53,13 +48,6 @@ static bool says(const small_run *r, const char *text) {
   for (int k = 0; k < r->said.count; k++)
     if (strstr(r->said.items[k].message, text)) return true;
   return false;
-}
-
-static void go(laws_run *c, const pl_law *const *laws, const char *text) {
-  laws_open(c, laws, text);
-  if (!c->r.simulation) small_print(&c->r);
-  assert_non_null(c->r.simulation);
-  assert_int_equal(small_go(&c->r), STEP_END);
 }
 
 static void agree(const laws_run *a, const laws_run *b, const char *name, double tolerance) {
@@ -146,9 +134,9 @@ static void both_ways_agree_side_by_side(void **state) {
   const pl_law *const linear[] = {&hooke_law, &hooke_law}, *const right[] = {&hooke_law, &bent},
                       *const left[] = {&bent, &hooke_law}, *const points[] = {&bent, &bent};
   laws_run a, b;
-  go(&a, linear, text);
+  laws_go(&a, linear, text);
   for (int k = 0; k < 3; k++) {
-    go(&b, k == 0 ? right : k == 1 ? left : points, text);
+    laws_go(&b, k == 0 ? right : k == 1 ? left : points, text);
     for (size_t n = 0; n < sizeof names / sizeof *names; n++)
       agree(&a, &b, names[n], 1e-10);
     assert_true(small_largest(&b.r, "energy/imbalance") <
@@ -177,9 +165,9 @@ static void each_law_knows_what_it_stores(void **state) {
                       *const linear[] = {&hooke_law, &hooke_law};
   for (int k = 0; k < 2; k++) {
     laws_run a, b, c;
-    go(&a, right, decks[k]);
-    go(&b, left, decks[k]);
-    go(&c, linear, decks[k]);
+    laws_go(&a, right, decks[k]);
+    laws_go(&b, left, decks[k]);
+    laws_go(&c, linear, decks[k]);
     agree(&a, &b, "plate.right/stored", 1e-10);
     agree(&a, &c, "plate.right/stored", 1e-10);
     check_stored_by(&a);
@@ -205,7 +193,7 @@ static void bars_in_a_row(void **state) {
     snprintf(text, sizeof text, "%s%s", methods[k],
              "&material mesh = 'plate' model = 'hooke' nu = 1e-12 E = 30e9 /\n"
              "&material mesh = 'plate' region = 'right' model = 'hooke' nu = 1e-12 E = 10e9 /\n");
-    go(&c, laws, text);
+    laws_go(&c, laws, text);
     const double u = 1e6 * (0.1 / 30e9 + 0.1 / 10e9), found = small_last(&c.r, "u");
     print_message("bars in a row: %.3g of the elongation off\n", found / u - 1);
     /* element-free functions do not bend at a border of materials */
@@ -281,7 +269,7 @@ static void ledgers_balance(void **state) {
     laws_run c;
     snprintf(text, sizeof text, "&simulation end_time = '0.15 ms' step_safety = %s /\n%s",
              k ? "0.2" : "0.4", SOFT);
-    go(&c, soft, text);
+    laws_go(&c, soft, text);
     part[k] = small_largest(&c.r, "energy/imbalance") / small_largest(&c.r, "energy/external");
     assert_true(small_last(&c.r, "plate.right/dissipated_damage") > 0);
     assert_true(small_last(&c.r, "energy/dissipated_damage") >
@@ -294,52 +282,23 @@ static void ledgers_balance(void **state) {
 
 static void threads_change_no_bit(void **state) {
   (void)state;
-  laws_run c[3];
-  for (int k = 0; k < 3; k++) {
-    char text[8192];
-    snprintf(text, sizeof text, "&simulation end_time = '0.15 ms' threads = %d /\n%s", k + 1, SOFT);
-    go(&c[k], soft, text);
-    if (k > 0) same_runs(c[0].r.simulation, c[k].r.simulation);
-  }
-  for (int k = 0; k < 3; k++)
+  laws_run c[LAWS_RUN_THREADS];
+  laws_go_with_threads(c, soft, "end_time = '0.15 ms'", SOFT);
+  for (int k = 0; k < LAWS_RUN_THREADS; k++)
     small_close(&c[k].r);
 }
 
 static void a_resumed_run_is_the_same(void **state) {
   (void)state;
-  const char *text = "&simulation end_time = '0.15 ms' /\n&newmark beta_1 = 0.7 /\n" SOFT;
-  char path[] = "/tmp/perilat_laws_XXXXXX", error[512];
-  const int file = mkstemp(path);
-  assert_true(file >= 0);
-  close(file);
   laws_run r, s;
-  frame_mark frames = {0};
-  laws_open(&r, soft, text);
-  laws_open(&s, soft, text);
-  simulation_advance(r.r.simulation, 81, NULL);
-  assert_true(simulation_save(r.r.simulation, path, "print", &frames, error, sizeof error));
-  assert_true(simulation_restore(s.r.simulation, path, "print", &frames, error, sizeof error));
-  small_go(&r.r);
-  small_go(&s.r);
+  laws_resume(&r, &s, soft, "&simulation end_time = '0.15 ms' /\n&newmark beta_1 = 0.7 /\n" SOFT,
+              81);
   assert_true(small_last(&r.r, "energy/dissipated_damage") > 0);
-  same_runs(r.r.simulation, s.r.simulation);
-  unlink(path);
   small_close(&r.r);
   small_close(&s.r);
 }
 
 /* --- fields ----------------------------------------------------------------------------------- */
-
-static void values_of(const laws_run *c, const char *name, double *values) {
-  const frame_field *fields;
-  const int count = simulation_frame_fields(c->r.simulation, &fields);
-  for (int k = 0; k < count; k++)
-    if (strcmp(fields[k].name, name) == 0) {
-      simulation_frame_values(c->r.simulation, k, values);
-      return;
-    }
-  fail_msg("no field %s", name);
-}
 
 /* Nodes have the fields of the laws around; between two of them the mean. */
 static void nodes_show_their_laws(void **state) {
@@ -348,22 +307,23 @@ static void nodes_show_their_laws(void **state) {
   laws_run c;
   double E[NODES], omega[NODES], k[NODES], press[NODES];
   const pl_law *const laws[] = {&hooke_law, &softening_law};
-  go(&c, laws,
-     "&simulation end_time = '0.1 ms' /\n"
-     "&mesh name = 'plate' size = 0.2, 0.1 nodes = 21, 11 thickness = '20 mm' method = "
-     "'finite_elements' /\n"
-     "&region name = 'left' shape = 'segment' from = 0, 0 to = 0, 0.1 /\n"
-     "&region name = 'right' lattice = 'plate' shape = 'rectangle' corner = 0.1, 0 size = 0.1, "
-     "0.1 /\n"
-     "&support region = 'left' fix = 'x', 'y' /\n"
-     "&traction mesh = 'plate' from = 0.2, 0 to = 0.2, 0.1 component = 'x' stress = '1 MPa' /\n"
-     "&output frames = 1 fields = 'E', 'omega', 'k', 'press' /\n"
-     "&material mesh = 'plate' model = 'hooke' E = 30e9 /\n"
-     "&material mesh = 'plate' region = 'right' model = 'softening' k = 3e-4 E = 10e9 /\n");
-  values_of(&c, "E", E);
-  values_of(&c, "omega", omega);
-  values_of(&c, "k", k);
-  values_of(&c, "press", press);
+  laws_go(
+      &c, laws,
+      "&simulation end_time = '0.1 ms' /\n"
+      "&mesh name = 'plate' size = 0.2, 0.1 nodes = 21, 11 thickness = '20 mm' method = "
+      "'finite_elements' /\n"
+      "&region name = 'left' shape = 'segment' from = 0, 0 to = 0, 0.1 /\n"
+      "&region name = 'right' lattice = 'plate' shape = 'rectangle' corner = 0.1, 0 size = 0.1, "
+      "0.1 /\n"
+      "&support region = 'left' fix = 'x', 'y' /\n"
+      "&traction mesh = 'plate' from = 0.2, 0 to = 0.2, 0.1 component = 'x' stress = '1 MPa' /\n"
+      "&output frames = 1 fields = 'E', 'omega', 'k', 'press' /\n"
+      "&material mesh = 'plate' model = 'hooke' E = 30e9 /\n"
+      "&material mesh = 'plate' region = 'right' model = 'softening' k = 3e-4 E = 10e9 /\n");
+  laws_field(&c, "E", E);
+  laws_field(&c, "omega", omega);
+  laws_field(&c, "k", k);
+  laws_field(&c, "press", press);
   for (int n = 0; n < NODES; n++) {
     const int i = n % 21;
     assert_true(fabs(E[n] - (i < 10 ? 30e9 : i == 10 ? 20e9 : 10e9)) < 1);
@@ -382,20 +342,21 @@ static void stresses_are_of_both_sides(void **state) {
   const pl_law *const laws[][2] = {{&hooke_law, &hooke_law}, {&hooke_law, &bent}};
   for (int n = 0; n < 2; n++) {
     laws_run c;
-    go(&c, laws[n],
-       n ? "&simulation end_time = 1 /\n&relaxation increments = 1 tolerance = 1e-9 /\n"
-           "&output fields = 'stress_xx' frames = 1 /\n" BARE(
-               "'finite_elements'") "&material mesh = 'plate' model = 'hooke' nu = 1e-12 E = 30e9 "
-                                    "/\n"
-                                    "&material mesh = 'plate' region = 'right' model = 'bent' nu = "
-                                    "1e-12 E = 10e9 /\n"
-         : "&simulation /\n&static /\n"
-           "&output fields = 'stress_xx' frames = 1 /\n" BARE(
-               "'finite_elements'") "&material mesh = 'plate' model = 'hooke' nu = 1e-12 E = 30e9 "
-                                    "/\n"
-                                    "&material mesh = 'plate' region = 'right' model = 'hooke' nu "
-                                    "= 1e-12 E = 10e9 /\n");
-    values_of(&c, "stress_xx", stress);
+    laws_go(
+        &c, laws[n],
+        n ? "&simulation end_time = 1 /\n&relaxation increments = 1 tolerance = 1e-9 /\n"
+            "&output fields = 'stress_xx' frames = 1 /\n" BARE(
+                "'finite_elements'") "&material mesh = 'plate' model = 'hooke' nu = 1e-12 E = 30e9 "
+                                     "/\n"
+                                     "&material mesh = 'plate' region = 'right' model = 'bent' nu "
+                                     "= 1e-12 E = 10e9 /\n"
+          : "&simulation /\n&static /\n"
+            "&output fields = 'stress_xx' frames = 1 /\n" BARE(
+                "'finite_elements'") "&material mesh = 'plate' model = 'hooke' nu = 1e-12 E = 30e9 "
+                                     "/\n"
+                                     "&material mesh = 'plate' region = 'right' model = 'hooke' nu "
+                                     "= 1e-12 E = 10e9 /\n");
+    laws_field(&c, "stress_xx", stress);
     for (int k = 0; k < NODES; k++)
       assert_true(fabs(stress[k] - 1e6) < 1e6 * (n ? 1e-6 : 1e-9));
     small_close(&c.r);
@@ -453,8 +414,8 @@ static void a_crack_runs_beside_another_law(void **state) {
   const char *text =
       CRACKED "&crack name = 'c' mesh = 'plate' points = 0, 0.0512, 0.05, 0.0512" GROWS;
   static laws_run a, b;
-  go(&a, linear, text);
-  go(&b, mixed, text);
+  laws_go(&a, linear, text);
+  laws_go(&b, mixed, text);
   assert_true(small_last(&a.r, "c/length") > 0.06);
   for (size_t n = 0; n < sizeof names / sizeof *names; n++)
     agree(&a, &b, names[n], 1e-8);

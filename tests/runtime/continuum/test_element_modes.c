@@ -6,22 +6,17 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <unistd.h>
 
 #include <cmocka.h>
 
+#include "both_ways.h"
 #include "brittle_law.h"
 #include "laws_run.h"
-#include "mesh_cases.h"
-#include "runtime/base/random_number.h"
 #include "runtime/continuum/cells.h"
 #include "runtime/continuum/node_matrix.h"
-#include "runtime/continuum/point_forces.h"
 #include "runtime/mesh/cell_lists.h"
 #include "runtime/mesh/element_modes.h"
-#include "runtime/simulation/simulation_save.h"
 #include "softening_law.h"
-#include "tests/runtime/same_runs.h"
 
 /* Hooke's law in plane strain is that in plane stress with other values. */
 static const double E = 30e9, nu = 0.4;
@@ -39,16 +34,6 @@ static int set_up(void **state) {
 }
 
 /* --- forces ----------------------------------------------------------------------------------- */
-
-typedef struct both { /* ways to the forces of a mesh */
-  mesh m;
-  integration_points points;
-  plane_stiffness law;
-  node_stencil K;
-  point_forces *P;
-  pool *memory;
-  double *u[2], *by_stencil[2], *by_points[2];
-} both;
 
 enum { ALONG = 14, UP = 7 };
 static const double slanted[4][2] = {{0, 0}, {0.3, 0.05}, {0.35, 0.2}, {-0.04, 0.13}};
@@ -75,37 +60,10 @@ static void choose(mesh *m, int gauss, double hourglass) {
 }
 
 static void open_both(both *b) {
-  integration_points_open(&b->points, &b->m);
-  b->law = isotropic(E, nu, true);
-  node_stencil_open(&b->K, &b->m, &b->points, &b->law, NULL);
-  node_stencil_resist_hourglass(&b->K);
-  b->P = point_forces_new(&b->m, NULL, &b->points, &bent, values, 1, true);
-  b->memory = pool_new();
-  for (int d = 0; d < 2; d++) {
-    b->u[d] = pool_doubles(b->memory, b->K.layout.size);
-    b->by_stencil[d] = pool_doubles(b->memory, b->K.layout.size);
-    b->by_points[d] = pool_doubles(b->memory, b->K.layout.size);
-  }
+  both_open(b, isotropic(E, nu, true), &bent, values);
 }
 
-static void close_both(both *b) {
-  point_forces_free(b->P);
-  node_stencil_close(&b->K);
-  integration_points_close(&b->points);
-  mesh_close(&b->m);
-  pool_free(b->memory);
-}
-
-static void find_both(both *b) {
-  const double *const u[2] = {b->u[0], b->u[1]};
-  const point_motion at = {u, u, 0, 1};
-  node_stencil_multiply(&b->K, u, b->by_stencil, 0, b->m.nodes[1]);
-  point_forces_find(b->P, 0, 0, b->m.nodes[1], &at, true);
-  for (int row = 0; row < b->m.nodes[1]; row++)
-    point_forces_take(b->P, row, false, b->by_points);
-}
-
-static double largest(const both *b, double *const f[2], bool inside) {
+static double largest_of(const both *b, double *const f[2], bool inside) {
   double most = 0;
   for (int n = 0; n < mesh_node_count(&b->m); n++) {
     const int i = n % ALONG, j = n / ALONG;
@@ -124,23 +82,20 @@ static void both_ways_agree(void **state) {
     choose(&b.m, 1 + k / 2, 0.05);
     open_both(&b);
     assert_true(b.P->mean && b.P->hourglass);
-    for (int n = 0; n < mesh_node_count(&b.m); n++)
-      for (int d = 0; d < 2; d++)
-        b.u[d][node_layout_at(&b.K.layout, n)] =
-            1e-4 * (random_unit(random_mix((uint64_t)(2 * n + d))) - 0.5);
-    find_both(&b);
-    double most = 0, half_work = 0, stored = 0;
+    both_move(&b);
+    both_find(&b, true);
+    double largest, half_work = 0, stored = 0;
+    const double most = both_differ(&b, &largest);
     for (int n = 0; n < mesh_node_count(&b.m); n++)
       for (int d = 0; d < 2; d++) {
         const long at = node_layout_at(&b.K.layout, n);
-        most = fmax(most, fabs(b.by_points[d][at] - b.by_stencil[d][at]));
         half_work += 0.5 * b.u[d][at] * b.by_stencil[d][at];
       }
     for (int row = 0; row < b.P->strips.rows; row++)
       stored += b.P->rows[row].stored;
-    assert_true(most <= 1e-13 * largest(&b, b.by_stencil, false));
+    assert_true(largest > 0 && most <= 1e-13 * largest);
     assert_true(fabs(stored - half_work) < 1e-12 * half_work);
-    close_both(&b);
+    both_close(&b);
   }
 }
 
@@ -188,13 +143,11 @@ static void list_does_as_grid(int gauss, double hourglass) {
   for (int d = 0; d < 2; d++) {
     f[d] = pool_doubles(b.memory, b.K.layout.size);
     g[d] = pool_doubles(b.memory, b.K.layout.size);
-    for (int n = 0; n < mesh_node_count(&b.m); n++)
-      b.u[d][node_layout_at(&b.K.layout, n)] =
-          1e-4 * (random_unit(random_mix((uint64_t)(2 * n + d))) - 0.5);
   }
+  both_move(&b);
   const double *const u[2] = {b.u[0], b.u[1]};
   const point_motion at = {u, u, 0, 1};
-  find_both(&b);
+  both_find(&b, true);
   node_matrix_multiply(&of, u, f, 0, listed.nodes[1]);
   point_forces_find(by_points, 0, 0, listed.nodes[1], &at, true);
   for (int row = 0; row < listed.nodes[1]; row++)
@@ -210,13 +163,13 @@ static void list_does_as_grid(int gauss, double hourglass) {
   for (int row = 0; row < by_points->strips.rows; row++)
     stored += by_points->rows[row].stored;
   assert_true(by_points->mean && (!(hourglass > 0) || by_points->hourglass));
-  assert_true(most <= 1e-10 * largest(&b, b.by_stencil, false));
+  assert_true(most <= 1e-10 * largest_of(&b, b.by_stencil, false));
   assert_true(fabs(stored - half_work) < 1e-12 * half_work);
   point_forces_free(by_points);
   node_matrix_close(&of);
   integration_points_close(&points);
   mesh_close(&listed);
-  close_both(&b);
+  both_close(&b);
 }
 
 static void lists_do_as_grids(void **state) {
@@ -240,11 +193,12 @@ static void linear_fields_are_exact(void **state) {
       b.u[0][node_layout_at(&b.K.layout, n)] = 1e-3 + 3e-4 * at[0] - 2e-4 * at[1];
       b.u[1][node_layout_at(&b.K.layout, n)] = -2e-3 + 1e-4 * at[0] + 5e-4 * at[1];
     }
-    find_both(&b);
-    const double inside = largest(&b, b.by_points, true), all = largest(&b, b.by_points, false);
+    both_find(&b, true);
+    const double inside = largest_of(&b, b.by_points, true),
+                 all = largest_of(&b, b.by_points, false);
     assert_true(all > 0 && inside < 1e-11 * all);
-    assert_true(largest(&b, b.by_stencil, true) < 1e-11 * all);
-    close_both(&b);
+    assert_true(largest_of(&b, b.by_stencil, true) < 1e-11 * all);
+    both_close(&b);
   }
 }
 
@@ -301,7 +255,7 @@ static int free_motions_of(int gauss, double hourglass) {
   for (int i = 0; i < 8; i++)
     for (int j = 0; j < 8; j++)
       a[i][j] = node_stencil_entry(&b.K, i / 2, j / 2, i % 2, j % 2);
-  close_both(&b);
+  both_close(&b);
   return free_motions(a);
 }
 
@@ -355,7 +309,7 @@ static void a_square_bends_as_a_beam(void **state) {
     open_single(&b, corners, 1, 1.0 / 6);
     for (int n = 0; n < 4; n++)
       b.u[axis][node_layout_at(&b.K.layout, n)] = 1e-4 * h[n];
-    find_both(&b);
+    both_find(&b, true);
     const double curvature = 4e-4 / (side * side), I = 0.5 * side * side * side / 12,
                  energy = 0.5 * E / (1 - nu * nu) * I * curvature * curvature * side;
     double stored = 0;
@@ -363,7 +317,7 @@ static void a_square_bends_as_a_beam(void **state) {
       stored += 0.5e-4 * h[n] * b.by_stencil[axis][node_layout_at(&b.K.layout, n)];
     assert_true(fabs(stored / energy - 1) < 1e-13);
     assert_true(fabs(b.P->rows[0].stored / energy - 1) < 1e-13);
-    close_both(&b);
+    both_close(&b);
   }
 }
 
@@ -428,13 +382,6 @@ static void a_membrane_does_not_lock(void **state) {
 #define MIXED PLATE("gauss = 2 dilatation = 'mean'")
 #define SOFT  MIXED "&material mesh = 'plate' model = 'softening' k = 3e-4 /\n"
 
-static void go(laws_run *c, const pl_law *const *laws, const char *text) {
-  laws_open(c, laws, text);
-  if (!c->r.simulation) small_print(&c->r);
-  assert_non_null(c->r.simulation);
-  assert_int_equal(small_go(&c->r), STEP_END);
-}
-
 /* After the first step of an element at rest u_x = a x y dt: in a gauge the dilatation is that of
    the middle, half of the difference in either strain. */
 static void gauges_see_the_mean_dilatation(void **state) {
@@ -443,18 +390,19 @@ static void gauges_see_the_mean_dilatation(void **state) {
   const pl_law *const ways[] = {&hooke_law, &bent};
   for (int k = 0; k < 2; k++) {
     laws_run c;
-    go(&c, &ways[k],
-       "&simulation end_time = '1 us' step = '1 us' /\n"
-       "&mesh name = 'plate' size = 0.2, 0.1 nodes = 2, 2 thickness = 0.02 setting = "
-       "'plane_strain' "
-       "method = 'finite_elements' gauss = 2 dilatation = 'mean' /\n"
-       "&material mesh = 'plate' model = 'hooke' E = 30e9 nu = 0.2 rho = 2400 /\n"
-       "&region name = 'all' lattice = 'plate' shape = 'rectangle' corner = -1, -1 size = 3, 3 /\n"
-       "&initial_velocity region = 'all' component = 'x' value = '1 [m/s]*x*y/1 [m^2]' /\n"
-       "&monitor name = 'x' kind = 'strain' at = 0.13, 0.07 component = 'xx' /\n"
-       "&monitor name = 'y' kind = 'strain' at = 0.13, 0.07 component = 'yy' /\n"
-       "&monitor name = 's' kind = 'stress' at = 0.13, 0.07 component = 'yy' /\n"
-       "&output sample = '1 us' /\n");
+    laws_go(
+        &c, &ways[k],
+        "&simulation end_time = '1 us' step = '1 us' /\n"
+        "&mesh name = 'plate' size = 0.2, 0.1 nodes = 2, 2 thickness = 0.02 setting = "
+        "'plane_strain' "
+        "method = 'finite_elements' gauss = 2 dilatation = 'mean' /\n"
+        "&material mesh = 'plate' model = 'hooke' E = 30e9 nu = 0.2 rho = 2400 /\n"
+        "&region name = 'all' lattice = 'plate' shape = 'rectangle' corner = -1, -1 size = 3, 3 /\n"
+        "&initial_velocity region = 'all' component = 'x' value = '1 [m/s]*x*y/1 [m^2]' /\n"
+        "&monitor name = 'x' kind = 'strain' at = 0.13, 0.07 component = 'xx' /\n"
+        "&monitor name = 'y' kind = 'strain' at = 0.13, 0.07 component = 'yy' /\n"
+        "&monitor name = 's' kind = 'stress' at = 0.13, 0.07 component = 'yy' /\n"
+        "&output sample = '1 us' /\n");
     print_message("strain %.9g, %.9g\n", small_last(&c.r, "x"), small_last(&c.r, "y"));
     assert_true(fabs(small_last(&c.r, "x") - (a * y * dt + shift)) < 1e-10 * a * dt);
     assert_true(fabs(small_last(&c.r, "y") - shift) < 1e-10 * a * dt);
@@ -471,8 +419,8 @@ static void runs_by_both_ways_agree(void **state) {
                      "&material mesh = 'plate' model = 'hooke' /\n";
   const pl_law *const linear[] = {&hooke_law}, *const points[] = {&bent};
   laws_run a, b;
-  go(&a, linear, text);
-  go(&b, points, text);
+  laws_go(&a, linear, text);
+  laws_go(&b, points, text);
   for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
     const double *x = small_values(&a.r, names[n]), *y = small_values(&b.r, names[n]),
                  most = small_largest(&a.r, names[n]);
@@ -486,43 +434,23 @@ static void runs_by_both_ways_agree(void **state) {
   small_close(&b.r);
 }
 
+static const pl_law *const soft[] = {&softening_law};
+
 static void threads_change_no_bit(void **state) {
   (void)state;
-  const pl_law *const soft[] = {&softening_law};
-  laws_run c[3];
-  for (int k = 0; k < 3; k++) {
-    char text[8192];
-    snprintf(text, sizeof text, "&simulation end_time = '0.1 ms' threads = %d /\n%s", k + 1, SOFT);
-    go(&c[k], soft, text);
-    if (k > 0) same_runs(c[0].r.simulation, c[k].r.simulation);
-  }
+  laws_run c[LAWS_RUN_THREADS];
+  laws_go_with_threads(c, soft, "end_time = '0.1 ms'", SOFT);
   assert_true(small_last(&c[0].r, "energy/dissipated_damage") > 0);
   assert_true(small_largest(&c[0].r, "energy/imbalance") <
               1e-11 * small_largest(&c[0].r, "energy/external"));
-  for (int k = 0; k < 3; k++)
+  for (int k = 0; k < LAWS_RUN_THREADS; k++)
     small_close(&c[k].r);
 }
 
 static void a_resumed_run_is_the_same(void **state) {
   (void)state;
-  const pl_law *const soft[] = {&softening_law};
-  const char *text = "&simulation end_time = '0.1 ms' /\n" SOFT;
-  char path[] = "/tmp/perilat_elements_XXXXXX", error[512];
-  const int file = mkstemp(path);
-  assert_true(file >= 0);
-  close(file);
   laws_run r, s;
-  frame_mark frames = {0};
-  laws_open(&r, soft, text);
-  laws_open(&s, soft, text);
-  while (simulation_step_done(r.r.simulation) < 61)
-    simulation_advance(r.r.simulation, 1, NULL);
-  assert_true(simulation_save(r.r.simulation, path, "print", &frames, error, sizeof error));
-  assert_true(simulation_restore(s.r.simulation, path, "print", &frames, error, sizeof error));
-  small_go(&r.r);
-  small_go(&s.r);
-  same_runs(r.r.simulation, s.r.simulation);
-  unlink(path);
+  laws_resume(&r, &s, soft, "&simulation end_time = '0.1 ms' /\n" SOFT, 61);
   small_close(&r.r);
   small_close(&s.r);
 }
@@ -533,10 +461,11 @@ static void dead_cells_resist_nothing(void **state) {
   const pl_law *const laws[] = {&brittle_law};
   laws_run c;
   double first;
-  go(&c, laws,
-     "&simulation end_time = '0.3 ms' step_safety = 0.7 /\n" PLATE(
-         "gauss = 1 hourglass = 0.1") "&material mesh = 'plate' model = 'brittle' eps_u = 3e-5 "
-                                      "/\n");
+  laws_go(
+      &c, laws,
+      "&simulation end_time = '0.3 ms' step_safety = 0.7 /\n" PLATE(
+          "gauss = 1 hourglass = 0.1") "&material mesh = 'plate' model = 'brittle' eps_u = 3e-5 "
+                                       "/\n");
   const long died = cells_deaths(simulation_cells(c.r.simulation, 0), &first);
   const double taken = small_last(&c.r, "energy/dissipated_damage");
   print_message("%ld cells died; imbalance %.3g of what that took\n", died,

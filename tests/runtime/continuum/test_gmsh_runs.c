@@ -252,12 +252,20 @@ static const char squares[] =
                  "3 0 0 4 0 0 4 1 0 3 1 0\n$EndNodes\n"
                  "$Elements\n2 2 1 2\n2 1 3 1\n1 1 2 3 4\n2 2 3 1\n2 5 6 7 8\n$EndElements\n";
 
+/* This deck of them, of Hooke's law by the matrix or point by point. */
+static void open_squares(small_run *r, const char *text, bool by_points, double values[2][8]) {
+  static pl_law bent;
+  bent = hooke_law;
+  bent.linear = 0;
+  const pl_law *of = by_points ? &bent : &hooke_law, *const law[2] = {of, of};
+  whole_deck = text;
+  open_two(r, law, squares, "", values);
+  whole_deck = NULL;
+}
+
 static void the_stiffer_law_limits_the_step(void **state) {
   (void)state;
-  pl_law bent = hooke_law;
-  bent.linear = 0;
   for (int k = 0; k < 4; k++) {
-    const pl_law *of = k % 2 ? &bent : &hooke_law, *const law[2] = {of, of};
     small_run r;
     char text[512];
     double values[2][8];
@@ -267,9 +275,7 @@ static void the_stiffer_law_limits_the_step(void **state) {
              "&material mesh = 'disc' model = 'hooke' E = %s nu = 1e-9 /\n"
              "&material mesh = 'disc' region = 'upper' model = 'hooke' E = %s nu = 1e-9 /\n",
              k < 2 ? "30e9" : "30e11", k < 2 ? "30e11" : "30e9");
-    whole_deck = text;
-    open_two(&r, law, squares, "", values);
-    whole_deck = NULL;
+    open_squares(&r, text, k % 2, values);
     const double omega = sqrt(4 * 30e11 / 2400) / 1e-3,
                  part = simulation_step_limit(r.simulation)->limit * omega / 2;
     print_message("step over the longest: %.5f\n", part);
@@ -281,11 +287,8 @@ static void the_stiffer_law_limits_the_step(void **state) {
 /* Hourglass modes of either square, by the matrix and point by point. */
 static void each_law_resists_its_own_hourglass(void **state) {
   (void)state;
-  pl_law bent = hooke_law;
-  bent.linear = 0;
   double stored[2][2];
   for (int k = 0; k < 4; k++) {
-    const pl_law *of = k % 2 ? &bent : &hooke_law, *const law[2] = {of, of};
     small_run r;
     char text[1024];
     double values[2][8];
@@ -300,9 +303,7 @@ static void each_law_resists_its_own_hourglass(void **state) {
              "&initial_velocity region = 'of' component = 'x' value = '1 [m/s]*(x/1 [mm] - %g)*"
              "(y/1 [mm] - 0.5)' /\n",
              k < 2 ? -0.4e-3 : 2.6e-3, k < 2 ? 0.5 : 3.5);
-    whole_deck = text;
-    open_two(&r, law, squares, "", values);
-    whole_deck = NULL;
+    open_squares(&r, text, k % 2, values);
     assert_int_equal(small_go(&r), STEP_END);
     stored[k / 2][k % 2] = small_last(&r, "energy/stored");
     small_close(&r);

@@ -15,7 +15,7 @@
 #include "runtime/continuum/frequency_limit.h"
 #include "runtime/continuum/node_masses.h"
 #include "runtime/continuum/point_forces.h"
-#include "runtime/continuum/sparse_cholesky.h"
+#include "runtime/continuum/node_factors.h"
 #include "runtime/continuum/static_solution.h"
 #include "runtime/mesh/element_strips.h"
 #include "runtime/mesh/mesh_fields.h"
@@ -433,11 +433,11 @@ static void what_can_turn_is_loose_in_any_mesh(void **state) {
       open_case(&s, n, kinds[k], 0.4, 2);
       const int at = 7 * n % s.K.nodes;
       s.held[2 * at] = s.held[2 * at + 1] = 1;
-      sparse_cholesky *f = sparse_cholesky_new(&s.K, s.held, &loose);
+      cholesky *f = node_factors_new(&s.K, s.held, &loose);
       assert_null(f);
       assert_true(loose >= 0 && loose < 2 * s.K.nodes && !s.held[loose]);
       s.held[2 * at] = 0; /* it can go, too */
-      assert_null(sparse_cholesky_new(&s.K, s.held, &loose));
+      assert_null(node_factors_new(&s.K, s.held, &loose));
       lost++;
       close_case(&s);
     }

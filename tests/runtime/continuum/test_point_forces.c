@@ -5,19 +5,16 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <unistd.h>
 
 #include <cmocka.h>
 
-#include "mesh_cases.h"
+#include "both_ways.h"
 #include "runtime/base/random_number.h"
 #include "runtime/continuum/cells.h"
-#include "runtime/continuum/point_forces.h"
-#include "runtime/interaction/sweep.h"
 #include "runtime/mesh/cell_strips.h"
 #include "runtime/mesh/cut_cells.h"
-#include "runtime/simulation/simulation_save.h"
 #include "softening_law.h"
+#include "tests/runtime/hand_over.h"
 #include "tests/runtime/small_run.h"
 
 static const double hooke_values[] = {30e9, 0.2, 2400};
@@ -38,76 +35,20 @@ static void open_plate(mesh *m, int nx, int ny, double support, int gauss, int p
   mesh_settle(m);
 }
 
-typedef struct both { /* ways to the forces of a mesh */
-  mesh m;
-  integration_points points;
-  plane_stiffness law;
-  node_stencil K;
-  point_forces *P;
-  pool *memory;
-  double *u[2], *by_stencil[2], *by_points[2];
-} both;
-
 static void open_both(both *b) {
-  integration_points_open(&b->points, &b->m);
-  b->law = isotropic(30e9, 0.2, false);
-  node_stencil_open(&b->K, &b->m, &b->points, &b->law, NULL);
-  b->P = point_forces_new(&b->m, NULL, &b->points, &hooke_law, hooke_values, 1, true);
-  b->memory = pool_new();
-  for (int d = 0; d < 2; d++) {
-    b->u[d] = pool_doubles(b->memory, b->K.layout.size);
-    b->by_stencil[d] = pool_doubles(b->memory, b->K.layout.size);
-    b->by_points[d] = pool_doubles(b->memory, b->K.layout.size);
-  }
-}
-
-static void close_both(both *b) {
-  point_forces_free(b->P);
-  node_stencil_close(&b->K);
-  integration_points_close(&b->points);
-  mesh_close(&b->m);
-  pool_free(b->memory);
-}
-
-static void find_both(both *b) {
-  const double *const u[2] = {b->u[0], b->u[1]};
-  const point_motion at = {u, u, 0, 1};
-  node_stencil_multiply(&b->K, u, b->by_stencil, 0, b->m.nodes[1]);
-  point_forces_find(b->P, 0, 0, b->m.nodes[1], &at, false);
-  for (int row = 0; row < b->m.nodes[1]; row++)
-    point_forces_take(b->P, row, false, b->by_points);
-}
-
-static void move_at_random(both *b) {
-  for (int n = 0; n < mesh_node_count(&b->m); n++)
-    for (int d = 0; d < 2; d++)
-      b->u[d][node_layout_at(&b->K.layout, n)] =
-          1e-4 * (random_unit(random_mix((uint64_t)(2 * n + d))) - 0.5);
-}
-
-/* Largest difference of the forces, and the largest force. */
-static double differ(const both *b, double *largest) {
-  double most = 0;
-  *largest = 0;
-  for (int n = 0; n < mesh_node_count(&b->m); n++)
-    for (int d = 0; d < 2; d++) {
-      const long at = node_layout_at(&b->K.layout, n);
-      most = fmax(most, fabs(b->by_points[d][at] - b->by_stencil[d][at]));
-      *largest = fmax(*largest, fabs(b->by_stencil[d][at]));
-    }
-  return most;
+  both_open(b, isotropic(30e9, 0.2, false), &hooke_law, hooke_values);
 }
 
 static void check_both(both *b) {
   double largest;
   open_both(b);
-  move_at_random(b);
-  find_both(b);
-  const double most = differ(b, &largest);
+  both_move(b);
+  both_find(b, false);
+  const double most = both_differ(b, &largest);
   if (!(most <= 1e-13 * largest)) print_message("%.3g of %.3g\n", most, largest);
   assert_true(largest > 0);
   assert_true(most <= 1e-13 * largest);
-  close_both(b);
+  both_close(b);
 }
 
 static void both_ways_agree(void **state) {
@@ -172,7 +113,7 @@ static void nodes_share_all(void **state) {
     if (!b.m.gone[n]) sum += point_forces_share(b.P, plane, n);
   assert_true(all > 0 && fabs(sum - all) < 1e-12 * all);
   free(plane);
-  close_both(&b);
+  both_close(&b);
 }
 
 /* Its stress and its output are the size of the cell. */
@@ -190,12 +131,14 @@ static void sized_observe(const pl_law *law, const double *uniforms, const pl_po
 }
 
 /* Cook's outline: cells are of many sizes. */
+static const double cook[4][2] = {{0, 0}, {48, 44}, {48, 60}, {0, 44}};
+
 static void laws_read_the_size_of_their_cell(void **state) {
   (void)state;
-  static const double cook[4][2] = {{0, 0}, {48, 44}, {48, 60}, {0, 44}};
   pl_law sized = hooke_law;
   sized.point_step = sized_step;
   sized.point_observe = sized_observe;
+  sized.reads_size = 1;
   mesh m;
   integration_points points;
   mesh_open_mapped(&m, (int[2]){12, 6}, cook, 1, 2.1);
@@ -224,6 +167,42 @@ static void laws_read_the_size_of_their_cell(void **state) {
   pool_free(memory);
   point_forces_free(p);
   integration_points_close(&points);
+  mesh_close(&m);
+}
+
+static long asked;
+
+static void sized_tangent(const pl_law *law, const double *uniforms, const pl_points *p) {
+  hooke_law.point_tangent(law, uniforms, p);
+  for (int c = 0; c < 9; c++)
+    for (long q = 0; q < p->count; q++)
+      p->tangent[c][q] *= p->cell_size[q];
+  asked++;
+}
+
+/* Of a law that reads sizes the stiffest of its cells counts; of another one any cell will do. */
+static void the_stiffest_cell_counts(void **state) {
+  (void)state;
+  const plane_stiffness of = isotropic(30e9, 0.2, false);
+  pl_law sized = hooke_law;
+  sized.point_tangent = sized_tangent;
+  mesh m;
+  mesh_open_mapped(&m, (int[2]){12, 6}, cook, 1, 2.1);
+  for (int k = 0; k < 3; k++) {
+    unsigned char own[55];
+    double D[3][3], most = 0;
+    for (int c = 0; c < mesh_cell_count(&m); c++) {
+      own[c] = k == 0 || c % 11 > 6;
+      if (own[c]) most = fmax(most, mesh_cell_size(&m, c));
+    }
+    sized.reads_size = k < 2;
+    asked = 0;
+    point_forces_rest(&m, k ? own : NULL, &sized, hooke_values, false, D);
+    if (k == 2) assert_int_equal(asked, 1);
+    for (int i = 0; i < 3 && k < 2; i++)
+      for (int j = 0; j < 3; j++)
+        assert_true(fabs(D[i][j] - most * of.D[i][j]) <= 1e-12 * most * of.D[0][0]);
+  }
   mesh_close(&m);
 }
 
@@ -256,8 +235,8 @@ static void rigid_motions_push_nothing(void **state) {
   double largest = 0, most = 0;
   open_plate(&b.m, 31, 16, 2.6, 4, 1);
   open_both(&b);
-  move_at_random(&b);
-  find_both(&b);
+  both_move(&b);
+  both_find(&b, false);
   for (int n = 0; n < mesh_node_count(&b.m); n++)
     for (int d = 0; d < 2; d++)
       largest = fmax(largest, fabs(b.by_points[d][node_layout_at(&b.K.layout, n)]));
@@ -267,12 +246,12 @@ static void rigid_motions_push_nothing(void **state) {
     b.u[0][node_layout_at(&b.K.layout, n)] = 2e-5 - 1e-4 * at[1];
     b.u[1][node_layout_at(&b.K.layout, n)] = -3e-5 + 1e-4 * at[0];
   }
-  find_both(&b);
+  both_find(&b, false);
   for (int n = 0; n < mesh_node_count(&b.m); n++)
     for (int d = 0; d < 2; d++)
       most = fmax(most, fabs(b.by_points[d][node_layout_at(&b.K.layout, n)]));
   assert_true(most < 1e-11 * largest);
-  close_both(&b);
+  both_close(&b);
 }
 
 /* Hooke's law that has no number beyond a strain. */
@@ -295,11 +274,11 @@ static void nothing_comes_from_beside(void **state) {
   for (int d = 0; d < 2; d++)
     for (int n = 0; n < mesh_node_count(&b.m); n++)
       b.u[d][node_layout_at(&b.K.layout, n)] = d ? 0.002 : -0.003;
-  find_both(&b);
+  both_find(&b, false);
   for (int d = 0; d < 2; d++)
     for (int n = 0; n < mesh_node_count(&b.m); n++)
       assert_true(fabs(b.by_points[d][node_layout_at(&b.K.layout, n)]) < 1);
-  close_both(&b);
+  both_close(&b);
 }
 
 /* Forces of a mesh of which x and y, or left and right, have changed places, come with it. */
@@ -328,7 +307,7 @@ static void mirrored(bool transposed) {
     }
   double most = 0, largest = 0;
   for (int k = 0; k < 2; k++) {
-    find_both(&b[k]);
+    both_find(&b[k], false);
     f[k][0] = b[k].by_points[0];
     f[k][1] = b[k].by_points[1];
   }
@@ -343,8 +322,8 @@ static void mirrored(bool transposed) {
         largest = fmax(largest, fabs(here));
       }
   assert_true(largest > 0 && most < 1e-12 * largest);
-  close_both(&b[0]);
-  close_both(&b[1]);
+  both_close(&b[0]);
+  both_close(&b[1]);
 }
 
 static void mirror_images_push_alike(void **state) {
@@ -473,22 +452,14 @@ static void threads_change_no_bit(void **state) {
 static void a_resumed_run_is_the_same(void **state) {
   (void)state;
   const char *text = "&simulation end_time = '0.15 ms' /\n&newmark beta_1 = 0.7 /\n" PLATE SOFT;
-  char path[] = "/tmp/perilat_points_XXXXXX", error[512];
-  const int file = mkstemp(path);
-  assert_true(file >= 0);
-  close(file);
   small_run r, s;
-  frame_mark frames = {0};
   small_open(&r, &softening_law, text);
   small_open(&s, &softening_law, text);
-  simulation_advance(r.simulation, 81, NULL);
-  assert_true(simulation_save(r.simulation, path, "print", &frames, error, sizeof error));
-  assert_true(simulation_restore(s.simulation, path, "print", &frames, error, sizeof error));
+  hand_over(r.simulation, 81, s.simulation);
   small_go(&r);
   small_go(&s);
   assert_true(small_last(&r, "energy/dissipated_damage") > 0);
   assert_true(series_sum(&r) == series_sum(&s));
-  unlink(path);
   small_close(&r);
   small_close(&s);
 }
@@ -722,6 +693,7 @@ int main(void) {
                                      cmocka_unit_test(nodes_share_all),
                                      cmocka_unit_test(nodes_beside_a_hole_show_states),
                                      cmocka_unit_test(laws_read_the_size_of_their_cell),
+                                     cmocka_unit_test(the_stiffest_cell_counts),
                                      cmocka_unit_test(tables_are_shared),
                                      cmocka_unit_test(rigid_motions_push_nothing),
                                      cmocka_unit_test(nothing_comes_from_beside),

@@ -4,7 +4,6 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -13,7 +12,7 @@
 #include "mesh_cases.h"
 #include "runtime/continuum/cells.h"
 #include "runtime/continuum/node_masses.h"
-#include "runtime/simulation/simulation_save.h"
+#include "tests/runtime/hand_over.h"
 #include "tests/runtime/small_run.h"
 
 /* A run with the law of its mesh and one law for all of its cracks. */
@@ -149,18 +148,6 @@ static void go_to(cracked_run *c, int64_t step) {
     simulation_advance(c->r.simulation, step - simulation_step_done(c->r.simulation), NULL);
 }
 
-/* The second is what the first was. */
-static void hand_on(cracked_run *from, cracked_run *to) {
-  char path[] = "/tmp/perilat_tips_XXXXXX", error[512];
-  const int file = mkstemp(path);
-  frame_mark frames = {0};
-  assert_true(file >= 0);
-  close(file);
-  assert_true(simulation_save(from->r.simulation, path, "print", &frames, error, sizeof error));
-  assert_true(simulation_restore(to->r.simulation, path, "print", &frames, error, sizeof error));
-  unlink(path);
-}
-
 /* Stopped while the crack grows, and with other threads: the same to the last bit. */
 static void a_crack_that_grows_is_resumed(void **state) {
   (void)state;
@@ -174,7 +161,7 @@ static void a_crack_that_grows_is_resumed(void **state) {
   go_to(&whole, 223);
   const double length = tip_of(&whole, 0)->now.length;
   assert_true(length > 0.06 && tip_of(&whole, 0)->now.speed > 0);
-  hand_on(&whole, &resumed);
+  hand_over(whole.r.simulation, simulation_step_done(whole.r.simulation), resumed.r.simulation);
   assert_true(tip_of(&resumed, 0)->now.length == length);
   small_go(&whole.r);
   small_go(&resumed.r);
@@ -200,7 +187,7 @@ static void a_crack_that_is_in_a_hole_is_resumed(void **state) {
     go_to(&whole, simulation_step_done(whole.r.simulation) + 20);
   assert_int_equal(tip_of(&whole, 0)->now.done, TIP_AT_HOLE);
   assert_true(simulation_step_done(whole.r.simulation) < 700);
-  hand_on(&whole, &resumed);
+  hand_over(whole.r.simulation, simulation_step_done(whole.r.simulation), resumed.r.simulation);
   assert_int_equal(tip_of(&resumed, 0)->now.done, TIP_AT_HOLE);
   small_go(&whole.r);
   small_go(&resumed.r);
