@@ -11,6 +11,8 @@
 #include "both_ways.h"
 #include "runtime/base/random_number.h"
 #include "runtime/continuum/cells.h"
+#include "runtime/continuum/point_forces.h"
+#include "runtime/interaction/sweep.h"
 #include "runtime/mesh/cell_strips.h"
 #include "runtime/mesh/cut_cells.h"
 #include "softening_law.h"
