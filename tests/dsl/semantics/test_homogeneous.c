@@ -156,6 +156,9 @@ static double value_of(const units *u, const expr *e) {
     for (int i = 0; i < e->case_count; i++)
       if (!e->cases[i].guard || value_of(u, e->cases[i].guard) != 0)
         return value_of(u, e->cases[i].value);
+    break;
+  case EXPR_HOLE:
+    break;
   }
   fail_msg("cases without otherwise were accepted");
   return NAN;
