@@ -74,12 +74,12 @@ static value root(checker *ck, expr *e) {
 
 static value norm(checker *ck, expr *e) {
   value v = check_family(ck, operand(e, 0));
+  if (v.whole) v.place = ON_PARTICLE;
+  const bool family = v.whole;
+  v.whole = false;
   if (v.broken || v.unknown) return v;
-  if (v.whole) {
-    v.place = ON_PARTICLE;
-  } else if (v.shape == SHAPE_SCALAR || v.shape == SHAPE_LOGICAL) {
+  if (!family && (v.shape == SHAPE_SCALAR || v.shape == SHAPE_LOGICAL))
     return bad_shape(ck, e, v, "for the size of a number write `abs(...)`");
-  }
   return with_shape(v, v.dim, SHAPE_SCALAR);
 }
 
@@ -275,9 +275,10 @@ static value virtual_work(checker *ck, expr *e) {
 
 static value fit(checker *ck, expr *e) {
   value v = family_argument(ck, e, false);
+  v.place = ON_PARTICLE;
+  v.whole = false;
   if (v.broken || v.unknown) return v;
   ck->reads_poisson = true;
-  v.place = ON_PARTICLE;
   return with_shape(v, v.dim, SHAPE_TENSOR);
 }
 

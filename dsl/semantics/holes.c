@@ -258,6 +258,7 @@ static const char *type_words(checker *ck, const stmt *s, const expr *hole, role
   const bool damage = s->symbol && s->symbol->kind == SYMBOL_DAMAGE;
   if (damage && in != ROLE_PART) return "a pure number from 0 to 1";
   if (s->kind == STMT_YIELD && in != ROLE_PART) return "a number, below 0 where nothing flows";
+  if (s->kind == STMT_FORCE_STATE && in != ROLE_PART) return "a force (N), or N/m^6";
   if (hole->open) return NULL;
   if (in != ROLE_PART && s->kind == STMT_MOMENT) return "a moment (N*m)";
   if (in != ROLE_PART && s->kind == STMT_ENERGY && dim_equal(hole->dim, dimension_of("J")))
@@ -276,8 +277,7 @@ static void report_hole(checker *ck, const stmt *s, const expr *hole, role in) {
                                       [ROLE_PART] = "a part of "};
   const char *what = statement_words(ck, s), *type = type_words(ck, s, hole, in);
   diag_report(ck->d, DIAG_HOLE, hole->where, "%s%s is still to be written%s%s%s", parts[in], what,
-              type ? ": " : "", type ? type : "",
-              in == ROLE_LINE ? ", and when it applies" : "");
+              type ? ": " : "", type ? type : "", in == ROLE_LINE ? ", and when it applies" : "");
   if (!type) diag_hint(ck->d, "nothing that is written yet tells its unit");
 }
 
@@ -289,7 +289,8 @@ static void report_in(checker *ck, const stmt *s, const expr *e, role in) {
   if (is_choice)
     diag_report(ck->d, DIAG_HOLE, e->right->where,
                 "a choice of the option `%s` is still to be written", e->left->name);
-  const role below = in == ROLE_GUARD && (e->binary == OP_AND || e->binary == OP_OR) ? in : ROLE_PART;
+  const role below =
+      in == ROLE_GUARD && (e->binary == OP_AND || e->binary == OP_OR) ? in : ROLE_PART;
   report_in(ck, s, e->left, below);
   if (!is_choice) report_in(ck, s, e->right, below);
   for (int k = 0; k < e->argument_count; k++)

@@ -226,7 +226,6 @@ static void check_force_state(checker *ck, stmt *s) {
   dimension dim = dimension_of(per_volumes ? "N/m^6" : "N");
   if (!expect(ck, s->value, v, dim, SHAPE_SCALAR, what)) v = BROKEN;
   v.dim = dim;
-  v.unknown = false;
   v.place = ON_NEIGHBOUR;
   set_type(s, v);
 }

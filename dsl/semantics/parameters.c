@@ -71,7 +71,8 @@ void check_initial_value(checker *ck, stmt *s) {
   entry *e = entry_of(s->symbol);
   value v = {.zero = true};
   if (s->value) v = check_plain(ck, s->value, IN_DEFAULT);
-  if (!v.broken && !v.unknown && s->value && !read_finite(ck, s->value, &e->symbol.initial)) v = BROKEN;
+  if (!v.broken && !v.unknown && s->value && !read_finite(ck, s->value, &e->symbol.initial))
+    v = BROKEN;
   if (s->tensor && !v.broken) v.shape = SHAPE_TENSOR;
   if (v.zero || v.unknown) {
     e->infer = !e->known;

@@ -32,6 +32,7 @@ static value refuse(checker *ck, const expr *e, const char *message, const char 
 static value check_family_name(checker *ck, expr *e, value v) {
   if (v.unknown && ck->function) return v;
   if (v.unknown) { /* a hole may live anywhere */
+    v.whole = !e->indexed && v.place == ON_NEIGHBOUR;
     if (e->indexed || e->primed) v.place = ON_NEIGHBOUR;
     return v;
   }

@@ -540,13 +540,13 @@ static bool anything_else(parsing *p, const trouble *t) {
 
 void syntax_error(parsing *p, int token, span where, const bool expected[TOKEN_CODES]) {
   static const slip_test tests[] = {
-      foreign_statement, hole_misplaced, misspelt_statement, unit_before_value,  equal_for_equality,
-      decimal_comma,      bounds_wrong,       bracket_not_open,   bracket_empty,
-      case_without_guard, case_misplaced,     word_as_name,       name_missing,
-      index_wrong,        bracket_not_closed, guard_without_case, chained_comparison,
-      component_set,      two_values,         unit_misplaced,     text_not_last,
-      text_missing,       line_begins_wrong,  value_missing,      equal_missing,
-      anything_else};
+      foreign_statement,  hole_misplaced,     misspelt_statement, unit_before_value,
+      equal_for_equality, decimal_comma,      bounds_wrong,       bracket_not_open,
+      bracket_empty,      case_without_guard, case_misplaced,     word_as_name,
+      name_missing,       index_wrong,        bracket_not_closed, guard_without_case,
+      chained_comparison, component_set,      two_values,         unit_misplaced,
+      text_not_last,      text_missing,       line_begins_wrong,  value_missing,
+      equal_missing,      anything_else};
   if (!first_complaint(p)) return;
   trouble t = {token, where, expected};
   for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)

@@ -76,6 +76,7 @@ typedef struct hole_place {
 } hole_place;
 
 typedef struct places {
+  const char *text;
   hole_place all[MOST_PLACES];
   int count;
 } places;
@@ -85,8 +86,9 @@ static void add_places(places *p, const expr *e) {
   const bool choice = e->kind == EXPR_NAME && e->symbol &&
                       (e->symbol->kind == SYMBOL_OPTION || e->symbol->kind == SYMBOL_CHOICE);
   assert_true(p->count < MOST_PLACES);
-  if (e->where.file == 0 && !choice)
-    p->all[p->count++] = 
+  const bool listed = e->kind == EXPR_CASES && p->text[e->where.begin] == '|'; /* not in brackets */
+  if (e->where.file == 0 && !choice && !listed)
+    p->all[p->count++] =
         (hole_place){e->where, e->dim, e->shape, e->kind == EXPR_NUMBER && e->number == 0};
   if (e->kind != EXPR_UNARY || e->unary != OP_COMPONENT) add_places(p, e->left);
   add_places(p, e->right);
@@ -156,7 +158,6 @@ static void assert_told(const char *name, const char *text, const hole_place *p,
                      c.said.items[0].where.begin == p->where.begin;
   if (!alone) {
     diag_print(&c.said, stderr);
-    if (getenv("GO")) return;
     fail_msg("%s: a hole for `%.*s`: %d messages", name, (int)(p->where.end - p->where.begin),
              text + p->where.begin, c.said.count);
   }
@@ -165,9 +166,7 @@ static void assert_told(const char *name, const char *text, const hole_place *p,
   count->holes++;
   count->told += !hole->open;
   if (!hole->open && !p->zero && !is_like(hole, p)) {
-    diag_print(&c.said, stderr); fprintf(stderr, "OTHER %.*s\n",(int)(p->where.end - p->where.begin),
-             text + p->where.begin);
-    if (getenv("GO")) return;
+    diag_print(&c.said, stderr);
     fail_msg("%s: a hole for `%.*s` has another unit or shape", name,
              (int)(p->where.end - p->where.begin), text + p->where.begin);
   }
@@ -184,6 +183,7 @@ static void holes_in_law(const char *name, tally *count) {
   check_text(&whole, text);
   assert_non_null(whole.law);
   places *p = must_calloc(1, sizeof *p);
+  p->text = text;
   add_places_of_law(p, whole.tree);
   for (int k = 0; k < p->count; k++)
     assert_told(name, text, &p->all[k], count);
@@ -259,9 +259,8 @@ static void a_hole_may_say_its_unit(void **state) {
   check_text(&c, BASE "constant EA = ? [mm]\nforce N = EA*stretch\nend model\n");
   assert_int_equal(c.said.count, 2);
   forget(&c);
-  assert_int_equal(messages_of(BASE "constant EA = ? [kN]\nforce N = EA*stretch\nend model\n",
-                               DIAG_HOLE),
-                   1);
+  assert_int_equal(
+      messages_of(BASE "constant EA = ? [kN]\nforce N = EA*stretch\nend model\n", DIAG_HOLE), 1);
 }
 
 int main(void) {

@@ -209,7 +209,6 @@ static void what_is_accepted_is_homogeneous(void **state) {
   }
   assert_int_equal(accepted + refused, 20000);
   assert_true(accepted > 5000 && compared > 2000);
-  
 }
 
 int main(void) {
