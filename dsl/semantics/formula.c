@@ -18,10 +18,9 @@ enum { MOST_STEPS = 500, LARGEST_EXPONENT = 16 };
   X(ADD, a + b)                                                                                    \
   X(SUB, a - b)                                                                                    \
   X(MUL, a *b)                                                                                     \
-  X(DIV, a / b)                                                                                    \
-  X(POW, pl_pow(a, b)) X(NEG, -a) X(ONE, s->of_one(a)) X(TWO, s->of_two(a, b)) X(LT, a < b)        \
-      X(LE, a <= b) X(EQ, a == b) X(AND, (a != 0) & (b != 0)) X(OR, (a != 0) | (b != 0))           \
-          X(NOT, a == 0) X(SELECT, a != 0 ? b : c)
+  X(DIV, a / b) X(POW, pl_pow(a, b)) X(NEG, -a) X(ONE, s->of_one(a)) X(TWO, s->of_two(a, b))       \
+      X(LT, a < b) X(LE, a <= b) X(EQ, a == b) X(AND, (a != 0) & (b != 0))                         \
+          X(OR, (a != 0) | (b != 0)) X(NOT, a == 0) X(SELECT, a != 0 ? b : c)
 
 typedef enum step_code {
 #define X(code, value) STEP_##code,

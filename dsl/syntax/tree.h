@@ -146,12 +146,12 @@ typedef enum stmt_kind {
 #define TREE_STATEMENTS(X)                                                                         \
   X(PARAMETER, "parameter")                                                                        \
   X(CONSTANT, "constant")                                                                          \
-  X(OPTION, "option")                                                                              \
-  X(DEFINITION, "definition") X(STATE, "state") X(DAMAGE, "damage") X(FUNCTION, "function")        \
-      X(FORCE, "force") X(FORCE_STATE, "force state") X(MOMENT, "moment") X(ENERGY, "energy")      \
-          X(STRESS, "stress") X(STRAIN, "strain") X(YIELD, "yield") X(FLOW, "flow")                \
-              X(OUTPUT, "output") X(NONCONSERVATIVE, "nonconservative") X(INCLUDE, "include")      \
-                  X(GROW, "grow") X(TOWARD, "toward") X(SPEED, "speed") X(REQUIRE, "require")
+  X(OPTION, "option") X(DEFINITION, "definition") X(STATE, "state") X(DAMAGE, "damage")            \
+      X(FUNCTION, "function") X(FORCE, "force") X(FORCE_STATE, "force state") X(MOMENT, "moment")  \
+          X(ENERGY, "energy") X(STRESS, "stress") X(STRAIN, "strain") X(YIELD, "yield")            \
+              X(FLOW, "flow") X(OUTPUT, "output") X(NONCONSERVATIVE, "nonconservative")            \
+                  X(INCLUDE, "include") X(GROW, "grow") X(TOWARD, "toward") X(SPEED, "speed")      \
+                      X(REQUIRE, "require")
 #define X(code, text) STMT_##code,
   TREE_STATEMENTS(X)
 #undef X
