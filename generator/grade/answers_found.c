@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 
 #include "dsl/base/characters.h"
-#include "generator/grade/exercise_files.h"
+#include "generator/exercise/exercise_files.h"
 #include "generator/kernel/document.h"
 
 static const char *folder_of_file(arena *a, const char *path) {

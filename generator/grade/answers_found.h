@@ -2,7 +2,7 @@
 #ifndef PERILAT_GENERATOR_ANSWERS_FOUND_H
 #define PERILAT_GENERATOR_ANSWERS_FOUND_H
 
-#include "generator/grade/exercise.h"
+#include "generator/exercise/exercise.h"
 #include "generator/grade/grade_child.h"
 
 /* Those of `path`: a file; or a folder with NAME.plm or NAME/answer.plm (of an exercise that asks

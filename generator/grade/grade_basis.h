@@ -3,7 +3,7 @@
 #ifndef PERILAT_GENERATOR_GRADE_BASIS_H
 #define PERILAT_GENERATOR_GRADE_BASIS_H
 
-#include "generator/grade/path_case.h"
+#include "generator/exercise/path_case.h"
 
 typedef struct grade_basis {
   const exercise *of;

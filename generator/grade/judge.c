@@ -146,7 +146,9 @@ static double expected_value(const judging *j, int k) {
 static void put_number(judging *j, int k, double value, double expected, const char *why) {
   const exercise_item *item = &j->b->of->items[k];
   const bool right = fabs(value - expected) <= item->tolerance * fabs(expected);
-  const char *what = item->kind == ITEM_RUN ? item->monitor : item->quantity;
+  const char *what = item->kind != ITEM_RUN                ? item->quantity
+                     : strcmp(item->of, "dissipated") == 0 ? "the dissipated energy"
+                                                           : item->monitor;
   const char *ratio = expected != 0 ? ratio_words(fabs(value / expected)) : NULL;
   put_mark(j, k, right, right, 1, value);
   j->all_right = j->all_right && right;

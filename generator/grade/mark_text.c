@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "dsl/base/characters.h"
-#include "generator/grade/exercise_grammar.h"
+#include "generator/exercise/exercise_grammar.h"
 
 const char *points_shown(double points) {
   static _Thread_local char texts[4][32];

@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "generator/grade/exercise.h"
+#include "generator/exercise/exercise.h"
 #include "generator/grade/marks.h"
 
 typedef struct mark_sums {

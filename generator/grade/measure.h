@@ -2,7 +2,7 @@
 #ifndef PERILAT_GENERATOR_GRADE_MEASURE_H
 #define PERILAT_GENERATOR_GRADE_MEASURE_H
 
-#include "generator/grade/exercise.h"
+#include "generator/exercise/exercise.h"
 
 /* In SI; NaN with a sentence in *why (of the arena) where there is none. The law's file `answer` is
    in the working folder; `set` is the item's, or what it is compared with. */

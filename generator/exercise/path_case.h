@@ -4,7 +4,7 @@
 #define PERILAT_GENERATOR_PATH_CASE_H
 
 #include "generator/against/reference_law.h"
-#include "generator/grade/exercise.h"
+#include "generator/exercise/exercise.h"
 
 typedef struct path_case {
   const exercise_item *item;

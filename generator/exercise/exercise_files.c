@@ -1,4 +1,4 @@
-#include "generator/grade/exercise_files.h"
+#include "generator/exercise/exercise_files.h"
 
 #include <dirent.h>
 #include <fnmatch.h>

@@ -1,4 +1,4 @@
-#include "generator/grade/exercise_grammar.h"
+#include "generator/exercise/exercise_grammar.h"
 
 #include "dsl/base/units.h"
 

@@ -1,4 +1,4 @@
-#include "generator/grade/exercise.h"
+#include "generator/exercise/exercise.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,8 +7,8 @@
 
 #include "dsl/base/characters.h"
 #include "generator/drive/group_keys.h"
-#include "generator/grade/exercise_files.h"
-#include "generator/grade/exercise_grammar.h"
+#include "generator/exercise/exercise_files.h"
+#include "generator/exercise/exercise_grammar.h"
 #include "generator/kernel/model.h"
 #include "runtime/deck/deck_value.h"
 

@@ -1,6 +1,5 @@
-/* An exercise: a folder with a file that says what is judged, and what it is judged by. The room:
-   answers of students marked, in words. The grader trusts the exercise, never an answer: answers
-   are read and driven in a process of their own (grade_child.h). */
+/* An exercise: a folder with a file that says what is judged. The room: what answers are measured
+   by; it knows none. An exercise is trusted, an answer never. */
 #ifndef PERILAT_GENERATOR_EXERCISE_H
 #define PERILAT_GENERATOR_EXERCISE_H
 

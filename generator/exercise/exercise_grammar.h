@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "generator/grade/exercise.h"
+#include "generator/exercise/exercise.h"
 
 enum { EXERCISE_GROUP_EXERCISE, EXERCISE_GROUP_ITEM, EXERCISE_GROUP_COUNT };
 

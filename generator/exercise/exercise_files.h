@@ -3,7 +3,7 @@
 #ifndef PERILAT_GENERATOR_EXERCISE_FILES_H
 #define PERILAT_GENERATOR_EXERCISE_FILES_H
 
-#include "generator/grade/exercise.h"
+#include "generator/exercise/exercise.h"
 
 /* Names of ordinary files in FOLDER whose last part fits `pattern` ("hidden/?*.nml"), in
    alphabetical order, as paths from the folder; NULL: none, count 0. False where the pattern leaves

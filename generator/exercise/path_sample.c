@@ -1,4 +1,4 @@
-#include "generator/grade/path_sample.h"
+#include "generator/exercise/path_sample.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "generator/grade/path_case.h"
+#include "generator/exercise/path_case.h"
 
 #include <math.h>
 #include <stdlib.h>

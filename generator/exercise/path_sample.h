@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "generator/grade/path_case.h"
+#include "generator/exercise/path_case.h"
 
 /* Paths of a sample item, referred to the solution's file, in the arena: the paths `known` give
    what is prescribed and how far it goes. NULL after messages. */
