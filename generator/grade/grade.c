@@ -5,6 +5,7 @@
 #include "generator/grade/answers_found.h"
 #include "generator/grade/grading.h"
 #include "generator/grade/mark_text.h"
+#include "generator/grade/publish.h"
 #include "generator/grade/self_test.h"
 
 enum { FULL = 0, WRONG = 1, LESS = 2 };
@@ -24,10 +25,17 @@ static int grade_all(grading *g) {
   return status;
 }
 
+/* What is asked for, of an exercise that is in order. */
+static int do_asked(grading *g) {
+  const grade_options *o = g->o;
+  if (o->publish) return publish(g->e, &g->sources, o->publish) ? FULL : WRONG;
+  if (o->self_test) return self_test(g) ? FULL : WRONG;
+  return grade_all(g);
+}
+
 int grade(const grade_options *o) {
   grading g;
-  int status = WRONG;
-  if (grading_open(&g, o)) status = o->self_test ? self_test(&g) ? FULL : WRONG : grade_all(&g);
+  const int status = grading_open(&g, o) ? do_asked(&g) : WRONG;
   grading_close(&g);
   return status;
 }
