@@ -6,6 +6,7 @@
 
 #include "generator/against/table_difference.h"
 #include "generator/check/physics.h"
+#include "generator/grade/curve_text.h"
 #include "generator/grade/judge_path.h"
 #include "generator/grade/measure.h"
 #include "runtime/deck/deck_value.h"

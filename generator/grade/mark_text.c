@@ -76,8 +76,8 @@ static void print_sum(const exercise *e, const marks *m, FILE *out) {
 void marks_print(const exercise *e, const marks *m, FILE *out) {
   fprintf(out, "%s: %s\n", name_shown(m->name), name_shown(e->title));
   if (m->holes)
-    fprintf(out, "  %d hole%s `?` still to be written\n", m->holes,
-            m->holes == 1 ? " is" : "s are");
+    fprintf(out, "  %d hole%s `?` %s still to be written\n", m->holes, m->holes == 1 ? "" : "s",
+            m->holes == 1 ? "is" : "are");
   if (m->messages) print_lines(m->messages, "  ", out);
   if (m->sentence) print_lines(m->sentence, "  ", out);
   for (int k = 0; k < e->item_count; k++)
