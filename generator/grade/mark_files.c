@@ -42,6 +42,8 @@ void marks_json(const exercise *e, const marks *m, json *j) {
   json_put_text(j, "known",
                 m->known >= 0 && m->known < e->wrong_count ? e->wrong[m->known].name : NULL);
   json_put_text(j, "trouble", m->trouble);
+  json_put_integer(j, "cases", m->cases);
+  json_put_integer(j, "reached", m->reached);
   json_put_text(j, "notes", m->notes);
   json_put_number(j, "seconds", m->seconds);
   json_put_array(j, "items");
