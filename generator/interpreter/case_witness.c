@@ -37,20 +37,40 @@ static void find_branches(case_witness *w) {
   free(uses);
 }
 
-/* What the motion of a bond is computed with is no case of the law: it has names, and no line. */
+/* Does a node depend on what is the law's own: its states and parameters? */
+static bool *find_own(const case_witness *w) {
+  const ir *g = w->graph;
+  const int parameters = w->kernel->parameter_count;
+  bool *own = must_calloc((size_t)w->count + 1, sizeof *own);
+  for (ir_node n = 0; n < w->count; n++) {
+    if (ir_operation(g, n) == IR_INPUT) {
+      const ir_source from = ir_input_source(g, n);
+      own[n] = from == IR_FROM_FIELD || from == IR_FROM_NEW_FIELD ||
+               (from == IR_FROM_PARAMETER && ir_input_index(g, n) < parameters);
+    }
+    for (int k = 0; k < ir_arity(ir_operation(g, n)); k++)
+      own[n] = own[n] || own[ir_operand(g, n, k)];
+  }
+  return own;
+}
+
+/* What the motion of a bond is computed with is no case of the law: it has names, no lines, and
+   nothing of the law's own. */
 static void find_motion(case_witness *w) {
   const ir *g = w->graph;
   ir_node *roots = must_calloc((size_t)w->count + 1, sizeof *roots);
   unsigned char *needed = must_calloc((size_t)w->count + 1, 1);
+  bool *own = find_own(w);
   int count = 0;
   for (ir_node n = 0; n < w->count; n++)
-    if (ir_name(g, n) && ir_where(g, n).end == 0 && ir_operation(g, n) != IR_INPUT)
+    if (ir_name(g, n) && ir_where(g, n).end == 0 && ir_operation(g, n) != IR_INPUT && !own[n])
       roots[count++] = n;
   ir_mark(g, roots, count, needed);
   for (ir_node n = 0; n < w->count; n++)
     if (needed[n]) w->marks[n] |= IS_MOTION;
   free(roots);
   free(needed);
+  free(own);
 }
 
 /* Is the choice asked in this state: do those above it take the branch that it is? */
@@ -63,6 +83,16 @@ static bool is_asked(const case_witness *w, const interpreter *p, ir_node n, int
   return true;
 }
 
+/* Damage that a deck holds back is none of the law's cases. */
+static bool asks_for_protection(const ir *g, ir_node choice) {
+  const ir_node guard = ir_operand(g, choice, 0);
+  for (int k = 0; k < ir_arity(ir_operation(g, guard)); k++) {
+    const char *name = ir_name(g, ir_operand(g, guard, k));
+    if (name && strncmp(name, "protected", strlen("protected")) == 0) return true;
+  }
+  return false;
+}
+
 /* Of laws of bonds the first state alone is a bond; others are lanes without one. */
 static void look(void *context, const interpreter *p, int count) {
   case_witness *w = context;
@@ -70,7 +100,7 @@ static void look(void *context, const interpreter *p, int count) {
   const int lanes = w->kernel->kind == PL_STATE ? count : 1;
   for (ir_node n = 0; n < w->count; n++) {
     if (ir_operation(g, n) != IR_SELECT || w->marks[n] & IS_MOTION || !interpreter_lanes(p, n) ||
-        !choice_is_case(g, n))
+        !choice_is_case(g, n) || asks_for_protection(g, n))
       continue;
     const double *guard = interpreter_lanes(p, ir_operand(g, n, 0));
     w->marks[n] |= IS_CASE;
