@@ -7,6 +7,7 @@
 #include "generator/page/html.h"
 #include "generator/page/page_curves.h"
 #include "generator/page/page_data.h"
+#include "generator/page/page_frames.h"
 #include "generator/page/page_result.h"
 #include "generator/page/page_texts.h"
 #include "generator/page/page_verdict.h"
@@ -25,16 +26,18 @@ static void put_header(FILE *out, const page_result *p) {
 }
 
 /* What the script reads. malloc'ed. */
-static char *data_of(const page_result *results, int count) {
+static char *data_of(const page_result *results, const movie *movies, int count) {
   char *text = NULL;
   size_t length;
   FILE *out = must_open_text(&text, &length);
   json w;
   json_begin(&w, out);
   json_object(&w);
+  page_put_colours(&w);
   for (int k = 0; k < count; k++) {
     json_put_object(&w, results[k].key);
     page_put_histories(&w, &results[k]);
+    page_put_frames(&w, &results[k], &movies[k]);
     json_object_end(&w);
   }
   json_object_end(&w);
@@ -43,10 +46,11 @@ static char *data_of(const page_result *results, int count) {
   return text;
 }
 
-static void put_result(FILE *out, const page_result *p) {
+static void put_result(FILE *out, const page_result *p, const movie *m) {
   put_header(out, p);
   page_verdict(out, p);
   page_main_curve(out, p);
+  page_frames(out, p, m);
   page_sentences(out, p);
   page_monitors(out, p);
   page_energies(out, p);
@@ -56,17 +60,22 @@ static void put_result(FILE *out, const page_result *p) {
 }
 
 static void put_page(FILE *out, const page_result *results, int count) {
-  char *data = data_of(results, count);
+  movie movies[2];
+  for (int k = 0; k < count; k++)
+    movie_read(&movies[k], &results[k]);
+  char *data = data_of(results, movies, count);
   shell_begin(out, title_of(&results[0]));
   fputs("<main>\n", out);
-  put_result(out, &results[0]);
+  put_result(out, &results[0], &movies[0]);
   fputs("</main>\n", out);
   shell_end(out, data);
   free(data);
+  for (int k = 0; k < count; k++)
+    movie_free(&movies[k]);
 }
 
 int page_of_results(FILE *out, const char *command, const char *const *paths, int count) {
-  page_result results[2];
+  page_result results[2] = {{.path = NULL}};
   bool good = true;
   for (int k = 0; k < count; k++)
     good = page_result_open(&results[k], command, paths[k], k ? "b" : "a") && good;
