@@ -62,13 +62,19 @@ void html_print(FILE *out, const char *format, ...) {
   free(text);
 }
 
-const char *html_quantity(double value, const char *si_unit, char text[HTML_QUANTITY]) {
+/* The value as it is shown, and its unit, "" without one. */
+static double shown_quantity(double value, const char *si_unit, const char **shown) {
   double factor;
-  const char *shown = readable_unit(si_unit, fabs(value), &factor);
-  const bool pure = unit_is_pure(shown);
-  if (value == 0) factor = 1, shown = si_unit;
-  snprintf(text, HTML_QUANTITY, "%.6g%s%.60s", value * factor + 0.0, pure ? "" : " ",
-           pure ? "" : shown);
+  *shown = readable_unit(si_unit, fabs(value), &factor);
+  if (value == 0) factor = 1, *shown = si_unit;
+  if (unit_is_pure(*shown)) *shown = "";
+  return value * factor + 0.0;
+}
+
+const char *html_quantity(double value, const char *si_unit, char text[HTML_QUANTITY]) {
+  const char *unit_text;
+  const double shown = shown_quantity(value, si_unit, &unit_text);
+  snprintf(text, HTML_QUANTITY, "%.6g%s%.60s", shown, *unit_text ? " " : "", unit_text);
   return text;
 }
 
@@ -105,4 +111,11 @@ void html_unit(FILE *out, const char *unit_text) {
       at += length ? length : 1;
     }
   }
+}
+
+void html_put_quantity(FILE *out, double value, const char *si_unit) {
+  const char *unit_text;
+  const double shown = shown_quantity(value, si_unit, &unit_text);
+  html_print(out, "%.6g%s", shown, *unit_text ? " " : "");
+  html_unit(out, unit_text);
 }

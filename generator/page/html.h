@@ -16,6 +16,8 @@ void html_print(FILE *out, const char *format, ...) __attribute__((format(printf
 /* A value in SI with a unit that reads well, "5.88075 kN", to six digits. */
 enum { HTML_QUANTITY = 96 };
 const char *html_quantity(double value, const char *si_unit, char text[HTML_QUANTITY]);
+/* The same into a page, with the unit as html_unit has it. */
+void html_put_quantity(FILE *out, double value, const char *si_unit);
 /* A unit as people write it: N*m as N·m, m^2 as m². */
 void html_unit(FILE *out, const char *unit_text);
 

@@ -8,6 +8,7 @@
 #include "generator/page/page_curves.h"
 #include "generator/page/page_data.h"
 #include "generator/page/page_frames.h"
+#include "generator/page/page_law.h"
 #include "generator/page/page_result.h"
 #include "generator/page/page_texts.h"
 #include "generator/page/page_verdict.h"
@@ -51,6 +52,7 @@ static void put_result(FILE *out, const page_result *p, const movie *m) {
   page_verdict(out, p);
   page_main_curve(out, p);
   page_frames(out, p, m);
+  page_laws(out, p);
   page_sentences(out, p);
   page_monitors(out, p);
   page_energies(out, p);
