@@ -5,6 +5,7 @@
 
 #include "dsl/base/arena.h"
 #include "generator/page/html.h"
+#include "generator/page/page_body.h"
 #include "generator/page/page_curves.h"
 #include "generator/page/page_data.h"
 #include "generator/page/page_frames.h"
@@ -52,6 +53,7 @@ static void put_result(FILE *out, const page_result *p, const movie *m) {
   page_verdict(out, p);
   page_main_curve(out, p);
   page_frames(out, p, m);
+  page_body(out, p);
   page_laws(out, p);
   page_sentences(out, p);
   page_monitors(out, p);
