@@ -132,21 +132,20 @@ static void put_area(const drawing *w, const diagram_curve *c, const diagram_cur
   fputs("Z\"/>\n", w->out);
 }
 
-/* The name of a curve's series, and in brackets what it is drawn over. */
+/* Of each curve with data its ink, its result and the name of its series; what they are drawn
+   over. */
 static void put_series(const drawing *w) {
-  bool any = false;
-  for (int k = 0; k < w->d->count; k++)
-    any = any || w->d->curves[k].series;
-  if (!any) return;
-  fputs(" data-series=\"", w->out);
+  if (!w->d->over) return;
+  fputs(" data-over=\"", w->out);
+  html_text(w->out, w->d->over);
+  fputs("\" data-series=\"", w->out);
   for (int k = 0; k < w->d->count; k++) {
-    if (!w->d->curves[k].series) continue;
-    fprintf(w->out, "%d:", w->d->curves[k].ink % 8);
-    html_text(w->out, w->d->curves[k].series);
+    const diagram_curve *c = &w->d->curves[k];
+    if (!c->series) continue;
+    fprintf(w->out, "%d:%s:", c->ink % 8, c->of);
+    html_text(w->out, c->series);
     fputc(';', w->out);
   }
-  fputs("\" data-over=\"", w->out);
-  html_text(w->out, w->d->curves[0].over ? w->d->curves[0].over : "");
   fputc('"', w->out);
 }
 
@@ -154,11 +153,11 @@ static void put_series(const drawing *w) {
 static void put_head(const drawing *w) {
   const axis *x = &w->x, *y = &w->y;
   fprintf(w->out,
-          "<svg class=\"diagram%s\" viewBox=\"0 %d %d %d\" role=\"img\" data-of=\"%s\" "
+          "<svg class=\"diagram%s\" viewBox=\"0 %d %d %d\" role=\"img\" "
           "data-x=\"%.17g %.17g %.17g\" data-y=\"%.17g %.17g %.17g\" data-x-unit=\"",
           w->d->large ? " large" : "", DIAGRAM_TOP - 20, DIAGRAM_WIDTH,
-          DIAGRAM_HEIGHT - DIAGRAM_TOP + 20, w->d->of ? w->d->of : "a", x->low, x->high, x->factor,
-          y->low, y->high, y->factor);
+          DIAGRAM_HEIGHT - DIAGRAM_TOP + 20, x->low, x->high, x->factor, y->low, y->high,
+          y->factor);
   html_text(w->out, x->unit_text);
   fputs("\" data-y-unit=\"", w->out);
   html_text(w->out, y->unit_text);

@@ -13,7 +13,7 @@ typedef struct diagram_curve {
   long count;
   int ink;            /* number of its colour, from 0 */
   const char *series; /* what the page's data call its values; NULL: they hold none */
-  const char *over;   /* the same of x */
+  const char *of;     /* in which result of the page: "a", "b" */
 } diagram_curve;
 
 typedef struct diagram {
@@ -21,9 +21,9 @@ typedef struct diagram {
   const char *x_name, *x_unit, *y_name, *y_unit;
   const diagram_curve *curves; /* [count] */
   int count;
-  bool stacked;   /* areas, each between its curve and the one before it; the first one's from 0 */
-  bool large;     /* over the whole width of the page: smaller letters beside the curves */
-  const char *of; /* which result of the page: "a", "b" */
+  bool stacked; /* areas, each between its curve and the one before it; the first one's from 0 */
+  bool large;   /* over the whole width of the page: smaller letters beside the curves */
+  const char *over; /* what the data call the values along x, "" the time; NULL without data */
 } diagram;
 
 /* False, with nothing written, where no value can be drawn. */

@@ -19,12 +19,20 @@ static const char *title_of(const page_result *p) {
   return *p->title ? p->title : p->path;
 }
 
-static void put_header(FILE *out, const page_result *p) {
+static void put_header(FILE *out, const page_result *results, int count) {
   fputs("<header><h1>", out);
-  html_text(out, title_of(p));
-  fputs("</h1>\n<p class=\"quiet\">", out);
-  html_text(out, p->path);
-  fputs("</p></header>\n", out);
+  html_text(out, title_of(&results[0]));
+  if (count > 1 && strcmp(title_of(&results[0]), title_of(&results[1])) != 0) {
+    fputs(" <small>beside</small> ", out);
+    html_text(out, title_of(&results[1]));
+  }
+  fputs("</h1>\n", out);
+  if (count == 1) {
+    fputs("<p class=\"quiet\">", out);
+    html_text(out, results[0].path);
+    fputs("</p>", out);
+  }
+  fputs("</header>\n", out);
 }
 
 /* What the script reads. malloc'ed. */
@@ -48,19 +56,47 @@ static char *data_of(const page_result *results, const movie *movies, int count)
   return text;
 }
 
-static void put_result(FILE *out, const page_result *p, const movie *m) {
-  put_header(out, p);
-  page_verdict(out, p);
-  page_main_curve(out, p);
-  page_frames(out, p, m);
-  page_body(out, p);
-  page_laws(out, p);
-  page_sentences(out, p);
-  page_monitors(out, p);
-  page_energies(out, p);
-  page_warnings(out, p);
-  page_inputs(out, p);
-  page_provenance(out, p);
+/* --- sections --------------------------------------------------------------------------------- */
+
+typedef void section(FILE *out, const page_result *p);
+
+/* Of two results side by side. */
+static void put_beside(FILE *out, const page_result *results, int count, section *put) {
+  if (count > 1) fputs("<div class=\"pair\">\n", out);
+  for (int k = 0; k < count; k++) {
+    if (count > 1) fputs("<div>", out);
+    put(out, &results[k]);
+    if (count > 1) fputs("</div>\n", out);
+  }
+  if (count > 1) fputs("</div>\n", out);
+}
+
+static void put_frames(FILE *out, const page_result *results, const movie *movies, int count) {
+  fputs("<section id=\"frames\"><h2>What is seen</h2>\n", out);
+  if (count > 1) fputs("<div class=\"pair\">\n", out);
+  for (int k = 0; k < count; k++) {
+    if (count > 1) fputs("<div>", out);
+    page_frames(out, &results[k], &movies[k]);
+    if (count > 1) fputs("</div>\n", out);
+  }
+  if (count > 1) fputs("</div>\n", out);
+  page_main_curve(out, results, count, false);
+  fputs("</section>\n", out);
+}
+
+static void put_sections(FILE *out, const page_result *results, const movie *movies, int count) {
+  put_header(out, results, count);
+  put_beside(out, results, count, page_verdict);
+  page_main_curve(out, results, count, true);
+  put_beside(out, results, count, page_body);
+  put_beside(out, results, count, page_laws);
+  put_beside(out, results, count, page_sentences);
+  put_beside(out, results, count, page_inputs);
+  page_monitors(out, results, count);
+  put_frames(out, results, movies, count);
+  put_beside(out, results, count, page_energies);
+  put_beside(out, results, count, page_warnings);
+  put_beside(out, results, count, page_provenance);
 }
 
 static void put_page(FILE *out, const page_result *results, int count) {
@@ -70,7 +106,7 @@ static void put_page(FILE *out, const page_result *results, int count) {
   char *data = data_of(results, movies, count);
   shell_begin(out, title_of(&results[0]));
   fputs("<main>\n", out);
-  put_result(out, &results[0], &movies[0]);
+  put_sections(out, results, movies, count);
   fputs("</main>\n", out);
   shell_end(out, data);
   free(data);

@@ -86,20 +86,20 @@
 
   /* --- curves --- */
 
-  function diagram(svg, run) {
+  function diagram(svg) {
     const axis = (text, from, to) => {
       const [low, high, factor] = text.split(" ").map(Number);
       return { factor, at: (value) => from + ((value * factor - low) / (high - low)) * (to - from) };
     };
     const x = axis(svg.dataset.x, FRAME.left, FRAME.right), y = axis(svg.dataset.y, FRAME.bottom, FRAME.top);
-    const overName = svg.dataset.over, over = run.history.series.get(overName);
-    const curves = (svg.dataset.series || "").split(";").filter(Boolean).map((item) => ({
-      ink: item[0], name: item.slice(2), values: run.history.series.get(item.slice(2)),
-    }));
-    if (!over || curves.length === 0) return;
-    const stacked = svg.querySelector(".area") !== null;
-    const figure = svg.closest("figure");
-    const reading = element("p", figure, { className: "reading" });
+    const overName = svg.dataset.over;
+    const curves = svg.dataset.series.split(";").filter(Boolean).map((item) => {
+      const run = runs.get(item[2]), name = item.slice(4);
+      return { ink: item[0], name, run, values: run.history.series.get(name), over: run.history.series.get(overName) };
+    });
+    if (curves.length === 0) return;
+    const stacked = svg.querySelector(".area") !== null, several = new Set(curves.map((c) => c.run)).size > 1;
+    const reading = element("p", svg.closest("figure"), { className: "reading" });
     const shape = (name, properties) => {
       const made = document.createElementNS(SVG, name);
       for (const [key, value] of Object.entries(properties)) made.setAttribute(key, value);
@@ -107,58 +107,60 @@
       svg.append(made);
       return made;
     };
-    const cursor = shape("path", { class: "cursor" });
-    const dots = stacked ? [] : curves.map((c) => shape("circle", { class: "dot ink" + c.ink, r: 8 }));
     const read = stacked ? null : shape("circle", { class: "dot read", r: 6 });
     const put = (dot, c, k) => {
-      const good = Number.isFinite(c.values[k]) && Number.isFinite(over[k]);
+      const good = Number.isFinite(c.values[k]) && Number.isFinite(c.over[k]);
       dot.style.display = good ? "" : "none";
       if (!good) return;
-      dot.setAttribute("cx", x.at(over[k]));
+      dot.setAttribute("cx", x.at(c.over[k]));
       dot.setAttribute("cy", y.at(c.values[k]));
     };
-    const tell = (k) => {
-      const parts = [withUnit(shown(over[k] * x.factor), svg.dataset.xUnit)];
-      if (overName) parts[0] = overName + " " + parts[0];
-      else parts[0] = data[run.key].timeName + " " + parts[0];
-      for (const c of curves)
-        parts.push(c.name.replace(/^energy\//, "").replace(/_/g, "_") + " " + withUnit(shown(c.values[k] * y.factor), svg.dataset.yUnit));
-      reading.textContent = parts.join(",  ");
-    };
-    let current = -1;
-    run.watchers.push((k) => {
-      current = k;
-      dots.forEach((dot, n) => put(dot, curves[n], k));
-      if (overName === "" && Number.isFinite(over[k])) {
+    /* What the frames show, on the curves: a line at their time, or a dot. */
+    curves.forEach((c, n) => {
+      const cursor = n === 0 && overName === "" ? shape("path", { class: "cursor" }) : null;
+      const dot = stacked ? null : shape("circle", { class: "dot ink" + c.ink, r: 8 });
+      c.run.watchers.push((k) => {
+        if (dot) put(dot, c, k);
+        if (!cursor || !Number.isFinite(c.over[k])) return;
         cursor.style.display = "";
-        cursor.setAttribute("d", `M${x.at(over[k])} ${FRAME.top}V${FRAME.bottom}`);
-      }
+        cursor.setAttribute("d", `M${x.at(c.over[k])} ${FRAME.top}V${FRAME.bottom}`);
+      });
     });
-    svg.addEventListener("pointermove", (event) => {
+    const tell = (c, k) => {
+      const parts = [(overName || data[c.run.key].timeName) + " " + withUnit(shown(c.over[k] * x.factor), svg.dataset.xUnit)];
+      for (const of of stacked ? curves : [c])
+        parts.push(of.name.replace(/^energy\//, "") + " " + withUnit(shown(of.values[k] * y.factor), svg.dataset.yUnit));
+      reading.textContent = (several ? data[c.run.key].path + ":  " : "") + parts.join(",  ");
+    };
+    const placeOf = (event) => {
       const box = svg.getBoundingClientRect(), view = svg.viewBox.baseVal;
-      const px = view.x + ((event.clientX - box.left) / box.width) * view.width;
-      const py = view.y + ((event.clientY - box.top) / box.height) * view.height;
-      let best = -1, least = Infinity;
-      for (let k = 0; k < over.length; k++) {
-        const dx = x.at(over[k]) - px, dy = overName ? y.at(curves[0].values[k]) - py : 0;
-        const distance = dx * dx + dy * dy;
-        if (distance < least) { least = distance; best = k; }
-      }
-      if (best < 0) return;
-      if (read) put(read, curves[0], best);
-      tell(best);
+      return [view.x + ((event.clientX - box.left) / box.width) * view.width, view.y + ((event.clientY - box.top) / box.height) * view.height];
+    };
+    /* The sample nearest to the pointer: along x in a diagram over time, where curves do not turn. */
+    const nearestTo = ([px, py]) => {
+      let best = null, least = Infinity;
+      for (const c of stacked ? curves.slice(0, 1) : curves)
+        for (let k = 0; k < c.over.length; k++) {
+          const dx = x.at(c.over[k]) - px, dy = y.at(c.values[k]) - py;
+          const distance = overName ? dx * dx + dy * dy : Math.abs(dx) + (several ? 1e-3 * Math.abs(dy) : 0);
+          if (distance < least) { least = distance; best = [c, k]; }
+        }
+      return best;
+    };
+    svg.addEventListener("pointermove", (event) => {
+      const best = nearestTo(placeOf(event));
+      if (!best) return;
+      if (read) put(read, ...best);
+      tell(...best);
     });
     svg.addEventListener("pointerleave", () => {
       if (read) read.style.display = "none";
       reading.textContent = "";
     });
     svg.addEventListener("click", (event) => {
-      if (!run.movie || overName !== "") return;
-      const box = svg.getBoundingClientRect();
-      const px = ((event.clientX - box.left) / box.width) * svg.viewBox.baseVal.width;
-      run.movie.goTo(over[nearest(over.map((v) => x.at(v)), px)]);
+      const best = nearestTo(placeOf(event));
+      if (best && best[0].run.movie) best[0].run.movie.goTo(best[0].run.history.time[best[1]]);
     });
-    return current;
   }
 
   /* --- frames --- */
@@ -220,7 +222,6 @@
     }
 
     const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-    const dark = () => matchMedia("(prefers-color-scheme: dark)").matches;
     /* Sound and separated bonds stand out from the paper, whatever it is. */
     const classInk = (n) => n === 0 ? style("--sound") : n === data.classes.length - 1 ? style("--ink") : data.classes[n].ink;
     const scaleInk = (step) => step ? data.scale[Math.min(data.scale.length - 1, Math.floor(((step - 1) / 254) * data.scale.length))] : style("--sound");
@@ -449,17 +450,16 @@
     });
     new ResizeObserver(() => paint()).observe(host);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", paint);
-    return { show, goTo, total, dark };
+    return { show, goTo, total };
   }
 
   /* --- all --- */
 
-  for (const key of Object.keys(data)) {
-    if (!data[key].series) continue;
-    const run = { key, watchers: [], history: historyOf(key), movie: null };
-    runs.set(key, run);
-    for (const svg of document.querySelectorAll(`svg.diagram[data-of="${key}"][data-series]`)) diagram(svg, run);
-    const host = document.querySelector(`.movie[data-of="${key}"]`);
+  for (const key of Object.keys(data))
+    if (data[key].series) runs.set(key, { key, watchers: [], history: historyOf(key), movie: null });
+  document.querySelectorAll("svg.diagram[data-series]").forEach(diagram);
+  for (const run of runs.values()) {
+    const host = document.querySelector(`.movie[data-of="${run.key}"]`);
     if (host) run.movie = movie(host, run);
   }
   for (const run of runs.values())

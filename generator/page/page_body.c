@@ -206,7 +206,7 @@ static void put_actions(const picture *w, const deck_region *r, const double at[
       put_arrow(w, at, k->forces[n].component, sign_of(&k->forces[n].force), "loaded");
 }
 
-/* Of many particles some, evenly; the number of the region stands at the first. */
+/* Of many particles some, evenly; the number of the region stands at the middle one. */
 static void put_region(const picture *w, int region, int number) {
   const deck_region *r = &w->p->deck->regions[region];
   long count = 0;
@@ -218,7 +218,10 @@ static void put_region(const picture *w, int region, int number) {
     double at[2];
     seen_at(w, w->places + w->dimensions * found[k], at);
     put_actions(w, r, at);
-    if (k > 0) continue;
+  }
+  if (count > 0) {
+    double at[2];
+    seen_at(w, w->places + w->dimensions * found[count / 2], at);
     fprintf(w->out, "<circle class=\"place\" cx=\"%.1f\" cy=\"%.1f\" r=\"3\"/>", at[0], at[1]);
     fprintf(w->out, "<text class=\"number\" x=\"%.1f\" y=\"%.1f\">%d</text>\n", at[0] + 6,
             at[1] - 7, number);

@@ -67,6 +67,7 @@ void page_put_histories(json *w, const page_result *p) {
     packing_whole(&numbers, k - last);
     last = k;
   }
+  json_put_text(w, "path", p->path);
   json_put_integer(w, "sampled", p->samples);
   page_put_packed(w, "samples", &numbers);
   json_put_text(w, "timeName", page_time_name(p));

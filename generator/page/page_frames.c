@@ -210,10 +210,10 @@ static void put_stills(FILE *out, const page_result *p, const movie *m) {
 /* --- the section ------------------------------------------------------------------------------ */
 
 void page_frames(FILE *out, const page_result *p, const movie *m) {
-  fputs("<section><h2>What is seen</h2>\n", out);
   if (*m->why || m->frame_count == 0) {
-    html_print(out, "Nothing is shown: %s.", m->why);
-    fputs("</section>\n", out);
+    fputs("<p>", out);
+    html_print(out, "No frame is shown: %s.", m->why);
+    fputs("</p>\n", out);
     return;
   }
   fprintf(out, "<div class=\"movie\" data-of=\"%s\">", p->key);
@@ -222,5 +222,5 @@ void page_frames(FILE *out, const page_result *p, const movie *m) {
   if (m->frame_count < p->frames)
     html_print(out, "%ld of %ld frames are in this page. ", m->frame_count, p->frames);
   if (*m->left_out) html_print(out, "Left out for their size: %s.", m->left_out);
-  fputs("</p></section>\n", out);
+  fputs("</p>\n", out);
 }

@@ -8,6 +8,7 @@
 #include "dsl/base/json.h"
 #include "generator/page/movie.h"
 
+/* Of the section; the heading is the page's. */
 void page_frames(FILE *out, const page_result *p, const movie *m);
 /* "frames": {...}, or null where there is nothing to show. */
 void page_put_frames(json *w, const page_result *p, const movie *m);
