@@ -27,11 +27,6 @@ static void put_header(FILE *out, const page_result *results, int count) {
     html_text(out, title_of(&results[1]));
   }
   fputs("</h1>\n", out);
-  if (count == 1) {
-    fputs("<p class=\"quiet\">", out);
-    html_text(out, results[0].path);
-    fputs("</p>", out);
-  }
   fputs("</header>\n", out);
 }
 

@@ -111,10 +111,12 @@ static const char *sentence(const page_result *p, judgement how) {
 
 void page_verdict(FILE *out, const page_result *p) {
   const judgement how = judge(p);
-  fprintf(
-      out,
-      "<section class=\"verdict %s\" aria-label=\"verdict\">\n<p class=\"sentence\">%s</p>\n<dl>\n",
-      judgement_names[how], sentence(p, how));
+  fprintf(out,
+          "<section class=\"verdict %s\" aria-label=\"verdict\">\n<p class=\"sentence\">%s</p>\n",
+          judgement_names[how], sentence(p, how));
+  fputs("<p class=\"quiet\">", out);
+  html_text(out, p->path);
+  fputs("</p>\n<dl>\n", out);
   put_peak(out, p);
   put_ending(out, p);
   put_imbalance(out, p);
