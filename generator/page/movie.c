@@ -13,7 +13,7 @@
 /* Characters of the frames in a page: as many as let it stay below 2 MB for 500 particles and below
    10 MB for 50 000. */
 static double room_of(long particles) {
-  return pl_fmin(8e6, pl_fmax(1.2e6, 160.0 * (double)particles));
+  return pl_fmin(5.5e6, pl_fmax(0.8e6, 110.0 * (double)particles));
 }
 
 static plot_map_options options_of(const char *field, const char *part, long frame) {
@@ -167,12 +167,20 @@ static bool read_motion(movie *m, const page_result *p) {
 typedef struct field_values { /* of all frames */
   double **values;            /* [frames] NULL: not read */
   long count;
+  bool is_damage; /* of bonds, under the law's own name */
 } field_values;
 
 static void free_values(field_values *v, long frames) {
   for (long k = 0; k < frames; k++)
     free(v->values[k]);
   free(v->values);
+}
+
+static bool is_damage(const plot_frame *f) {
+  if (!f->of_bonds || !f->damage || f->components != 1) return false;
+  for (long b = 0; b < f->bonds; b++)
+    if (!(f->values[b] == f->damage[b]) && !isnan(f->damage[b])) return false;
+  return true;
 }
 
 /* Of one frame; false where the field is not shown. */
@@ -185,6 +193,7 @@ static bool read_field_of(movie *m, const page_result *p, long k, const char *fi
   const bool damage_of_bonds = good && f.of_damage && !f.values;
   out->of_damage = good && f.of_damage;
   out->on = damage_of_bonds || (good && f.of_bonds) ? MOVIE_ON_BONDS : MOVIE_ON_PARTICLES;
+  v->is_damage = v->is_damage && good && is_damage(&f);
   v->count = out->on == MOVIE_ON_BONDS ? f.bonds : f.particles;
   good = good && v->count == (out->on == MOVIE_ON_BONDS ? m->bonds : m->particles) && v->count > 0;
   if (good) {
@@ -252,7 +261,8 @@ static bool is_there(const movie *m, const char *name) {
 /* Adds a field, as far as there is room. */
 static void add_field(movie *m, const page_result *p, const char *field, const char *part,
                       double *room) {
-  field_values v = {.values = must_calloc((size_t)m->frame_count + 1, sizeof *v.values)};
+  field_values v = {.values = must_calloc((size_t)m->frame_count + 1, sizeof *v.values),
+                    .is_damage = true};
   movie_field *out = &m->fields[m->field_count];
   bool good = true;
   *out = (movie_field){.low = 0};
@@ -265,7 +275,7 @@ static void add_field(movie *m, const page_result *p, const char *field, const c
   if (good && bytes > *room)
     snprintf(m->left_out + used, sizeof m->left_out - used, "%s%.100s", used ? ", " : "",
              out->name);
-  if (good && bytes <= *room) {
+  if (good && bytes <= *room && !v.is_damage) {
     *room -= bytes;
     m->field_count++;
   } else

@@ -159,12 +159,34 @@ static int choose_stills(const page_result *p, const movie *m, long frames[STILL
   return chosen;
 }
 
-/* The bytes of a picture, malloc'ed; NULL where none could be made. */
+/* Bytes that pictures may take, so that pages stay small. */
+static size_t picture_room(const movie *m) {
+  return (size_t)pl_fmin(2.6e6, pl_fmax(0.65e6, 52.0 * (double)m->particles));
+}
+
+/* `count` frames into a file, and its bytes; malloc'ed, NULL with a sentence. */
+static char *draw_frames(const page_result *p, const movie *m, const char *path, long *frames,
+                         int count, size_t *length, char *error, size_t size) {
+  const movie_field *f = m->field_count ? &m->fields[0] : NULL;
+  const plot_map_options o = {.output = path,
+                              .frame = -1,
+                              .field = f ? f->field : "displacement",
+                              .part = f ? f->part : NULL,
+                              .component = -1,
+                              .factor = -1,
+                              .slice_axis = -1,
+                              .frames = frames,
+                              .frame_count = count};
+  if (!plot_map(p->path, &o, error, size)) return NULL;
+  return read_text_file(path, PICTURE_LIMIT, length, error, size);
+}
+
+/* Four frames in one picture, or as many as there is room for: the last ones, one at least. */
 static char *draw_stills(const page_result *p, const movie *m, size_t *length, char *error,
                          size_t size) {
   long frames[STILLS];
   const char *folder = getenv("TMPDIR");
-  char path[WHOLE_FILE_PATH];
+  char path[WHOLE_FILE_PATH], *picture = NULL;
   snprintf(path, sizeof path, "%.3900s/perilat_report_XXXXXX.png",
            folder && *folder ? folder : "/tmp");
   const int handle = mkstemps(path, 4);
@@ -173,21 +195,14 @@ static char *draw_stills(const page_result *p, const movie *m, size_t *length, c
     return NULL;
   }
   close(handle);
-  const movie_field *f = m->field_count ? &m->fields[0] : NULL;
-  plot_map_options o = {.output = path,
-                        .frame = -1,
-                        .field = f ? f->field : "displacement",
-                        .part = f ? f->part : NULL,
-                        .component = -1,
-                        .factor = -1,
-                        .slice_axis = -1,
-                        .frames = frames};
-  o.frame_count = choose_stills(p, m, frames);
-  char *text = plot_map(p->path, &o, error, size)
-                   ? read_text_file(path, PICTURE_LIMIT, length, error, size)
-                   : NULL;
+  const int all = choose_stills(p, m, frames);
+  for (int count = all; count > 0; count /= 2) {
+    free(picture);
+    picture = draw_frames(p, m, path, frames + all - count, count, length, error, size);
+    if (!picture || *length <= picture_room(m)) break;
+  }
   unlink(path);
-  return text;
+  return picture;
 }
 
 static void put_stills(FILE *out, const page_result *p, const movie *m) {
