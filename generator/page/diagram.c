@@ -115,7 +115,7 @@ static void put_points(const drawing *w, const double *xs, const double *ys, lon
 }
 
 static void put_curve(const drawing *w, const diagram_curve *c) {
-  fprintf(w->out, "<path class=\"curve ink%d\" d=\"", c->ink % 8);
+  fprintf(w->out, "<path class=\"curve ink%d dash%d\" d=\"", c->ink % 8, c->ink / 8 % 4);
   put_points(w, c->x, c->y, c->count, false, false);
   fputs("\"/>\n", w->out);
 }

@@ -77,6 +77,8 @@
     for (const s of run.series) series.set(s.name, doubles(s.values));
     return { samples, series, time: series.get("") };
   }
+  /* How series are called before people. */
+  const namesOf = (key) => new Map(data[key].series.map((s) => [s.name, s.shown || s.name]));
   function nearest(values, wanted) {
     let best = 0;
     for (let k = 1; k < values.length; k++)
@@ -94,8 +96,8 @@
     const x = axis(svg.dataset.x, FRAME.left, FRAME.right), y = axis(svg.dataset.y, FRAME.bottom, FRAME.top);
     const overName = svg.dataset.over;
     const curves = svg.dataset.series.split(";").filter(Boolean).map((item) => {
-      const run = runs.get(item[2]), name = item.slice(4);
-      return { ink: item[0], name, run, values: run.history.series.get(name), over: run.history.series.get(overName) };
+      const [ink, key] = item.split(":", 2), run = runs.get(key), name = item.slice(ink.length + key.length + 2);
+      return { ink, name, run, values: run.history.series.get(name), over: run.history.series.get(overName) };
     });
     if (curves.length === 0) return;
     const stacked = svg.querySelector(".area") !== null, several = new Set(curves.map((c) => c.run)).size > 1;
@@ -127,9 +129,9 @@
       });
     });
     const tell = (c, k) => {
-      const parts = [(overName || data[c.run.key].timeName) + " " + withUnit(shown(c.over[k] * x.factor), svg.dataset.xUnit)];
+      const parts = [(overName ? c.run.names.get(overName) : data[c.run.key].timeName) + " " + withUnit(shown(c.over[k] * x.factor), svg.dataset.xUnit)];
       for (const of of stacked ? curves : [c])
-        parts.push(of.name.replace(/^energy\//, "") + " " + withUnit(shown(of.values[k] * y.factor), svg.dataset.yUnit));
+        parts.push(of.run.names.get(of.name).replace(/^energy\//, "") + " " + withUnit(shown(of.values[k] * y.factor), svg.dataset.yUnit));
       reading.textContent = (several ? data[c.run.key].path + ":  " : "") + parts.join(",  ");
     };
     const placeOf = (event) => {
@@ -456,7 +458,7 @@
   /* --- all --- */
 
   for (const key of Object.keys(data))
-    if (data[key].series) runs.set(key, { key, watchers: [], history: historyOf(key), movie: null });
+    if (data[key].series) runs.set(key, { key, watchers: [], history: historyOf(key), names: namesOf(key), movie: null });
   document.querySelectorAll("svg.diagram[data-series]").forEach(diagram);
   for (const run of runs.values()) {
     const host = document.querySelector(`.movie[data-of="${run.key}"]`);

@@ -305,6 +305,34 @@ static void without_frames(void **state) {
   free(page);
 }
 
+/* The page of a study has its table, a curve of each case, and the largest peak; it is the same by
+   the name of its folder. */
+static void shows_studies(void **state) {
+  workplace *w = *state;
+  expect(w, "study beam.nml --vary 'material.E=20,30 GPa' -o two --jobs 1", 0, "two.h5");
+  expect(w, "report two.h5", 0, "written two.html");
+  expect(w, "report two/ -o same.html", 0, "");
+  assert_int_equal(shell(w, "cmp two.html same.html"), 0);
+  is_well_formed(w, "two.html");
+  char *page = page_of(w, "two.html");
+  assert_non_null(strstr(page, "All 2 cases done."));
+  assert_non_null(strstr(page, "0:c0:y;1:c1:y;"));
+  assert_non_null(strstr(page, "<th>E [GPa]</th><th>load peak"));
+  result_file *f = open_result_of(w, "two/E=30GPa.h5");
+  char unit_text[64], error[500];
+  long stored, told;
+  double *values = result_read_series(f, "load", &stored, unit_text, sizeof unit_text, error,
+                                      sizeof error),
+         *shown = page_series_of(strstr(page, "\"path\": \"E=30GPa\""), "y", &told);
+  assert_int_equal(told, stored);
+  assert_memory_equal(shown, values, (size_t)told * sizeof *shown);
+  free(values);
+  free(shown);
+  free(page);
+  result_read_close(f);
+  expect(w, "report two.h5 two.h5", 1, "shown alone");
+}
+
 /* --- sizes ------------------------------------------------------------------------------------- */
 
 enum { MANY_ROWS = 200, MANY_COLUMNS = 250, MANY = MANY_ROWS * MANY_COLUMNS, MANY_FRAMES = 24 };
@@ -417,6 +445,7 @@ int main(void) {
       IN_WORKPLACE(leaves_what_is_there),
       IN_WORKPLACE(wrong_runs_stand_out),
       IN_WORKPLACE(without_frames),
+      IN_WORKPLACE(shows_studies),
       IN_WORKPLACE(pages_stay_small),
       cmocka_unit_test(packs_as_it_says),
   };
