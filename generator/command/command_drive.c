@@ -14,6 +14,7 @@
 #include "generator/drive/drive_expect.h"
 #include "generator/drive/drive_family.h"
 #include "generator/drive/drive_grammar.h"
+#include "generator/drive/drive_hdf5.h"
 #include "generator/drive/drive_path.h"
 #include "generator/drive/drive_point.h"
 #include "generator/drive/drive_table.h"
