@@ -369,7 +369,7 @@ static void print_verdict(const driving *r, const drive_expect *e, const drive_v
 static int judge(driving *r) {
   const int count = r->in->expect_count;
   r->verdicts = arena_alloc(r->memory, ((size_t)count + 1) * sizeof *r->verdicts);
-  drive_judge(r->expectations, &r->table, r->of.parameters, &r->table, r->verdicts);
+  drive_judge(r->expectations, r->of.parameters, &r->table, r->verdicts);
   int passed = 0;
   for (int k = 0; k < count; k++) {
     print_verdict(r, &r->in->expects[k], &r->verdicts[k]);

@@ -322,13 +322,7 @@ static double form_value(const judge *j, const double *parameters, const drive_t
   return value;
 }
 
-/* What closed forms read. */
-typedef struct form_source {
-  const double *parameters;
-  const drive_table *table;
-} form_source;
-
-static drive_verdict judge_one(const judge *j, const drive_table *t, const form_source *of,
+static drive_verdict judge_one(const judge *j, const double *parameters, const drive_table *t,
                                const drive_expect *e, const asked *a) {
   const double *time = t->columns[DRIVE_COLUMN_TIME].values;
   const bool at_extreme = a->extreme_of >= 0;
@@ -339,16 +333,14 @@ static drive_verdict judge_one(const judge *j, const drive_table *t, const form_
                      .way = t->columns[t->way].values[row],
                      .extreme = at_extreme,
                      .beside = {time[row ? row - 1 : 0], time[row < t->rows - 1 ? row + 1 : row]}};
-  v.expected =
-      e->formula ? form_value(j, of->parameters, of->table, a->output, row) : a->value;
+  v.expected = e->formula ? form_value(j, parameters, t, a->output, row) : a->value;
   v.allowed = pl_fmax(e->tolerance * fabs(v.expected), a->absolute);
   v.passed = fabs(v.found - v.expected) <= v.allowed; /* NaN does not */
   return v;
 }
 
-void drive_judge(const drive_expectations *x, const drive_table *t, const double *parameters,
-                 const drive_table *of_forms, drive_verdict *verdicts) {
-  const form_source of = {parameters, of_forms};
+void drive_judge(const drive_expectations *x, const double *parameters, const drive_table *t,
+                 drive_verdict *verdicts) {
   for (int k = 0; k < x->in->expect_count; k++)
-    verdicts[k] = judge_one(x, t, &of, &x->in->expects[k], &x->asked[k]);
+    verdicts[k] = judge_one(x, parameters, t, &x->in->expects[k], &x->asked[k]);
 }

@@ -17,16 +17,14 @@ typedef struct drive_verdict {
 
 /* What every &expect asks for, before anything is driven: names, units and times are checked
    against `columns` (of drive_columns, which must stay), closed forms are compiled as further
-   outputs of `m`: the law as it will be driven, or another one whose parameters and constants they
-   are to read, as that of a teacher. NULL, with messages, when one cannot be understood. */
+   outputs of `m`, the law as it will be driven. NULL, with messages, when one cannot be
+   understood. */
 typedef struct drive_expectations drive_expectations;
 drive_expectations *drive_expectations_read(const drive_input *in, const model *m,
                                             const drive_table *columns, diagnostics *d);
-/* Judges every &expect by the rows of `t`; verdicts[expect_count]. Closed forms read `parameters`
-   and the rows of `of_forms`: those of the law that was given for them, driven along the same
-   path; of the driven law itself `t`. */
-void drive_judge(const drive_expectations *x, const drive_table *t, const double *parameters,
-                 const drive_table *of_forms, drive_verdict *verdicts);
+/* Judges every &expect by the rows of `t`; verdicts[expect_count]. */
+void drive_judge(const drive_expectations *x, const double *parameters, const drive_table *t,
+                 drive_verdict *verdicts);
 void drive_expectations_free(drive_expectations *x);
 
 #endif
