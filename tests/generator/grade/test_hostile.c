@@ -8,10 +8,12 @@
 #include <stdint.h>
 
 #include <cmocka.h>
+#include <fcntl.h>
 #include <stdbool.h>
-#include <sys/resource.h>
+#include <sys/socket.h>
 
 #include "dsl/base/arena.h"
+#include "generator/grade/confine.h"
 #include "tests/generator/command_tools.h"
 
 enum { LIMIT = 4 /* s, of processor time */ };
@@ -48,8 +50,7 @@ static void judged(workplace *w, const char *name, const char *wanted) {
   const int status =
       shell(w, "TMPDIR=$PWD/tmp $P grade memory '%s' --time '%d s' --memory 1GB", name, LIMIT);
   const double took = seconds_now() - begun;
-  if (getenv("PERILAT_SHOW"))
-    fprintf(stderr, "%6.2f s  %s: %.*s\n", took, name, (int)strcspn(w->said, "\n"), w->said);
+  if (getenv("PERILAT_SHOW")) fprintf(stderr, "%6.2f s  %s: %.300s\n", took, name, w->said);
   if (status != 2 || !strstr(w->said, wanted) || strstr(w->said, "root:") || !is_clean(w->said))
     show_failure(w, name, status, 2, wanted);
   assert_int_equal(status, 2);
@@ -96,7 +97,7 @@ static void repeated_judged(workplace *w, const char *first, const char *part, i
 /* A line for each number, `format` taking it twice. */
 static void numbered_judged(workplace *w, const char *first, const char *format, int times,
                             const char *wanted) {
-  char *text, line[400];
+  char *text;
   size_t length;
   FILE *out = must_open_text(&text, &length);
   fputs(first, out);
@@ -113,7 +114,6 @@ static void numbered_judged(workplace *w, const char *first, const char *format,
     }
   }
   must_close_text(out);
-  (void)line;
   law_judged(w, text, wanted);
   free(text);
 }
@@ -220,12 +220,12 @@ static void deep_ones(void **state) {
 
 static void long_ones(void **state) {
   workplace *w = *state;
-  numbered_judged(w, "  constant c0 = 1\n", "  constant c# = c@ + c@\n", 20000, "of  90");
-  numbered_judged(w, "  v0 = stretch\n", "  v# = v@*v@ + v@\n", 15000, "of  90");
-  numbered_judged(w, "", "  state z# on bond = 0\n  z# = max(z#, stretch)\n", 5000, "of  90");
-  numbered_judged(w, "", "  parameter p# = 1 in (0, inf)\n", 10000, "of  90");
-  numbered_judged(w, "", "  output o# = stretch*#\n", 5000, "of  90");
-  numbered_judged(w, "", "  constant e# = unknown#\n", 20000, "0 of  90");
+  numbered_judged(w, "  constant c0 = 1\n", "  constant c# = c@ + c@\n", 6000, "of  90");
+  numbered_judged(w, "  v0 = stretch\n", "  v# = v@*v@ + v@\n", 4000, "of  90");
+  numbered_judged(w, "", "  state z# on bond = 0\n  z# = max(z#, stretch)\n", 1000, "of  90");
+  numbered_judged(w, "", "  parameter p# = 1 in (0, inf)\n", 3000, "of  90");
+  numbered_judged(w, "", "  output o# = stretch*#\n", 1500, "of  90");
+  numbered_judged(w, "", "  constant e# = unknown#\n", 8000, "0 of  90");
   numbered_judged(w, "  function f0(x) = x*x + x\n", "  function f#(x) = f@(f@(x)) + f@(x + 1)\n",
                   40, "of  90");
   numbered_judged(w, "  function f0(x) = x + 1\n", "  function f#(x) = f@(x) + f@(x*2)\n", 30,
@@ -277,6 +277,46 @@ static void laws_of_other_things(void **state) {
   law_judged(w, "  state E on bond = 0\n", "0 of  90");
 }
 
+/* --- the process ------------------------------------------------------------------------------ */
+
+/* What it can do that it may not, as bits. */
+static int forbidden_things(const char *folder, const char *outside) {
+  const confinement little = {.seconds = 5, .memory = 2000000000, .file = 1000};
+  int done = 0;
+  if (!confine(folder, &little)) return 1;
+  done |= (open(outside, O_WRONLY | O_CREAT, 0600) >= 0) << 1;
+  done |= (socket(AF_INET, SOCK_STREAM, 0) >= 0) << 2;
+  const pid_t child = fork();
+  if (child == 0) _exit(0);
+  done |= (child > 0) << 3;
+  execl("/bin/true", "true", (char *)NULL); /* would end it with 0, as if it could do nothing */
+  done |= (mkdir("../other", 0700) == 0) << 4;
+  done |= (symlink("/etc/passwd", "../link") == 0) << 5;
+  const int own = open("own", O_RDWR | O_CREAT, 0600);
+  done |= (own < 0) << 6;
+  signal(SIGXFSZ, SIG_IGN);
+  char bytes[2000] = {0};
+  done |= (write(own, bytes, sizeof bytes) > 1000) << 7;
+  return done;
+}
+
+static void the_process_may_do_little(void **state) {
+  const workplace *w = *state;
+  char folder[300], outside[300];
+  int status;
+  snprintf(folder, sizeof folder, "%s/tmp", w->folder);
+  snprintf(outside, sizeof outside, "%s/outside", w->folder);
+  const pid_t child = fork();
+  assert_true(child >= 0);
+  if (child == 0) _exit(forbidden_things(folder, outside) + 100);
+  assert_int_equal(waitpid(child, &status, 0), child);
+  assert_true(WIFEXITED(status));
+  assert_int_equal(WEXITSTATUS(status), 100);
+  assert_false(exists(w, "outside"));
+  assert_false(exists(w, "other"));
+  assert_true(exists(w, "tmp/own"));
+}
+
 /* The class goes on behind each of them. */
 static void others_are_judged_as_ever(void **state) {
   workplace *w = *state;
@@ -287,17 +327,24 @@ static void others_are_judged_as_ever(void **state) {
   assert_non_null(strstr(w->said, "\"a\",90\n\"b\",0\n\"c\",0\n\"d\",90\n"));
 }
 
-static void time_runs_out(void **state) {
+/* What was earned until then stays. */
+static void time_and_memory_run_out(void **state) {
   workplace *w = *state;
-  assert_int_equal(shell(w, "TMPDIR=$PWD/tmp $P grade memory right.plm --time '1 ms'"), 0);
-  char lines[200];
-  snprintf(lines, sizeof lines, "&simulation steps = 1000000 /\n");
-  assert_int_equal(
-      shell(w, "echo '%.*s' >> memory/teacher/hidden/other.nml", (int)strlen(lines) - 1, lines), 0);
-  write_text(w, "memory/teacher/wrong/x", "");
-  const int status = shell(w, "TMPDIR=$PWD/tmp $P grade memory right.plm --time '1 s'; ls tmp");
-  (void)status;
+  char *text;
+  size_t length;
+  FILE *out = must_open_text(&text, &length);
+  fputs(head, out);
+  for (int k = 0; k < 2500; k++)
+    fprintf(out, "  state z%d on bond = 0\n  z%d = max(z%d, stretch)\n", k, k, k);
+  fputs(tail, out);
+  must_close_text(out);
+  write_text(w, "answer.plm", text);
+  free(text);
+  assert_int_equal(shell(w, "TMPDIR=$PWD/tmp $P grade memory answer.plm --time '1 s'; ls tmp"), 0);
   assert_non_null(strstr(w->said, "not judged to the end: it takes longer than 1 s"));
+  assert_non_null(strstr(w->said, "of  90  points"));
+  assert_int_equal(shell(w, "$P grade memory answer.plm --memory 100MB"), 2);
+  assert_non_null(strstr(w->said, "not judged to the end: it needs more than 0.1 GB of memory"));
 }
 
 int main(void) {
@@ -310,7 +357,8 @@ int main(void) {
                                      TEST(long_ones),
                                      TEST(strange_numbers),
                                      TEST(laws_of_other_things),
+                                     TEST(the_process_may_do_little),
                                      TEST(others_are_judged_as_ever),
-                                     TEST(time_runs_out)};
+                                     TEST(time_and_memory_run_out)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
