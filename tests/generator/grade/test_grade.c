@@ -263,7 +263,7 @@ static void broken_exercises_are_errors_at_their_line(void **state) {
   broken(w, "sed -i 's/&path/\\&pathh/' teacher/hidden/other.nml", "other.nml:3:1: error");
   broken(w, "sed -i 's/E = /EE = /' teacher/hidden/other.nml", "has no parameter `EE`");
   broken(w, "sed -i 's/-sqrt/sqrt/' public.nml", "public.nml:5:1: error: the solution does not");
-  broken(w, "sed -i \"s/&bond/\\&material model = 'bar' \\/\\n&bond/\" public.nml",
+  broken(w, "sed -i \"s/&bond/\\&material model = 'bar' \\/\\n\\&bond/\" public.nml",
          "a path of an exercise names no law");
   broken(w, "echo '&itme /' >> exercise.nml", "an exercise has no group `&itme`");
   broken(w, "echo '&exercise /' >> exercise.nml", "an exercise has one `&exercise`");
