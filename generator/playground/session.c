@@ -19,6 +19,7 @@ static const struct {
                 {"drive", command_drive},
                 {"explain", command_explain},
                 {"format", command_format},
+                {"grade", command_grade},
                 {"help", command_help}};
 
 enum { MOST_ARGUMENTS = 64 };
