@@ -15,12 +15,8 @@
 static const struct {
   const char *name;
   int (*run)(int argc, char **argv);
-} commands[] = {{"check", command_check},
-                {"drive", command_drive},
-                {"explain", command_explain},
-                {"format", command_format},
-                {"grade", command_grade},
-                {"help", command_help}};
+} commands[] = {{"check", command_check},   {"drive", command_drive}, {"explain", command_explain},
+                {"format", command_format}, {"grade", command_grade}, {"help", command_help}};
 
 enum { MOST_ARGUMENTS = 64 };
 

@@ -22,11 +22,23 @@ function forget(name) {
   try { program.FS.unlink(name); } catch (missing) { /* nothing was written */ }
 }
 
+// Models stand beside the law, where laws and paths find them; exercises in their folders.
+function lay_down(file) {
+  const name = file.name.replace(/^models\//, ''), folders = name.split('/').slice(0, -1);
+  let at = '';
+  for (const folder of folders) {
+    at += folder;
+    if (!program.FS.analyzePath(at).exists) program.FS.mkdir(at);
+    at += '/';
+  }
+  write(name, file.text);
+}
+
 async function start(wasmBinary) {
   program = await load_perilat({
     print: line => printed.push(line), printErr: line => complained.push(line), wasmBinary,
   });
-  for (const file of files.values()) if (file.name.startsWith('models/')) write(file.name.slice(7), file.text);
+  for (const file of files.values()) lay_down(file);
   for (const line of program.ccall('play_words', 'string', [], []).trim().split('\n')) {
     const [kind, ...all] = line.split(' ');
     words[kind] = new Set(all);
@@ -58,7 +70,7 @@ function beginnings() {
   const list = [];
   for (const name of files.keys()) {
     const exercise = name.match(/^course\/([^/]+)\/starter\.plm$/);
-    if (exercise) list.push({ title: 'exercise ' + exercise[1].replace(/_/g, ' '), law: name,
+    if (exercise) list.push({ title: 'exercise ' + exercise[1].replace(/_/g, ' '), law: name, exercise: 'course/' + exercise[1],
       path: `course/${exercise[1]}/public.nml`, task: `course/${exercise[1]}/task.md` });
     const model = name.match(/^models\/(.+)\.plm$/);
     if (model && files.has(`drives/${model[1]}.nml`))
@@ -77,6 +89,8 @@ function choose() {
   $('task').textContent = chosen.task ? text_of(chosen.task) : '';
   $('task').hidden = !$('task').textContent;
   $('deck').value = text_of('beam.nml');
+  $('marking').hidden = !chosen.exercise;
+  forget_marks();
   judge();
 }
 
@@ -291,6 +305,34 @@ function drive() {
   draw_table();
 }
 
+/* --- marks ------------------------------------------------------------------------------------------- */
+
+function forget_marks() {
+  $('marks').replaceChildren();
+  $('marked').textContent = '';
+}
+
+function mark_item(item) {
+  const li = one_item(`${item.title}: ${item.judged ? `${item.got} of ${item.points}` : `${item.points}, judged by the teacher`}`,
+    !item.judged ? '' : item.got === item.points ? 'pass' : 'fail');
+  for (const words of [item.words, item.state]) if (typeof words === 'string') li.append(piece(words, 'hint'));
+  return li;
+}
+
+function mark() {
+  write('law.plm', $('law').value);
+  const said = command('grade', chosen.exercise, 'law.plm', '--public', '--json');
+  let answer;
+  try { answer = JSON.parse(said.out).answers[0]; } catch (broken) { answer = null; }
+  if (!answer) {
+    $('marks').replaceChildren(one_item(said.err || 'it could not be marked', 'fail'));
+    return;
+  }
+  $('marked').textContent = `${answer.got} of the ${answer.points} points that can be judged here`;
+  const words = [answer.sentence, answer.trouble, answer.notes].filter(w => typeof w === 'string').map(w => one_item(w, 'fail'));
+  $('marks').replaceChildren(...words, ...answer.items.map(mark_item));
+}
+
 /* --- the whole -------------------------------------------------------------------------------------- */
 
 function judge() {
@@ -309,6 +351,7 @@ function judge() {
 let waiting = 0;
 function later() {
   show([]);
+  forget_marks();
   clearTimeout(waiting);
   waiting = setTimeout(judge, 300);
 }
@@ -383,12 +426,10 @@ function step_beam() {
   while (status === 0 && performance.now() - begun < 60) status = number('beam_step', 20);
   draw_beam();
   draw_load();
-  $('beam_state').textContent = `t = ${(1e3 * number2('beam_time')).toFixed(3)} ms, ${Math.round(100 * number2('beam_progress'))} %`;
+  $('beam_state').textContent = `t = ${(1e3 * number('beam_time')).toFixed(3)} ms, ${Math.round(100 * number('beam_progress'))} %`;
   if (status === 0) requestAnimationFrame(step_beam);
-  else end_beam(status === 1 ? `ended at t = ${(1e3 * number2('beam_time')).toFixed(3)} ms` : 'the law went bad');
+  else end_beam(status === 1 ? `ended at t = ${(1e3 * number('beam_time')).toFixed(3)} ms` : 'the law went bad');
 }
-
-const number2 = name => program.ccall(name, 'number', [], []);
 
 function break_beam() {
   printed = [];
@@ -414,6 +455,7 @@ $('choice').addEventListener('change', choose);
 $('x').addEventListener('change', draw_table);
 $('y').addEventListener('change', draw_table);
 $('break').addEventListener('click', break_beam);
+$('mark').addEventListener('click', mark);
 $('stop').addEventListener('click', () => end_beam('stopped'));
 $('format').addEventListener('click', () => {
   write('law.plm', $('law').value);

@@ -14,7 +14,8 @@ import tempfile
 import threading
 import time
 
-from chromium import Browser
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+from chromium import Browser  # noqa: E402
 
 CHROMIUM, PERILAT, SOURCE, PAGE = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3]), pathlib.Path(sys.argv[4])
 LARGEST = 2e6  # B: page and program
