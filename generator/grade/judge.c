@@ -149,9 +149,13 @@ static double expected_value(const judging *j, int k) {
   return good ? quantity.value : NAN;
 }
 
+static bool is_right(const exercise_item *item, double value, double expected) {
+  return fabs(value - expected) <= item->tolerance * fabs(expected);
+}
+
 static void put_number(judging *j, int k, double value, double expected, const char *why) {
   const exercise_item *item = &j->b->of->items[k];
-  const bool right = fabs(value - expected) <= item->tolerance * fabs(expected);
+  const bool right = is_right(item, value, expected);
   const char *what = item->kind != ITEM_RUN                ? item->quantity
                      : strcmp(item->of, "dissipated") == 0 ? "the dissipated energy"
                                                            : item->monitor;
@@ -172,9 +176,14 @@ static void put_number(judging *j, int k, double value, double expected, const c
 
 static void judge_implied(judging *j, int k) {
   const exercise_item *item = &j->b->of->items[k];
-  const char *why = "";
-  const double value = j->reads ? measure_implied(j->memory, item, j->q->answer, &why) : NAN;
-  put_number(j, k, value, expected_value(j, k), why);
+  const char *why = "", *unheard;
+  const double expected = expected_value(j, k);
+  double value = j->reads ? measure_implied(j->memory, item, j->q->answer, false, &why) : NAN;
+  if (j->reads && !is_right(item, value, expected)) {
+    const double other = measure_implied(j->memory, item, j->q->answer, true, &unheard);
+    value = is_right(item, other, expected) ? other : value;
+  }
+  put_number(j, k, value, expected, why);
 }
 
 /* The energies must balance. */
