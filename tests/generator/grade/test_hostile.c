@@ -1,6 +1,7 @@
 /* perilat grade and files that mean harm, or look as if: each is judged to an end, within its limits,
    with less than full points; nothing outside is read or written, no control character is printed,
-   and the next one is judged as ever. With `-v` times and memory are listed. */
+   and the next one is judged as ever. With PERILAT_SHOW set, times and memory are
+   listed. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,7 +10,9 @@
 
 #include <cmocka.h>
 #include <fcntl.h>
+#include <netinet/in.h>
 #include <stdbool.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 
 #include "dsl/base/arena.h"
@@ -50,7 +53,11 @@ static void judged(workplace *w, const char *name, const char *wanted) {
   const int status =
       shell(w, "TMPDIR=$PWD/tmp $P grade memory '%s' --time '%d s' --memory 1GB", name, LIMIT);
   const double took = seconds_now() - begun;
-  if (getenv("PERILAT_SHOW")) fprintf(stderr, "%6.2f s  %s: %.300s\n", took, name, w->said);
+  struct rusage most;
+  getrusage(RUSAGE_CHILDREN, &most);
+  if (getenv("PERILAT_SHOW"))
+    fprintf(stderr, "%6.2f s, at most %ld MB  %s: %.300s\n", took, most.ru_maxrss / 1024, name,
+            w->said);
   if (status != 2 || !strstr(w->said, wanted) || strstr(w->said, "root:") || !is_clean(w->said))
     show_failure(w, name, status, 2, wanted);
   assert_int_equal(status, 2);
