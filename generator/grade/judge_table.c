@@ -87,20 +87,34 @@ static void find_known(const judging *j, double tolerance) {
                  e->wrong[known].sentence);
 }
 
+/* Lines that are not answers, and answers that are not written yet; they are told without the
+   solution, too. */
+static void put_notes(const judging *j) {
+  int empty = 0;
+  for (int k = 0; k < j->answer.count; k++)
+    empty += !j->answer.entries[k].filled;
+  if (empty)
+    record_write(j->out, RECORD_NOTE, -1, NULL,
+                 arena_printf(j->memory, "%d answer%s still to be written", empty,
+                              empty == 1 ? " is" : "s are"));
+  if (j->answer.lines_unread)
+    record_write(j->out, RECORD_NOTE, -1, NULL,
+                 arena_printf(j->memory, "%d line%s not `name = value`", j->answer.lines_unread,
+                              j->answer.lines_unread == 1 ? " is" : "s are"));
+}
+
 void judge_table(const judge_request *q, FILE *out) {
   const exercise *e = q->basis->of;
   judging j = {.q = q, .memory = arena_new(), .out = out, .all_right = true};
   const char *bad;
-  const bool read = answer_table_read(&j.right, j.memory, e->solution, &bad) &&
-                    answer_table_read(&j.answer, j.memory, q->answer, &bad);
+  bool read = answer_table_read(&j.answer, j.memory, q->answer, &bad);
+  if (e->solution) read = answer_table_read(&j.right, j.memory, e->solution, &bad) && read;
   for (int k = 0; k < e->item_count && read; k++)
     if (e->items[k].kind == ITEM_ANSWERS && item_is_judged(&e->items[k], q->only_public)) {
       judge_item(&j, k);
       find_known(&j, e->items[k].tolerance);
     }
-  if (read && j.answer.lines_unread)
-    record_write(out, RECORD_NOTE, -1, NULL,
-                 arena_printf(j.memory, "%d lines are not `name = value`", j.answer.lines_unread));
+  put_notes(&j);
   if (read) record_write(out, RECORD_END, -1, NULL, NULL);
   arena_free(j.memory);
 }

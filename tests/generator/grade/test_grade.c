@@ -317,11 +317,16 @@ static void tables_are_judged_line_by_line(void **state) {
   says(w, "step is twice what it should be");
   says(w, "ratio is still to be written");
   says(w, "mode: there is no such line");
-  says(w, "1 lines are not `name = value`");
+  says(w, "note: 1 line is not `name = value`");
+  says(w, "note: 1 answer is still to be written");
   write_text(w, "a.txt", "step = 1.2 mm\nomega = fast\nratio = 0.5\nmode = rows\n");
   expect(w, "grade table a.txt", 2, "step is a time (s), not a length (m)");
   says(w, "omega is no number with a unit");
   says(w, "mode is wrong");
+  assert_int_equal(shell(w, "$P grade table --publish given"), 0);
+  expect(w, "grade given a.txt", 0,
+         "?"
+         " of  10  answers answers.txt: hidden, judged by the teacher");
 }
 
 /* --- parts ------------------------------------------------------------------------------------ */
