@@ -50,8 +50,7 @@ static const deck_key_use uses_of_keys[] = {
     {"material", KIND(RUN), false},
     {"value", KIND(IMPLIED) | KIND(RUN), false}};
 
-static const deck_key_use uses_of_files[] = {
-    {"file", KIND(PATH) | KIND(RUN) | KIND(ANSWERS), true}};
+static const deck_key_use use_of_file = {"file", KIND(PATH) | KIND(RUN) | KIND(ANSWERS), true};
 
 bool item_is_public(const exercise_item *item) {
   if (item->hidden || item->withheld || item->kind == ITEM_HAND) return false;
@@ -197,26 +196,34 @@ static bool check_within(const reader *r, const exercise_item *item) {
   return false;
 }
 
+/* Which keys it has; a sample may do without a file. */
+static bool keys_suit(const reader *r, const namelist_group *g, const exercise_item *item) {
+  char words[40];
+  const int count = (int)(sizeof uses_of_keys / sizeof *uses_of_keys);
+  snprintf(words, sizeof words, "an item '%s'", item_kind_names[item->kind]);
+  if (!deck_keys_fit(g, uses_of_keys, count, item->kind, words, r->d)) return false;
+  return !(use_of_file.kinds & 1u << item->kind) ||
+         deck_keys_fit(g, &use_of_file, 1, item->kind, words, r->d);
+}
+
+static bool files_suit(const reader *r, const exercise_item *item) {
+  if (item->kind != ITEM_RUN || item->found_count == 1) return true;
+  diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "file"), "an item 'run' has one deck");
+  return false;
+}
+
 static void read_item(const reader *r, const namelist_group *g) {
   exercise_item item = {.kind = 0};
-  char words[40];
   const deck_group_info *info = exercise_grammar.groups[EXERCISE_GROUP_ITEM];
   deck_defaults(r->memory, info, &item);
   group_places(r->memory, g, &item.item);
   if (!group_keys_read(r->memory, g, info, &item, r->d)) return;
-  snprintf(words, sizeof words, "an item '%s'", item_kind_names[item.kind]);
-  const int count = (int)(sizeof uses_of_keys / sizeof *uses_of_keys);
   /* in the folder that students have, hidden items are without their files */
   item.withheld = item.hidden && !r->e->kept;
-  if (!item.withheld &&
-      (!deck_keys_fit(g, uses_of_keys, count, item.kind, words, r->d) ||
-       !deck_keys_fit(g, uses_of_files,
-                      item.kind == ITEM_PATH || item.kind == ITEM_RUN || item.kind == ITEM_ANSWERS,
-                      item.kind, words, r->d)))
-    return;
+  if (!item.withheld && !keys_suit(r, g, &item)) return;
   item.value = namelist_find(g, "value");
   if (!read_seed(r, g, &item) || !check_words(r, &item) || !check_within(r, &item)) return;
-  if (!item.withheld && !find_all_files(r, &item)) return;
+  if (!item.withheld && (!find_all_files(r, &item) || !files_suit(r, &item))) return;
   choose_defaults(r, g, &item);
   choose_title(r, &item);
   if (!item_is_public(&item) && item.kind != ITEM_HAND) {

@@ -272,6 +272,9 @@ static void broken_exercises_are_errors_at_their_line(void **state) {
   broken(w, "echo '&itme /' >> exercise.nml", "an exercise has no group `&itme`");
   broken(w, "echo '&exercise /' >> exercise.nml", "an exercise has one `&exercise`");
   broken(w, "sed -i '/item/d' exercise.nml", "there is no `&item`");
+  broken(w, "echo \"&item kind = 'run' file = '*.nml' points = 0 /\" >> exercise.nml",
+         "an item 'run' has one deck");
+  broken(w, "echo \"&item kind = 'run' points = 0 /\" >> exercise.nml", "needs `file`");
   broken(w, "rm exercise.nml", "exercise.nml");
 }
 
