@@ -196,6 +196,20 @@ static void a_class_has_a_row_each(void **state) {
   does_not_say(w, "<script");
 }
 
+/* A student's own folder may hold further laws; what lies in the class's is others'. */
+static void further_laws_are_their_owners(void **state) {
+  workplace *w = *state;
+  assert_int_equal(shell(w, "mkdir -p class/eve; echo 'function rigid(modulus, step, width) = "
+                            "sqrt(3)/2*modulus*step*width' | tee class/parts.plm > "
+                            "class/eve/parts.plm; sed -e 's|sqrt(3)/2.E.s.t|rigid(E, s, t)|' -e "
+                            "'s|^  constant EA|  include \"parts.plm\"\\n&|' right.plm | tee "
+                            "class/flat.plm > class/eve/answer.plm"),
+                   0);
+  expect(w, "grade memory class --csv c.csv", 2, "`parts.plm` cannot be read [include]");
+  assert_int_equal(shell(w, "cut -d, -f1,2 c.csv"), 0);
+  says(w, "\"eve\",90\n\"flat\",0\n\"parts\",0\n");
+}
+
 /* Numbers vary from student to student, and not from one time to the next. */
 static void samples_are_the_students(void **state) {
   workplace *w = *state;
@@ -404,6 +418,7 @@ int main(void) {
                                      TEST(publishing_refuses),
                                      TEST(formulas_are_not_the_students),
                                      TEST(a_class_has_a_row_each),
+                                     TEST(further_laws_are_their_owners),
                                      TEST(samples_are_the_students),
                                      TEST(the_exercise_holds),
                                      TEST(what_does_not_hold_is_told),
