@@ -10,7 +10,8 @@
      /xdmf/cell_values/<field>/<frame>     [C] the same for each frame
      /xdmf/cracks/<crack>/<frame>          [P, 3] points of the crack
      /xdmf/nothing/<columns>/<P>           [P] NaN, [P, 3] 0: fields of the nodes and, [1], of the
-                                           cells on a crack, which has none; a reader of ParaView's colours a grid only
+                                           cells on a crack, which has none; a
+                                           reader of ParaView's colours a grid only
                                            with arrays that all grids have
 
    A crack that has come further leaves out more cells, and so do cells that died: frames in between

@@ -1,6 +1,7 @@
-/* Every law of a continuum and of cracks beside the tests of kernels: its compiled kernel against the
-   interpreter; Hooke's law against its closed form. Those of models/: test_points_of_models_match.c,
-   test_points_of_cracking_match.c. */
+/* Every law of a continuum and of cracks beside the tests of kernels: its compiled kernel against
+   the interpreter; Hooke's law against its closed form. Those of models/:
+   test_points_of_cracking_match.c, test_points_of_concrete_match.c, test_points_of_models_match.c.
+ */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
-/* Laws of a continuum in models/ up to c, those of concrete that cracks: compiled kernels against the
-   interpreter. */
+/* Laws of a continuum in models/ before c: compiled kernels against
+   the interpreter. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,12 +9,12 @@
 
 #include "tests/generator/kernel/points_kernel.h"
 
-static void kernels_up_to_c_match(void **state) {
+static void kernels_before_c_match(void **state) {
   (void)state;
-  check_folder(SOURCE_DIR "/models/[a-c]*.plm", check_law_of_points);
+  check_folder(SOURCE_DIR "/models/[ab]*.plm", check_law_of_points);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(kernels_up_to_c_match)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(kernels_before_c_match)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

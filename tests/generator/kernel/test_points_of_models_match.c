@@ -1,4 +1,5 @@
-/* Laws of a continuum and of cracks in models/ from d on: compiled kernels against the interpreter. */
+/* Laws of a continuum and of cracks in models/ from d on: compiled kernels against the
+   interpreter. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
