@@ -45,26 +45,6 @@ static void the_step_converges(void **state) {
   is_near(strtod(last + strlen("\"energy/kinetic last\": "), NULL), value, error);
 }
 
-/* Theory says f_t. The load has no limit yet at these sizes: its width hangs on the rows that fit. */
-static void the_strength_of_a_prism_converges(void **state) {
-  workplace *w = *state;
-  static const char prism[] = EXAMPLES
-      "tension/strength.nml --set relaxation.increments=96 --vary lattice.rotation=0,15,30 --vary "
-      "'lattice.spacing=20,10,5 mm' --converge spacing --x displacement --y";
-  char arguments[1000];
-  snprintf(arguments, sizeof arguments, "%s stress", prism);
-  study(w, 0, arguments);
-  is_near(number("order"), 1, 0.4);
-  is_near(number("value"), 2.6168e6, number("error"));
-  is_near(number("value"), 2.6168e6, 0.03 * 2.6168e6);
-  assert_true(number("error") < 0.1 * 2.6168e6);
-  snprintf(arguments, sizeof arguments, "%s load", prism);
-  study(w, 2, arguments);
-  assert_true(isnan(number("order")) || number("order") < 0.5);
-  assert_true(isnan(number("value")) && isnan(number("error")));
-  assert_non_null(strstr(said, "\"converged\": false"));
-}
-
 /* From 1.5e-4 back to the 1.18e-4 of its own curve, within 1 %. */
 static void parameter_back_from_its_curve(void **state) {
   workplace *w = *state;
@@ -82,7 +62,6 @@ static void parameter_back_from_its_curve(void **state) {
 int main(void) {
 #define WITH(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
   const struct CMUnitTest tests[] = {WITH(d3_does_not_converge), WITH(the_step_converges),
-                                     WITH(the_strength_of_a_prism_converges),
                                      WITH(parameter_back_from_its_curve)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
