@@ -701,6 +701,12 @@ double point_forces_mean(const point_forces *p, const double *plane, int node) {
   return sum / volume;
 }
 
+double point_forces_cell_mean(const point_forces *p, const double *plane, int cell) {
+  double sum = 0, volume = 0;
+  add_cell(p, plane, cell, &volume, &sum);
+  return sum / volume;
+}
+
 static int corners_there(const mesh *m, int cell) {
   int corner[ELEMENT_MOST_NODES], count = 0;
   const int nodes = mesh_cell_nodes(m, cell, corner);
