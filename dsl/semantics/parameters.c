@@ -69,6 +69,7 @@ void check_initial_value(checker *ck, stmt *s) {
   if (s->value) v = check_plain(ck, s->value, IN_DEFAULT);
   if (!v.broken && s->value && !read_finite(ck, s->value, &e->symbol.initial)) v = BROKEN;
   if (s->tensor && !v.broken) v.shape = SHAPE_TENSOR;
+  v.deviator = s->deviator;
   if (v.zero) {
     e->infer = !e->known;
     return;
