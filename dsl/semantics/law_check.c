@@ -405,6 +405,8 @@ static void infer_states(checker *ck) {
     entry *e = entry_of(ck->law->fields.items[i]);
     if (e->known) continue;
     e->type = scalar_of(DIMENSIONLESS, e->symbol.place);
+    if (e->symbol.declared->tensor) e->type.shape = SHAPE_TENSOR;
+    e->type.deviator = e->symbol.declared->deviator;
     e->known = true;
   }
 }

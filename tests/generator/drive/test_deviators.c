@@ -109,6 +109,24 @@ static const char everything[] =
     "  output slope      = norm(dev(diff((c : c)/2 + 3*(c : strain) + c[x,y]*c[z,z], c)))\n"
     "end model\n";
 
+/* A flow that is solved for, whose guard knows the old value, too. */
+static const char returned[] = "model returned_flow\n"
+                               "  law continuum\n"
+                               "  for plane_stress, plane_strain, space\n"
+                               "  parameter E   = 2 [GPa]        in (0, inf)\n"
+                               "  parameter nu  = 0.2            in [0, 0.5)\n"
+                               "  parameter f_y = 1 [MPa]        in (0, inf)\n"
+                               "  parameter H   = 0.2 [GPa]      in (0, inf)\n"
+                               "  parameter rho = 2400 [kg/m^3]  in (0, inf)\n"
+                               "  constant mu = E/(2*(1 + nu))\n"
+                               "  state e on point = @ 0\n"
+                               "  s     = 2*mu*dev(strain - e) - H*e\n"
+                               "  yield f = norm(s) - f_y - H*norm(e - previous(e))\n"
+                               "  flow  e along s/max(norm(s), 1 [Pa]) returned when f >= 0\n"
+                               "  stress sigma = hooke(strain - e, E, nu)\n"
+                               "  output over = norm(2*mu*dev(strain - e) - H*e)\n"
+                               "end model\n";
+
 static double draw_walk(uint64_t *seed, int step, int strains, double *by, double *strain) {
   double size = 0;
   for (int k = 0; k < strains; k++) {
@@ -199,8 +217,38 @@ static void deviators_are_tensors(void **state) {
     walk_beside(everything, settings[k], 5);
     walk_beside(everything, settings[k], 6);
     walk_beside(steel, settings[k], 7);
+    walk_beside(returned, settings[k], 8);
   }
   free(steel);
+}
+
+/* A derivative by a deviator is one: of W = c : strain the deviator of the strain. */
+static void derivatives_by_deviators_have_no_trace(void **state) {
+  static const char text[] = "model slopes\n"
+                             "  law continuum\n"
+                             "  for plane_stress, plane_strain, space\n"
+                             "  parameter E   = 2 [GPa]        in (0, inf)\n"
+                             "  parameter nu  = 0.2            in [0, 0.5)\n"
+                             "  parameter rho = 2400 [kg/m^3]  in (0, inf)\n"
+                             "  state c on point = @ 0\n"
+                             "  c = dev(strain)/2\n"
+                             "  g = diff(c : strain, c)\n"
+                             "  stress sigma = hooke(strain - c, E, nu)\n"
+                             "  output left   = g[x,x] + g[y,y] + g[z,z]\n"
+                             "  output beside = norm(g - dev(strain))\n"
+                             "end model\n";
+  const double strain[MOST] = {3e-3, -2e-3, 1.2e-3, 0.9e-3, -0.4e-3, 0.7e-3};
+  (void)state;
+  for (int k = 0; k < 3; k++) {
+    opened o;
+    strained at = {.step = 1};
+    open_text(&o, text, "deviator", settings[k]);
+    memcpy(at.strain, strain, sizeof at.strain);
+    driven_point_observe(&o.point, &at);
+    for (int q = 1; q <= 2; q++)
+      assert_true(fabs(o.point.observed[q][0]) < 1e-17);
+    close_text(&o);
+  }
 }
 
 /* --- what is kept and what it costs ----------------------------------------------------------- */
@@ -244,6 +292,7 @@ static void deviators_cost_less(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(deviators_are_tensors),
+      cmocka_unit_test(derivatives_by_deviators_have_no_trace),
       cmocka_unit_test(zz_is_no_field),
       cmocka_unit_test(deviators_cost_less),
   };
