@@ -4,6 +4,7 @@
 
 #include "dsl/semantics/calls.h"
 #include "dsl/semantics/declarations.h"
+#include "dsl/semantics/holes.h"
 #include "dsl/semantics/names.h"
 #include "dsl/semantics/order.h"
 #include "dsl/semantics/parameters.h"
@@ -58,6 +59,7 @@ static bool is_made_of_length(const expr *e) {
 
 /* In a state law the [j] on the left says whether there is one value or one for each neighbour. */
 static bool check_family_rule(checker *ck, const stmt *s, value *v) {
+  if (v->unknown && !is_single(ck) && v->place == ON_NOTHING) v->place = ON_PARTICLE;
   if (is_single(ck)) {
     if (!s->indexed) return true;
     complain(ck, DIAG_PLACEMENT, s->name_where, "a %s law has no neighbours to give `%s` to",
@@ -144,7 +146,7 @@ static void check_field_rule(checker *ck, stmt *s, entry *field, value v) {
     field->type = as;
     field->known = true;
   }
-  if (field->type.broken) return;
+  if (field->type.broken || field->type.unknown) return;
   if (v.shape == SHAPE_TENSOR && refuse_trace(ck, s, field, v)) return;
   if (s->kind == STMT_FLOW) return;
   if (v.shape == SHAPE_TENSOR && !v.zero && refuse_tensor(ck, s, field)) return;
@@ -156,7 +158,7 @@ static void check_field_rule(checker *ck, stmt *s, entry *field, value v) {
 static void set_type(const stmt *s, value v) {
   if (!s->symbol) return;
   entry *e = entry_of(s->symbol);
-  v.zero = v.unknown = v.whole = false; /* a name for a bare 0 is a pure number */
+  v.zero = v.whole = false; /* a name for a bare 0 is a pure number */
   if (v.place == ON_NOTHING) v.place = ON_BODY;
   e->type = v;
   e->known = true;
@@ -223,6 +225,7 @@ static void check_result(checker *ck, stmt *s) {
     if (!expect(ck, s->value, v, dim, results[which].shape, what)) v = BROKEN;
     v.dim = dim;
     v.shape = results[which].shape;
+    v.unknown = false;
   }
   set_type(s, v);
 }
@@ -264,6 +267,8 @@ static void check_tensor(checker *ck, stmt *s) {
   dimension dim = s->kind == STMT_STRESS ? dimension_of("Pa") : DIMENSIONLESS;
   const char *what = s->kind == STMT_STRESS ? "a stress" : "a strain";
   if (!expect(ck, s->value, v, dim, SHAPE_TENSOR, what)) v = BROKEN;
+  if (v.unknown)
+    v = (value){.dim = dim, .shape = SHAPE_TENSOR, .place = is_single(ck) ? v.place : ON_PARTICLE};
   set_type(s, v.broken || check_family_rule(ck, s, &v) ? v : BROKEN);
 }
 
@@ -280,7 +285,7 @@ static void check_flow(checker *ck, stmt *s) {
   entry *field = s->symbol ? entry_of(s->symbol) : NULL;
   if (!field || v.broken) return;
   check_field_rule(ck, s, field, v);
-  if (s->returned || !field->known || field->type.broken) return;
+  if (s->returned || !field->known || field->type.broken || field->type.unknown) return;
   const char *what = arena_printf(ck->memory, "the flow of `%s`", s->name);
   expect(ck, s->value, v, field->type.dim, field->type.shape, what);
 }
@@ -407,6 +412,7 @@ static void infer_states(checker *ck) {
     e->type = scalar_of(DIMENSIONLESS, e->symbol.place);
     if (e->symbol.declared->tensor) e->type.shape = SHAPE_TENSOR;
     e->type.deviator = e->symbol.declared->deviator;
+    e->type.unknown = ck->holes;
     e->known = true;
   }
 }
@@ -653,6 +659,7 @@ static void check_all(checker *ck, const law_choice *choices, int choice_count) 
     check_results_given(ck);
   else
     check_force_state_given(ck);
+  report_holes(ck);
   publish_types(ck);
 }
 
