@@ -79,13 +79,13 @@ def try_page(browser, folder, result):
 
 
 def try_pair(browser, folder):
-    browser.open(folder / "pair.html")
+    browser.open((folder / "pair.html").as_uri())
     both = "[...document.querySelectorAll('.movie')].map((m) => m.dataset.frame).join()"
     move_slider(browser, 0)
     first = browser.value(both)
     move_slider(browser, 5)
     check(first == "0,0" and browser.value(both) == "5,5", "two results go together")
-    check(browser.complaints() == [], "no error and no request: %s" % browser.complaints())
+    check(wrong(browser) == [], "no error and no request: %s" % wrong(browser))
 
 
 def main():
