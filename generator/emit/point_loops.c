@@ -262,14 +262,19 @@ static const scope of_rectangles = {.before = "  ",
                                     .declare = declare_beside_strains,
                                     .input = input_of_rectangle};
 
-/* A segment without the stress along z, which pushes no node. */
-static segment of_the_plane(const emitter *e, const segment *a) {
+/* Stress along z pushes no node, and a field that is the same at all times is there already. */
+static bool counts_in_rectangle(const emitter *e, const segment_root *r) {
+  if (r->target == TO_FORCE) return r->index < 3;
+  return r->target != TO_FIELD ||
+         !ir_is_number(e->graph, r->node, e->plan->law->fields.items[r->index]->initial);
+}
+
+static segment of_rectangle(const emitter *e, const segment *a) {
   segment out = *a;
   out.root_count = 0;
   out.roots = arena_alloc(e->memory, ((size_t)a->root_count + 1) * sizeof *out.roots);
   for (int k = 0; k < a->root_count; k++)
-    if (a->roots[k].target != TO_FORCE || a->roots[k].index < 3)
-      out.roots[out.root_count++] = a->roots[k];
+    if (counts_in_rectangle(e, &a->roots[k])) out.roots[out.root_count++] = a->roots[k];
   return out;
 }
 
@@ -286,7 +291,7 @@ static void write_results_of_rectangle(emitter *e, const segment *a) {
 enum { CORNERS = 4, AXES = 2 };
 
 static void write_rectangles(emitter *e, const segment *of, const char *name) {
-  const segment a = of_the_plane(e, of);
+  const segment a = of_rectangle(e, of);
   expression_open_segment(e, &of_rectangles, &a);
   bool rates = false;
   for (ir_node n = 0; n < e->node_count; n++)

@@ -186,7 +186,9 @@ static void ask_row(const point_arrays *a, const rectangle_row *r, const pl_law 
   (ledger ? reader->point_ledger : reader->point_step)(reader, uniforms, &p);
   rectangle_cells_push(&r->push, CELLS / PL_LANES, (const double *const *)a->stress[0],
                        r->force[0]);
-  planes_poison(a->new_field[1], reader->field_count, BATCH);
+  for (int f = 0; f < reader->field_count; f++)
+    for (int q = 0; q < BATCH; q++)
+      a->new_field[1][f][q] = reader->fields[f].initial;
   planes_poison(r->force[1], RECTANGLE_PUSHES, CELLS);
   p.new_field = a->new_field[1];
   p.lost = a->lost[1];
