@@ -118,6 +118,8 @@
     "set a parameter or an option of the law, or group.key of the path; may be given several "     \
     "times")                                                                                       \
   X(drive, "--compiled", "", "drive the compiled kernel, not the interpreter")                     \
+  X(drive, "--confined", "",                                                                       \
+    "read and write in the path's folder alone, and read the models that come along")              \
   X(drive, "--csv", "FILE", "write the table as comma-separated values")                           \
   X(drive, "--hdf5", "FILE", "write the table as a result")                                        \
   X(drive, "--picture", "FILE", "draw the curve: PNG, SVG or PDF by the name's ending")            \
