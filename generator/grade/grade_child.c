@@ -81,7 +81,7 @@ static bool make_folder(char *folder, size_t size) {
 
 static void be_child(const judge_request *q, const char *folder, const confinement *to, int pipe) {
   FILE *out = fdopen(pipe, "w");
-  if (!out || !confine(folder, to)) _exit(3);
+  if (!out || !confine(folder, to) || !model_confine(q->answer, q->basis->of->folder)) _exit(3);
   if (q->basis->of->of_answers)
     judge_table(q, out);
   else

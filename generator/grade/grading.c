@@ -66,7 +66,7 @@ static bool measure_solution(grading *g) {
   for (int k = 0; k < e->item_count; k++)
     g->basis.measured[k] = m.items[k].value;
   if (m.trouble) {
-    say_error("the solution of `%s` can not be judged: %s", e->folder, m.trouble);
+    say_error("the solution of `%s` can not be judged: %s", e->given, m.trouble);
     good = false;
   }
   marks_close(&m);

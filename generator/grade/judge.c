@@ -91,6 +91,10 @@ static void put_outcome(const judging *j, int k, const path_case *c, int of,
       of > 1 ? arena_printf(j->memory, "path %d of %d: %s", c->number, of, o->words) : o->words;
   record_write(j->out, RECORD_WORDS, k, NULL, words);
   if (item->show >= SHOW_STATE && o->state) record_write(j->out, RECORD_STATE, k, NULL, o->state);
+  if (item->show < SHOW_CURVE || !c->referenced || !o->table.memory) return;
+  char *curve = curve_text(&o->table, &c->right.table);
+  record_write(j->out, RECORD_CURVE, k, NULL, curve);
+  free(curve);
 }
 
 /* The item's paths, from case `first` on. Words are about the first that is wrong. */
