@@ -20,6 +20,7 @@ typedef struct judging {
   declared_names declared;
   path_outcome *outcomes; /* [case_count], of those that were driven */
   cases_seen seen;
+  runs_made runs;
   bool all_right;
   const char *first_error; /* "code: message" of a law that does not read */
 } judging;
@@ -149,16 +150,20 @@ static double expected_value(const judging *j, int k) {
   return good ? quantity.value : NAN;
 }
 
+static bool is_right(const exercise_item *item, double value, double expected) {
+  return fabs(value - expected) <= item->tolerance * fabs(expected);
+}
+
 static void put_number(judging *j, int k, double value, double expected, const char *why) {
   const exercise_item *item = &j->b->of->items[k];
-  const bool right = fabs(value - expected) <= item->tolerance * fabs(expected);
+  const bool right = is_right(item, value, expected);
   const char *what = item->kind != ITEM_RUN                ? item->quantity
                      : strcmp(item->of, "dissipated") == 0 ? "the dissipated energy"
                                                            : item->monitor;
   const char *ratio = expected != 0 ? ratio_words(fabs(value / expected)) : NULL;
   put_mark(j, k, right, right, 1, value);
   j->all_right = j->all_right && right;
-  if (right || item->show == SHOW_NOTHING) return;
+  if (right || item->show == SHOW_NOTHING || !j->reads) return;
   if (isnan(value))
     record_write(j->out, RECORD_WORDS, k, NULL, why);
   else if (ratio)
@@ -172,9 +177,14 @@ static void put_number(judging *j, int k, double value, double expected, const c
 
 static void judge_implied(judging *j, int k) {
   const exercise_item *item = &j->b->of->items[k];
-  const char *why = "";
-  const double value = j->reads ? measure_implied(j->memory, item, j->q->answer, &why) : NAN;
-  put_number(j, k, value, expected_value(j, k), why);
+  const char *why = "", *unheard;
+  const double expected = expected_value(j, k);
+  double value = j->reads ? measure_implied(j->memory, item, j->q->answer, false, &why) : NAN;
+  if (j->reads && !is_right(item, value, expected)) {
+    const double other = measure_implied(j->memory, item, j->q->answer, true, &unheard);
+    value = is_right(item, other, expected) ? other : value;
+  }
+  put_number(j, k, value, expected, why);
 }
 
 /* The energies must balance. */
@@ -194,10 +204,12 @@ static void put_imbalance(judging *j, int k, double value, const char *why) {
 static void judge_run(judging *j, int k) {
   const exercise_item *item = &j->b->of->items[k];
   const char *why = "";
-  const double value = j->reads ? measure_run(j->memory, item, j->q->answer, NULL, 0, &why) : NAN;
+  const double value =
+      j->reads ? measure_run(j->memory, item, j->q->answer, NULL, 0, &j->runs, &why) : NAN;
   double expected = expected_value(j, k);
   if (j->reads && item->like_count && !isnan(value))
-    expected = measure_run(j->memory, item, j->q->answer, item->like, item->like_count, &why);
+    expected =
+        measure_run(j->memory, item, j->q->answer, item->like, item->like_count, &j->runs, &why);
   if (strcmp(item->of, "imbalance") == 0)
     put_imbalance(j, k, value, why);
   else

@@ -51,6 +51,10 @@ static void right_answers_get_all_points(void **state) {
   expect(w, "grade memory memory/teacher/equal/other_names.plm", 0, "90 of  90");
   answer(w, "s/(1 - omega)\\*EA\\*stretch /EA*stretch - EA*stretch*omega /");
   expect(w, "grade memory answer.plm", 0, "90 of  90");
+  /* without a derivative at rest */
+  answer(w, "s/^    | EA\\*stretch  *otherwise/    | -EA*positive_part(-stretch) otherwise/; "
+            "s/\\*EA\\*stretch /*EA*positive_part(stretch) /");
+  expect(w, "grade memory answer.plm", 0, "90 of  90");
 }
 
 /* --- wrong ------------------------------------------------------------------------------------ */
