@@ -13,6 +13,8 @@ X(DUPLICATE_NAME, "duplicate-name", SEVERITY_ERROR)
 X(RESERVED_NAME, "reserved-name", SEVERITY_ERROR)
 X(UNKNOWN_UNIT, "unknown-unit", SEVERITY_ERROR)
 X(UNKNOWN_FUNCTION, "unknown-function", SEVERITY_ERROR)
+/* a law that is not finished */
+X(HOLE, "hole", SEVERITY_ERROR)
 /* units, placement, physics of a law */
 X(UNITS, "units", SEVERITY_ERROR)
 X(SHAPE, "shape", SEVERITY_ERROR)

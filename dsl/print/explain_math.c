@@ -502,6 +502,8 @@ static void put_bare(const law *l, const expr *e, FILE *out) {
   case EXPR_CASES:
     put_cases(l, e, out);
     break;
+  case EXPR_HOLE: /* of a law that is not checked, and so not explained */
+    break;
   }
 }
 

@@ -165,6 +165,7 @@ static bool ends_operand(int code) {
   case T_PRIMED:
   case T_NUMBER:
   case T_UNIT:
+  case T_HOLE:
   case ')':
   case ']':
     return true;

@@ -74,12 +74,12 @@ static value root(checker *ck, expr *e) {
 
 static value norm(checker *ck, expr *e) {
   value v = check_family(ck, operand(e, 0));
+  if (v.whole) v.place = ON_PARTICLE;
+  const bool family = v.whole;
+  v.whole = false;
   if (v.broken || v.unknown) return v;
-  if (v.whole) {
-    v.place = ON_PARTICLE;
-  } else if (v.shape == SHAPE_SCALAR || v.shape == SHAPE_LOGICAL) {
+  if (!family && (v.shape == SHAPE_SCALAR || v.shape == SHAPE_LOGICAL))
     return bad_shape(ck, e, v, "for the size of a number write `abs(...)`");
-  }
   return with_shape(v, v.dim, SHAPE_SCALAR);
 }
 
@@ -164,7 +164,7 @@ static value mean(checker *ck, expr *e) {
 static value previous(checker *ck, expr *e) {
   expr *of = operand(e, 0);
   value v = check_family(ck, of);
-  if (v.broken) return v;
+  if (v.broken || of->kind == EXPR_HOLE) return v;
   const symbol *s = of->kind == EXPR_NAME ? of->symbol : NULL;
   if (s && (s->kind == SYMBOL_STATE || s->kind == SYMBOL_DAMAGE)) {
     of->reads_old = true;
@@ -201,7 +201,7 @@ static value derivative(checker *ck, expr *e) {
   expr *by = operand(e, 1);
   value f = check_number(ck, operand(e, 0)), x = check_number(ck, by);
   if (f.broken || x.broken) return BROKEN;
-  if (!is_variable(by)) {
+  if (!is_variable(by) && by->kind != EXPR_HOLE) {
     complain(ck, DIAG_ARGUMENTS, by->where,
              "`diff` differentiates by a quantity, a parameter, a state or a damage");
     if (is_slip(by))
@@ -275,9 +275,10 @@ static value virtual_work(checker *ck, expr *e) {
 
 static value fit(checker *ck, expr *e) {
   value v = family_argument(ck, e, false);
+  v.place = ON_PARTICLE;
+  v.whole = false;
   if (v.broken || v.unknown) return v;
   ck->reads_poisson = true;
-  v.place = ON_PARTICLE;
   return with_shape(v, v.dim, SHAPE_TENSOR);
 }
 
@@ -341,7 +342,7 @@ static value of_principal(checker *ck, expr *e, value v) {
   check_number(ck, which);
   bool one_to_three = which->kind == EXPR_NUMBER && !which->unit_text &&
                       (which->number == 1 || which->number == 2 || which->number == 3);
-  if (v.broken || one_to_three) return v;
+  if (v.broken || one_to_three || which->kind == EXPR_HOLE) return v;
   complain(ck, DIAG_ARGUMENTS, which->where, "the second argument of `%s` is 1, 2 or 3", e->name);
   diag_hint(ck->d, "1 is the largest principal value");
   return BROKEN;
@@ -386,7 +387,8 @@ static value tensor_of_components(checker *ck, expr *e) {
     diag_hint(ck->d, "they are xx, yy, zz, xy, and out of the plane yz, xz");
     return BROKEN;
   }
-  all.unknown = all.zero = false;
+  all.zero = false;
+  all.unknown &= ck->holes;
   return with_shape(all, all.dim, SHAPE_TENSOR);
 }
 

@@ -76,6 +76,7 @@ typedef struct checker {
   span call_where;    /* the outermost call */
   int depth, expansions, searches, search_mark;
   bool too_deep, in_reduction;
+  bool holes;          /* some `?` was met */
   bool result_refused; /* some result was, so say nothing about missing ones */
 } checker;
 

@@ -240,6 +240,8 @@ static int flatten(flattening *t, const expr *e) {
     return flatten_call(t, e);
   case EXPR_CASES:
     return flatten_cases(t, e);
+  case EXPR_HOLE: /* refused before */
+    return 0;
   }
   return 0;
 }
@@ -267,12 +269,18 @@ static bool is_own_name(checker *ck, const expr *e) {
   return false;
 }
 
+static bool is_written(checker *ck, const expr *e) {
+  complain(ck, DIAG_HOLE, e->where, "a part of this formula is still to be written");
+  return false;
+}
+
 /* Nothing that needs a law; false after messages. */
 static bool stands_alone(checker *ck, const expr *e) {
   bool good = true;
   if (!e) return true;
   if (e->kind == EXPR_NAME) good = is_own_name(ck, e);
   if (e->kind == EXPR_CALL) good = is_of_numbers(ck, e);
+  if (e->kind == EXPR_HOLE) good = is_written(ck, e);
   good = stands_alone(ck, e->left) && good;
   good = stands_alone(ck, e->right) && good;
   for (int k = 0; k < e->argument_count; k++)

@@ -4,6 +4,7 @@
 
 #include "dsl/semantics/calls.h"
 #include "dsl/semantics/declarations.h"
+#include "dsl/semantics/holes.h"
 #include "dsl/semantics/names.h"
 #include "dsl/semantics/order.h"
 #include "dsl/semantics/parameters.h"
@@ -58,6 +59,7 @@ static bool is_made_of_length(const expr *e) {
 
 /* In a state law the [j] on the left says whether there is one value or one for each neighbour. */
 static bool check_family_rule(checker *ck, const stmt *s, value *v) {
+  if (v->unknown && !is_single(ck) && v->place == ON_NOTHING) v->place = ON_PARTICLE;
   if (is_single(ck)) {
     if (!s->indexed) return true;
     complain(ck, DIAG_PLACEMENT, s->name_where, "a %s law has no neighbours to give `%s` to",
@@ -118,7 +120,7 @@ static void check_field_rule(checker *ck, stmt *s, entry *field, value v) {
     field->type = v;
     field->known = true;
   }
-  if (field->type.broken || s->kind == STMT_FLOW) return;
+  if (field->type.broken || field->type.unknown || s->kind == STMT_FLOW) return;
   if (v.shape == SHAPE_TENSOR && !v.zero && refuse_tensor(ck, s, field)) return;
   if (!expect(ck, s->value, v, field->type.dim, field->type.shape, what)) return;
 }
@@ -128,7 +130,7 @@ static void check_field_rule(checker *ck, stmt *s, entry *field, value v) {
 static void set_type(const stmt *s, value v) {
   if (!s->symbol) return;
   entry *e = entry_of(s->symbol);
-  v.zero = v.unknown = v.whole = false; /* a name for a bare 0 is a pure number */
+  v.zero = v.whole = false; /* a name for a bare 0 is a pure number */
   if (v.place == ON_NOTHING) v.place = ON_BODY;
   e->type = v;
   e->known = true;
@@ -195,6 +197,7 @@ static void check_result(checker *ck, stmt *s) {
     if (!expect(ck, s->value, v, dim, results[which].shape, what)) v = BROKEN;
     v.dim = dim;
     v.shape = results[which].shape;
+    v.unknown = false;
   }
   set_type(s, v);
 }
@@ -236,6 +239,8 @@ static void check_tensor(checker *ck, stmt *s) {
   dimension dim = s->kind == STMT_STRESS ? dimension_of("Pa") : DIMENSIONLESS;
   const char *what = s->kind == STMT_STRESS ? "a stress" : "a strain";
   if (!expect(ck, s->value, v, dim, SHAPE_TENSOR, what)) v = BROKEN;
+  if (v.unknown)
+    v = (value){.dim = dim, .shape = SHAPE_TENSOR, .place = is_single(ck) ? v.place : ON_PARTICLE};
   set_type(s, v.broken || check_family_rule(ck, s, &v) ? v : BROKEN);
 }
 
@@ -252,7 +257,7 @@ static void check_flow(checker *ck, stmt *s) {
   entry *field = s->symbol ? entry_of(s->symbol) : NULL;
   if (!field || v.broken) return;
   check_field_rule(ck, s, field, v);
-  if (s->returned || !field->known || field->type.broken) return;
+  if (s->returned || !field->known || field->type.broken || field->type.unknown) return;
   const char *what = arena_printf(ck->memory, "the flow of `%s`", s->name);
   expect(ck, s->value, v, field->type.dim, field->type.shape, what);
 }
@@ -377,6 +382,7 @@ static void infer_states(checker *ck) {
     entry *e = entry_of(ck->law->fields.items[i]);
     if (e->known) continue;
     e->type = scalar_of(DIMENSIONLESS, e->symbol.place);
+    e->type.unknown = ck->holes;
     e->known = true;
   }
 }
@@ -617,6 +623,7 @@ static void check_all(checker *ck, const law_choice *choices, int choice_count) 
     check_results_given(ck);
   else
     check_force_state_given(ck);
+  report_holes(ck);
   publish_types(ck);
 }
 

@@ -67,6 +67,7 @@ double law_constant_value(const expr *e, const double *values) {
   case EXPR_CALL:
     return call_value(e, values);
   case EXPR_CASES:
+  case EXPR_HOLE:
     return NAN;
   }
   return NAN;
@@ -88,6 +89,7 @@ bool law_is_plain(const expr *e) {
       if (!law_is_plain(e->arguments[i].value)) return false;
     return true;
   case EXPR_CASES:
+  case EXPR_HOLE:
     return false;
   }
   return false;

@@ -9,10 +9,14 @@
 
 static value check_plain(checker *ck, expr *e, context where) {
   context before = ck->context;
+  const bool holes = ck->holes;
   ck->context = where;
+  ck->holes = false;
   value v = check_number(ck, e);
+  v.unknown |= ck->holes;
   ck->context = before;
-  if (v.broken || (where == IN_BOUNDS ? law_is_bound(e) : law_is_plain(e))) return v;
+  ck->holes |= holes;
+  if (v.broken || v.unknown || (where == IN_BOUNDS ? law_is_bound(e) : law_is_plain(e))) return v;
   complain(ck, DIAG_BAD_NUMBER, e->where,
            "a value given here is made of numbers, + - * / ** and plain functions");
   if (where == IN_BOUNDS && e->kind == EXPR_CASES)
@@ -46,19 +50,19 @@ void check_parameter(checker *ck, stmt *s) {
   if (s->value) {
     v = check_plain(ck, s->value, IN_DEFAULT);
     if (!v.broken && v.shape != SHAPE_SCALAR) v = BROKEN;
-    if (!v.broken && !read_finite(ck, s->value, &e->symbol.initial)) v = BROKEN;
-    e->symbol.has_default = !v.broken;
+    if (!v.broken && !v.unknown && !read_finite(ck, s->value, &e->symbol.initial)) v = BROKEN;
+    e->symbol.has_default = !v.broken && !v.unknown;
   } else if (s->unit_text) {
     if (read_unit(ck, s->unit_text, s->unit_where, &u))
       v.dim = u.dim;
     else
       v = BROKEN;
   }
-  v.zero = v.unknown = false;
+  v.zero = false;
   v.place = ON_BODY;
   e->type = v;
   e->known = true;
-  if (!v.broken) check_density(ck, s, v.dim);
+  if (!v.broken && !v.unknown) check_density(ck, s, v.dim);
 }
 
 /* A bare 0 leaves unit and shape to the rule. */
@@ -67,9 +71,10 @@ void check_initial_value(checker *ck, stmt *s) {
   entry *e = entry_of(s->symbol);
   value v = {.zero = true};
   if (s->value) v = check_plain(ck, s->value, IN_DEFAULT);
-  if (!v.broken && s->value && !read_finite(ck, s->value, &e->symbol.initial)) v = BROKEN;
+  if (!v.broken && !v.unknown && s->value && !read_finite(ck, s->value, &e->symbol.initial))
+    v = BROKEN;
   if (s->tensor && !v.broken) v.shape = SHAPE_TENSOR;
-  if (v.zero) {
+  if (v.zero || v.unknown) {
     e->infer = !e->known;
     return;
   }
@@ -141,7 +146,7 @@ void check_bounds(checker *ck) {
   for (int i = 0; i < parameters->count; i++) {
     const symbol *p = parameters->items[i];
     const bounds *in = &p->declared->in;
-    if (!in->given || entry_of(p)->type.broken) continue;
+    if (!in->given || entry_of(p)->type.broken || entry_of(p)->type.unknown) continue;
     const dimension dim = entry_of(p)->type.dim;
     char text[64];
     own_unit(p, text, sizeof(text));

@@ -31,6 +31,11 @@ static value refuse(checker *ck, const expr *e, const char *message, const char 
    fixed on a bond, such as s, may stand without [j]: it is that of the bond at hand. */
 static value check_family_name(checker *ck, expr *e, value v) {
   if (v.unknown && ck->function) return v;
+  if (v.unknown) { /* a hole may live anywhere */
+    v.whole = !e->indexed && v.place == ON_NEIGHBOUR;
+    if (e->indexed || e->primed) v.place = ON_NEIGHBOUR;
+    return v;
+  }
   switch (v.place) {
   case ON_NOTHING:
   case ON_BODY:
@@ -160,6 +165,10 @@ static value check_power(checker *ck, expr *e, value base, value exponent) {
   value v = joined(ck, base, exponent);
   v.zero = false;
   if (base.unknown || dim_is_none(base.dim)) return v;
+  if (exponent.unknown && ck->holes) {
+    v.unknown = true;
+    return v;
+  }
   double number, twelfths;
   if (!number_of(e->right, &number)) {
     complain(ck, DIAG_UNITS, e->right->where,
@@ -237,6 +246,10 @@ static value check_choice(checker *ck, expr *e) {
   const stmt *s = option->symbol.declared;
   left->symbol = &option->symbol;
   left->shape = right->shape = SHAPE_LOGICAL;
+  if (right->kind == EXPR_HOLE) {
+    ck->holes = right->open = true;
+    return logical(ON_NOTHING);
+  }
   if ((e->binary != OP_EQ && e->binary != OP_NE) || right->kind != EXPR_NAME || right->indexed) {
     complain(ck, DIAG_OPTION, e->where, "option `%s` can only be compared with one of its choices",
              s->name);
@@ -304,13 +317,14 @@ static value check_binary(checker *ck, expr *e) {
 
 static void check_otherwise(checker *ck, const expr *e) {
   for (int i = 0; i < e->case_count; i++) {
-    if (e->cases[i].guard) continue;
+    if (e->cases[i].guard || e->cases[i].open) continue;
     if (i + 1 == e->case_count) return;
     complain(ck, DIAG_CASES, e->cases[i + 1].where, "this line can never be chosen");
     diag_note(ck->d, e->cases[i].where, "`otherwise` takes all that is left");
     diag_hint(ck->d, "`otherwise` stands on the last line");
     return;
   }
+  if (e->case_count && e->cases[e->case_count - 1].open) return;
   span last = e->case_count ? e->cases[e->case_count - 1].where : e->where;
   complain(ck, DIAG_CASES, last, "these cases do not end with `otherwise`");
   diag_hint(ck->d, "add a last line: `| value otherwise`");
@@ -343,6 +357,17 @@ static value check_cases(checker *ck, expr *e) {
   return result;
 }
 
+/* --- what is still to be written -------------------------------------------------------------- */
+
+/* Agrees with everything; reported when all else is known (holes.h). */
+static value check_hole(checker *ck, expr *e) {
+  unit u;
+  ck->holes = true;
+  if (!e->unit_text)
+    return (value){.unknown = true, .place = ck->in_reduction ? ON_NEIGHBOUR : ON_NOTHING};
+  return read_unit(ck, e->unit_text, e->unit_where, &u) ? scalar_of(u.dim, ON_NOTHING) : BROKEN;
+}
+
 /* --- entry points ----------------------------------------------------------------------------- */
 
 static value check_kind(checker *ck, expr *e) {
@@ -359,6 +384,8 @@ static value check_kind(checker *ck, expr *e) {
     return check_call(ck, e);
   case EXPR_CASES:
     return check_cases(ck, e);
+  case EXPR_HOLE:
+    return check_hole(ck, e);
   }
   return BROKEN;
 }
@@ -376,6 +403,7 @@ value check_family(checker *ck, expr *e) {
   e->dim = v.dim;
   e->shape = v.shape;
   e->place = v.place;
+  e->open = v.unknown && !v.broken;
   return v;
 }
 

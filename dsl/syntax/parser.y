@@ -57,7 +57,7 @@ static const word no_word;
 %token REQUIRE
 %token EXPRESSION /* begins one that stands by itself: no text has it */
 %token WHEN OTHERWISE JUMP IN AND OR NOT BY ALONG RETURNED ON
-%token EQ NE LE GE POW
+%token EQ NE LE GE POW HOLE
 %token <number> NUMBER
 %token <word> NAME PRIMED UNIT STRING
 
@@ -230,6 +230,8 @@ case_lines:
   '|' expression WHEN expression jump
                                     { $$ = build_case(p, build_cases(p, @$), $2, $4, $5, @$); }
 | '|' expression OTHERWISE jump     { $$ = build_case(p, build_cases(p, @$), $2, NULL, $4, @$); }
+| '|' HOLE                          { $$ = build_open_case(p, build_cases(p, @$), @2); }
+| case_lines '|' HOLE               { $$ = build_open_case(p, $1, @3); }
 | case_lines '|' expression WHEN expression jump
                                     { $$ = build_case(p, $1, $3, $5, $6, span_join(@2, @6)); }
 | case_lines '|' expression OTHERWISE jump
@@ -304,6 +306,7 @@ power:
 primary:
   NUMBER                            { $$ = build_number(p, $1, no_word, @$); }
 | NUMBER UNIT                       { $$ = build_number(p, $1, $2, @$); }
+| HOLE unit                         { $$ = build_hole(p, $2, $2.text ? @$ : @1); }
 | NAME index                        { $$ = build_name(p, $1, false, $2, $2.text ? @$ : @1); }
 | NAME '[' NAME ',' NAME ']'        { $$ = build_component(p, build_name(p, $1, false, no_word, @1),
                                                            $3, $5, @$); }

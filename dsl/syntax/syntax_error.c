@@ -47,7 +47,7 @@ static bool is_word_of_language(int token) {
 
 static bool is_value_end(int token) {
   return token == T_NUMBER || token == T_UNIT || token == T_NAME || token == T_PRIMED ||
-         token == ')' || token == ']';
+         token == T_HOLE || token == ')' || token == ']';
 }
 
 /* A short quotation of the text. */
@@ -182,6 +182,23 @@ static bool index_wrong(parsing *p, const trouble *t) {
   if (p->lex.before_last != '[' || !t->expected[T_NAME] || value_expected(t)) return false;
   say(p, t->where, "square brackets hold `j`, the neighbour, or two axes of a tensor");
   hint(p, "write x[j] or sigma[x,y]; units stand after numbers only");
+  return true;
+}
+
+static void hint_form(parsing *p);
+
+/* `?` where no value can stand. */
+static bool hole_misplaced(parsing *p, const trouble *t) {
+  if (t->token != T_HOLE || value_expected(t)) return false;
+  say(p, t->where, "`?` stands for a value that is still to be written, and none can stand here");
+  if (p->lex.before_last == T_NEWLINE)
+    hint(p, "a line that is still to be written has its name: x = ?");
+  else if (is_value_end(p->lex.before_last) && operator_expected(t))
+    hint(p, "cases are chosen by | value when guard, and on the last line | value otherwise");
+  else if (t->expected[T_NAME])
+    hint(p, "names are written out; only values may be left open");
+  else
+    hint_form(p);
   return true;
 }
 
@@ -523,13 +540,13 @@ static bool anything_else(parsing *p, const trouble *t) {
 
 void syntax_error(parsing *p, int token, span where, const bool expected[TOKEN_CODES]) {
   static const slip_test tests[] = {
-      foreign_statement,  misspelt_statement, unit_before_value,  equal_for_equality,
-      decimal_comma,      bounds_wrong,       bracket_not_open,   bracket_empty,
-      case_without_guard, case_misplaced,     word_as_name,       name_missing,
-      index_wrong,        bracket_not_closed, guard_without_case, chained_comparison,
-      component_set,      two_values,         unit_misplaced,     text_not_last,
-      text_missing,       line_begins_wrong,  value_missing,      equal_missing,
-      anything_else};
+      foreign_statement,  hole_misplaced,     misspelt_statement, unit_before_value,
+      equal_for_equality, decimal_comma,      bounds_wrong,       bracket_not_open,
+      bracket_empty,      case_without_guard, case_misplaced,     word_as_name,
+      name_missing,       index_wrong,        bracket_not_closed, guard_without_case,
+      chained_comparison, component_set,      two_values,         unit_misplaced,
+      text_not_last,      text_missing,       line_begins_wrong,  value_missing,
+      equal_missing,      anything_else};
   if (!first_complaint(p)) return;
   trouble t = {token, where, expected};
   for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
@@ -562,7 +579,6 @@ static const struct {
     {"%", "write a percentage as a number: 5 [%] or 0.05"},
     {"{", "write round brackets; in a unit, square ones"},
     {"}", "write round brackets; in a unit, square ones"},
-    {"?", "choose with cases: | value when guard"},
     {".and.", "write `and`"},
     {".or.", "write `or`"},
     {".not.", "write `not`"},

@@ -77,6 +77,7 @@ static void print_cases(const expr *e, FILE *out) {
     const case_line *c = &e->cases[i];
     fputs(i ? " | " : "| ", out);
     print_at(c->value, LEVEL_OR, out);
+    if (c->open) continue;
     fputs(c->guard ? " when " : " otherwise", out);
     if (c->guard) print_at(c->guard, LEVEL_OR, out);
     if (c->jump) fputs(" jump", out);
@@ -149,6 +150,10 @@ static void print_bare(const expr *e, level own, FILE *out) {
   case EXPR_CASES:
     print_cases(e, out);
     break;
+  case EXPR_HOLE:
+    fputc('?', out);
+    if (e->unit_text) fprintf(out, " [%s]", e->unit_text);
+    break;
   }
 }
 
@@ -178,6 +183,7 @@ static void dump_cases(const expr *e, int depth, FILE *out) {
     indent(depth, out);
     fprintf(out, "case%s\n", c->jump ? " jump" : "");
     dump_expr(c->value, depth + 1, out);
+    if (c->open) continue;
     indent(depth, out);
     fputs(c->guard ? "when\n" : "otherwise\n", out);
     if (c->guard) dump_expr(c->guard, depth + 1, out);
@@ -228,6 +234,11 @@ static void dump_expr(const expr *e, int depth, FILE *out) {
   case EXPR_CASES:
     fputs("cases\n", out);
     dump_cases(e, depth + 1, out);
+    break;
+  case EXPR_HOLE:
+    fputs("hole ", out);
+    print_bare(e, LEVEL_PRIMARY, out);
+    fputc('\n', out);
     break;
   }
 }

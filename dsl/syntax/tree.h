@@ -33,7 +33,8 @@ typedef enum expr_kind {
   EXPR_UNARY,  /* -a, not a */
   EXPR_BINARY, /* a + b, a <= b, a and b, a : b */
   EXPR_CALL,   /* f(a, b, weight = c) */
-  EXPR_CASES   /* | value when guard  ... | value otherwise */
+  EXPR_CASES,  /* | value when guard  ... | value otherwise */
+  EXPR_HOLE    /* ?, ? [GPa]: still to be written */
 } expr_kind;
 
 /* How an operator is computed by an operation of the same or another name: a > b is b < a. */
@@ -103,6 +104,7 @@ typedef struct case_line {
   expr *value;
   expr *guard; /* NULL: otherwise */
   bool jump;
+  bool open; /* `| ?`: value and guard are one hole, and still to be written; `guard` is NULL */
   span where;
 } case_line;
 
@@ -112,7 +114,7 @@ struct expr {
   int depth; /* levels of the tree from here down; the parser keeps it to TREE_DEEPEST */
 
   double number;         /* NUMBER: as written, before the unit */
-  const char *unit_text; /* NUMBER: NULL without a unit */
+  const char *unit_text; /* NUMBER, HOLE: NULL without a unit */
   span unit_where;
 
   const char *name; /* NAME, CALL */
@@ -134,6 +136,7 @@ struct expr {
   struct symbol *symbol; /* NAME: what it refers to; CALL: a user's function */
   int builtin;           /* CALL: enum builtin_function of builtins.h, or -1 */
   bool reads_old;        /* NAME of a state or damage: value of the last step */
+  bool open;             /* unit and shape are not known, because of a hole */
   dimension dim;
   enum shape shape;
   placement place;

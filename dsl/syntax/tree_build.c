@@ -44,6 +44,13 @@ expr *build_number(parsing *p, double number, word written_unit, span where) {
   return e;
 }
 
+expr *build_hole(parsing *p, word written_unit, span where) {
+  expr *e = node(p, EXPR_HOLE, where);
+  e->unit_text = written_unit.text;
+  e->unit_where = written_unit.where;
+  return e;
+}
+
 expr *build_name(parsing *p, word name, bool primed, word index, span where) {
   expr *e = node(p, EXPR_NAME, where);
   e->name = name.text;
@@ -118,9 +125,18 @@ expr *build_cases(parsing *p, span where) {
 expr *build_case(parsing *p, expr *cases, expr *value, expr *guard, bool jump, span where) {
   int n = cases->case_count++;
   cases->cases = grown(p->memory, cases->cases, n, sizeof *cases->cases);
-  cases->cases[n] =
-      (case_line){below(p, cases, value), guard ? below(p, cases, guard) : NULL, jump, where};
+  cases->cases[n] = (case_line){.value = below(p, cases, value),
+                                .guard = guard ? below(p, cases, guard) : NULL,
+                                .jump = jump,
+                                .where = where};
   cases->where = span_join(cases->where, where);
+  return cases;
+}
+
+expr *build_open_case(parsing *p, expr *cases, span where) {
+  const word no_unit = {.text = NULL};
+  build_case(p, cases, build_hole(p, no_unit, where), NULL, false, where);
+  cases->cases[cases->case_count - 1].open = true;
   return cases;
 }
 

@@ -5,6 +5,8 @@
 #include "dsl/syntax/parsing.h"
 
 expr *build_number(parsing *p, double number, word written_unit, span where);
+/* `?`, maybe with a unit (.text NULL without). */
+expr *build_hole(parsing *p, word written_unit, span where);
 expr *build_name(parsing *p, word name, bool primed, word index, span where);
 /* sigma[x,y]: `first` and `second` name axes. */
 expr *build_component(parsing *p, expr *tensor, word first, word second, span where);
@@ -14,6 +16,8 @@ expr *build_call(parsing *p, word name);
 expr *build_argument(parsing *p, expr *call, word keyword, expr *value);
 expr *build_cases(parsing *p, span where);
 expr *build_case(parsing *p, expr *cases, expr *value, expr *guard, bool jump, span where);
+/* A line `| ?` of cases. */
+expr *build_open_case(parsing *p, expr *cases, span where);
 words *build_words(parsing *p);
 words *build_word(parsing *p, words *list, word item);
 bounds build_bounds(parsing *p, bool lower_open, expr *lower, expr *upper, bool upper_open,

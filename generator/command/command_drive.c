@@ -6,10 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "dsl/base/elementary.h"
-#include "dsl/semantics/law_reads.h"
 #include "generator/command/commands.h"
 #include "generator/drive/drive_bond.h"
 #include "generator/drive/drive_draw.h"
@@ -20,10 +18,10 @@
 #include "generator/drive/drive_point.h"
 #include "generator/drive/drive_table.h"
 #include "generator/drive/drive_write.h"
+#include "generator/drive/driven_law.h"
 #include "generator/drive/explain_bad.h"
 #include "generator/drive/explain_point.h"
 #include "generator/kernel/document.h"
-#include "generator/kernel/material_law.h"
 #include "generator/kernel/settings.h"
 #include "generator/run/run.h"
 #include "runtime/analysis/material.h"
@@ -48,10 +46,7 @@ typedef struct driving {
   source_set sources;
   diagnostics said;
   drive_input *in;
-  model model;
-  bool opened;
-  const pl_law *law;
-  double *parameters, *initial;
+  driven_law of;
   drive_table columns; /* without rows, for the expectations */
   drive_expectations *expectations;
   drive_table table;
@@ -150,148 +145,6 @@ static bool read_input(driving *r) {
   return false;
 }
 
-/* Tips of cracks are not driven. */
-static bool can_be_driven(driving *r) {
-  if (r->law->kind != PL_CRACK) return true;
-  diag_report(&r->said, DIAG_NOT_SUPPORTED, r->in->material.item.where,
-              "`perilat drive` drives bonds, particles and points; `%s` is a law of cracks",
-              r->law->name);
-  diag_hint(&r->said, "see it at work in `perilat run` with a &crack");
-  return false;
-}
-
-static drive_kind kind_of(const driving *r) {
-  return r->law->kind == PL_STATE       ? DRIVE_OF_FAMILIES
-         : r->law->kind == PL_CONTINUUM ? DRIVE_OF_POINTS
-                                        : DRIVE_OF_BONDS;
-}
-
-/* A bond of a chain has an area, another one a thickness. */
-static bool has_section(driving *r) {
-  const bool given = r->in->bond.area > 0;
-  if (kind_of(r) != DRIVE_OF_BONDS || law_reads(r->model.law, QUANTITY_AREA) == given) return true;
-  if (given)
-    diag_report(&r->said, DIAG_CONFLICT, deck_where(&r->in->bond.item, "area"),
-                "the law `%s` does not read `area`", r->law->name);
-  else
-    diag_report(&r->said, DIAG_MISSING_KEY, r->in->bond.item.where,
-                "the law `%s` reads `area`: `&bond` must give it", r->law->name);
-  if (!given) diag_hint(&r->said, "such as &bond area = '100 mm^2' /");
-  return false;
-}
-
-/* Bonds stretch and turn; particles are strained; points bear stress, too. */
-static bool is_driven_by(drive_kind of, drive_quantity q) {
-  if (of == DRIVE_OF_BONDS) return q < DRIVE_STRAIN_XX;
-  return q >= DRIVE_STRAIN_XX && (of == DRIVE_OF_POINTS || q < DRIVE_STRESS_XX);
-}
-
-static bool refuse_quantity(driving *r, const drive_piece *p, bool beyond) {
-  static const char *const laws[] = {[DRIVE_OF_BONDS] = "bonds",
-                                     [DRIVE_OF_FAMILIES] = "families",
-                                     [DRIVE_OF_POINTS] = "a continuum"};
-  static const char *const hints[] = {
-      [DRIVE_OF_BONDS] = "a bond is driven by stretch, theta_i, theta_j, twist",
-      [DRIVE_OF_FAMILIES] = "a particle is driven by strain_xx, strain_yy, strain_xy",
-      [DRIVE_OF_POINTS] = "a point is driven by strain_xx, ..., stress_xx, ..."};
-  diag_report(&r->said, DIAG_LAW_KIND, p->where,
-              beyond ? "a law of %s in the plane knows no such strain"
-                     : "a law of %s is not driven by this quantity",
-              laws[kind_of(r)]);
-  diag_hint(&r->said, "%s", hints[kind_of(r)]);
-  return false;
-}
-
-/* Beyond the plane in space only. */
-static bool suits_law(driving *r) {
-  for (int k = 0; k < r->in->piece_count; k++) {
-    const drive_quantity q = r->in->pieces[k].quantity;
-    const bool beyond = q == DRIVE_STRAIN_ZZ || q == DRIVE_STRAIN_YZ || q == DRIVE_STRAIN_XZ;
-    if (!is_driven_by(kind_of(r), q)) return refuse_quantity(r, &r->in->pieces[k], false);
-    if (kind_of(r) == DRIVE_OF_FAMILIES && beyond && r->law->dimensions == 2)
-      return refuse_quantity(r, &r->in->pieces[k], true);
-  }
-  return kind_of(r) != DRIVE_OF_POINTS || drive_point_suits(r->in, r->law, &r->said);
-}
-
-/* A point is of the setting that the path asks for. */
-static bool take_setting(driving *r) {
-  if (r->model.law->tree->law != LAW_CONTINUUM || !r->in->point.setting) return true;
-  const law *in_setting = drive_point_setting(r->in, r->model.law, &r->said);
-  if (!in_setting) return false;
-  r->model.law = in_setting;
-  plan_free(r->model.plan);
-  return model_plan(&r->model);
-}
-
-static int open_law(driving *r) {
-  char error[ERROR_LENGTH];
-  const char *note;
-  bool good = material_law_open(&r->in->material, NULL, r->options->path, &r->model, &r->said);
-  r->opened = r->model.memory != NULL;
-  good = good && take_setting(r);
-  if (r->opened) tell(r, &r->model.said);
-  if (!good) return INPUT_WRONG;
-  r->law = model_kernel(&r->model, !r->options->compiled, &note, error, sizeof error);
-  if (note) fprintf(stderr, "perilat: warning: %s\n", note);
-  if (r->law) return 0;
-  say_error("%s", error);
-  return DRIVE_FAILED;
-}
-
-static int find_field(const pl_law *kernel, const char *name) {
-  for (int f = 0; f < kernel->field_count; f++)
-    if (strcasecmp(kernel->fields[f].name, name) == 0) return f;
-  return -1;
-}
-
-static bool refuse_field(driving *r, const deck_assignment *a) {
-  const pl_law *kernel = r->law;
-  const char **names = arena_alloc(r->memory, ((size_t)kernel->field_count + 1) * sizeof *names);
-  for (int f = 0; f < kernel->field_count; f++)
-    names[f] = kernel->fields[f].name;
-  diag_report(&r->said, DIAG_UNKNOWN_KEY, a->name_where, "the law `%s` has no state or damage `%s`",
-              kernel->name, a->name);
-  diag_suggest(&r->said, a->name, names, kernel->field_count);
-  return false;
-}
-
-static bool set_field(driving *r, const deck_assignment *a) {
-  int f = find_field(r->law, a->name);
-  if (f < 0) return refuse_field(r, a);
-  const pl_field *field = &r->law->fields[f];
-  unit wanted = {.dim = DIMENSIONLESS};
-  const char *bad;
-  size_t bad_length;
-  if (*field->unit) (void)unit_parse(field->unit, strlen(field->unit), &wanted, &bad, &bad_length);
-  if (a->word || (a->has_unit && !dim_equal(a->dim, wanted.dim))) {
-    char needs[96];
-    dim_describe(wanted.dim, needs, sizeof needs);
-    diag_report(&r->said, DIAG_UNITS, a->value_where, "`%s` is %s", field->name, needs);
-    return false;
-  }
-  if (field->kind == PL_FIELD_DAMAGE && !(a->value >= 0 && a->value <= 1)) {
-    diag_report(&r->said, DIAG_OUT_OF_BOUNDS, a->value_where, "the damage `%s` is between 0 and 1",
-                field->name);
-    return false;
-  }
-  r->initial[f] = a->value;
-  return true;
-}
-
-/* Parameters, and where state and damage begin. */
-static bool set_values(driving *r) {
-  const pl_law *kernel = r->law;
-  r->parameters = arena_alloc(r->memory, ((size_t)kernel->parameter_count + 1) * sizeof(double));
-  r->initial = arena_alloc(r->memory, ((size_t)kernel->field_count + 1) * sizeof(double));
-  for (int f = 0; f < kernel->field_count; f++)
-    r->initial[f] = kernel->fields[f].initial;
-  bool good = material_parameters(&r->model.values, kernel, r->parameters, &r->said);
-  for (int k = 0; k < r->in->initial.assignment_count; k++)
-    good = set_field(r, &r->in->initial.assignments[k]) && good;
-  return good;
-}
-
 /* --- what came out ---------------------------------------------------------------------------- */
 
 /* With the states of the row before. */
@@ -299,14 +152,14 @@ static void explain_bad_point(const driving *r, long row) {
   const drive_table *t = &r->table;
   double strain[PL_MAX_STRAINS];
   double *fields = must_calloc((size_t)t->fields + 1, sizeof *fields);
-  for (int k = 0; k < PL_STRAINS(r->law->dimensions); k++)
+  for (int k = 0; k < PL_STRAINS(r->of.law->dimensions); k++)
     strain[k] = t->columns[1 + k].values[row];
   for (int f = 0; f < t->fields; f++)
-    fields[f] = row ? t->columns[t->law_column + f].values[row - 1] : r->initial[f];
+    fields[f] = row ? t->columns[t->law_column + f].values[row - 1] : r->of.initial[f];
   const double *time = t->columns[DRIVE_COLUMN_TIME].values;
   const asked_point at = {strain, fields, r->in->point.cell_size,
                           row ? time[row] - time[row - 1] : 1};
-  explain_point(r->model.plan, r->parameters, &at, stderr);
+  explain_point(r->of.model.plan, r->of.parameters, &at, stderr);
   free(fields);
 }
 
@@ -323,7 +176,7 @@ static void report_bad(const driving *r) {
   if (t->of != DRIVE_OF_BONDS) return;
   double *fields = must_calloc((size_t)t->fields + 1, sizeof *fields);
   for (int f = 0; f < t->fields; f++)
-    fields[f] = row ? t->columns[DRIVE_COLUMN_LAW + f].values[row - 1] : r->initial[f];
+    fields[f] = row ? t->columns[DRIVE_COLUMN_LAW + f].values[row - 1] : r->of.initial[f];
   bad_state at = {.stretch = t->columns[DRIVE_COLUMN_STRETCH].values[row],
                   .stretch_rate = t->columns[DRIVE_COLUMN_STRETCH_RATE].values[row],
                   .theta_i = t->columns[DRIVE_COLUMN_THETA_I].values[row],
@@ -331,28 +184,28 @@ static void report_bad(const driving *r) {
                   .fields = fields,
                   .field_count = t->fields};
   pl_bond_class bonds;
-  if (drive_bond_class(r->in, material_density(r->law, r->parameters), &bonds))
-    explain_bad(r->model.plan, r->parameters, &bonds, &at, stderr);
+  if (drive_bond_class(r->in, material_density(r->of.law, r->of.parameters), &bonds))
+    explain_bad(r->of.model.plan, r->of.parameters, &bonds, &at, stderr);
   free(fields);
 }
 
 static void describe(const driving *r) {
   const drive_table *t = &r->table;
   const drive_bond *b = &r->in->bond;
-  const deck_lattice like = drive_lattice(r->in, r->model.law);
+  const deck_lattice like = drive_lattice(r->in, r->of.model.law);
   if (t->of == DRIVE_OF_POINTS)
-    printf("%s at one point (%s)", r->law->name, law_setting_name(r->model.law->setting));
+    printf("%s at one point (%s)", r->of.law->name, law_setting_name(r->of.model.law->setting));
   else if (t->of == DRIVE_OF_FAMILIES)
-    printf("%s on one particle of a lattice (%s, %s), s = %.6g mm", r->law->name, like.kind,
+    printf("%s on one particle of a lattice (%s, %s), s = %.6g mm", r->of.law->name, like.kind,
            like.setting, 1e3 * like.spacing);
   else if (b->area > 0)
-    printf("%s on one bond, s = %.6g mm, A = %.6g mm^2", r->law->name, 1e3 * b->spacing,
+    printf("%s on one bond, s = %.6g mm, A = %.6g mm^2", r->of.law->name, 1e3 * b->spacing,
            1e6 * b->area);
   else
-    printf("%s on one bond, s = %.6g mm, t = %.6g mm", r->law->name, 1e3 * b->spacing,
+    printf("%s on one bond, s = %.6g mm, t = %.6g mm", r->of.law->name, 1e3 * b->spacing,
            1e3 * b->thickness);
   printf(": %ld rows to %.6g s (%s)\n", t->rows, t->columns[DRIVE_COLUMN_TIME].values[t->rows - 1],
-         r->law->context ? "interpreter" : "compiled");
+         r->of.law->context ? "interpreter" : "compiled");
   drive_print(r->in, t, stdout);
 }
 
@@ -380,7 +233,7 @@ static void note_fall(const driving *r) {
   printf("note: `dissipated_damage` falls, by most up to %.6g s, %s %.6g\n",
          t->columns[DRIVE_COLUMN_TIME].values[row], t->columns[t->way].name,
          t->columns[t->way].values[row]);
-  if (r->model.law->results[RESULT_W])
+  if (r->of.model.law->results[RESULT_W])
     puts("  the law gives back more than its `energy W` says that it has stored: it makes energy");
   else
     puts(
@@ -399,7 +252,7 @@ static void print_direction(const double *vector, int dimensions) {
 static void note_band(const driving *r) {
   const drive_table *t = &r->table;
   const ellipticity *e = &r->band.of;
-  const int dimensions = r->law->dimensions, strains = PL_STRAINS(dimensions);
+  const int dimensions = r->of.law->dimensions, strains = PL_STRAINS(dimensions);
   double cosine = 0;
   if (r->band.row < 0) return;
   printf("note: ellipticity is lost at %.6g s:", t->columns[0].values[r->band.row]);
@@ -419,7 +272,7 @@ static bool spares_inputs(const driving *r) {
   const char *const written[] = {o->csv, o->hdf5, o->picture};
   for (size_t k = 0; k < sizeof written / sizeof *written; k++)
     if (written[k] &&
-        (same_file(written[k], r->options->path) || same_file(written[k], r->model.path))) {
+        (same_file(written[k], r->options->path) || same_file(written[k], r->of.model.path))) {
       say_error("the output would overwrite `%s`", written[k]);
       return false;
     }
@@ -465,7 +318,7 @@ static void print_verdict(const driving *r, const drive_expect *e, const drive_v
 static int judge(driving *r) {
   const int count = r->in->expect_count;
   drive_verdict *verdicts = arena_alloc(r->memory, ((size_t)count + 1) * sizeof *verdicts);
-  drive_judge(r->expectations, r->parameters, &r->table, verdicts);
+  drive_judge(r->expectations, r->of.parameters, &r->table, verdicts);
   int passed = 0;
   for (int k = 0; k < count; k++) {
     print_verdict(r, &r->in->expects[k], &verdicts[k]);
@@ -479,40 +332,24 @@ static int judge(driving *r) {
 static int prepare(driving *r) {
   if (!read_input(r)) return INPUT_WRONG;
   if (!r->in->material.model) return 0;
-  int status = open_law(r);
-  if (status) return status;
-  if (!can_be_driven(r) || !has_section(r) || !suits_law(r) || !set_values(r) || !spares_inputs(r))
-    return INPUT_WRONG;
-  if (kind_of(r) == DRIVE_OF_FAMILIES)
-    drive_family_columns(r->in, r->model.law, r->law, &r->columns);
-  else if (kind_of(r) == DRIVE_OF_POINTS)
-    drive_point_columns(r->in, r->law, &r->columns);
-  else
-    drive_columns(r->law, &r->columns);
-  r->expectations = drive_expectations_read(r->in, &r->model, &r->columns, &r->said);
+  const driven_outcome outcome =
+      driven_law_open(&r->of, r->memory, r->in, r->options->compiled, &r->said);
+  if (r->of.opened) tell(r, &r->of.model.said);
+  if (outcome == DRIVEN_NO_KERNEL) return DRIVE_FAILED;
+  if (outcome != DRIVEN_READY || !spares_inputs(r)) return INPUT_WRONG;
+  driven_law_columns(&r->of, &r->columns);
+  r->expectations = drive_expectations_read(r->in, &r->of.model, &r->columns, &r->said);
   return r->expectations ? 0 : INPUT_WRONG;
-}
-
-static bool march(driving *r) {
-  switch (kind_of(r)) {
-  case DRIVE_OF_FAMILIES:
-    return drive_family_run(r->in, r->model.law, r->law, r->parameters, r->initial, &r->table,
-                            &r->said);
-  case DRIVE_OF_POINTS:
-    return drive_point_run(r->in, r->law, r->parameters, r->initial, &r->table, &r->band, &r->said);
-  default:
-    return drive_run(r->in, r->law, r->parameters, r->initial, &r->table, &r->said);
-  }
 }
 
 /* 0, or an exit status. */
 static int drive(driving *r) {
   int status = prepare(r);
   if (status || r->options->check_only) return status;
-  if (!march(r)) return INPUT_WRONG;
+  if (!driven_law_march(&r->of, &r->table, &r->band)) return INPUT_WRONG;
   describe(r);
-  if (kind_of(r) != DRIVE_OF_FAMILIES) note_fall(r);
-  if (kind_of(r) == DRIVE_OF_POINTS) note_band(r);
+  if (driven_law_kind(&r->of) != DRIVE_OF_FAMILIES) note_fall(r);
+  if (driven_law_kind(&r->of) == DRIVE_OF_POINTS) note_band(r);
   bool written = write_files(r);
   if (r->table.bad_row >= 0) {
     report_bad(r);
@@ -526,7 +363,7 @@ static void close_drive(driving *r) {
   if (r->expectations) drive_expectations_free(r->expectations);
   if (r->columns.memory) drive_table_free(&r->columns);
   if (r->table.memory) drive_table_free(&r->table);
-  if (r->opened) model_close(&r->model);
+  driven_law_close(&r->of);
   diag_clear(&r->said);
   source_clear(&r->sources);
   arena_free(r->memory);
@@ -536,10 +373,10 @@ static void print_checked(const driving *r) {
   static const char *const things[] = {
       [DRIVE_OF_BONDS] = "bond", [DRIVE_OF_FAMILIES] = "particle", [DRIVE_OF_POINTS] = "point"};
   const char *path = r->options->path;
-  if (r->law)
+  if (r->of.law)
     printf("%s: no errors; a path that drives one %s of `%s`, with %d expectation%s\n  perilat "
            "drive %s\n",
-           path, things[kind_of(r)], r->law->name, r->in->expect_count,
+           path, things[driven_law_kind(&r->of)], r->of.law->name, r->in->expect_count,
            r->in->expect_count == 1 ? "" : "s", path);
   else
     printf("%s: no errors; a path that names no law, so that its expectations are not checked\n"

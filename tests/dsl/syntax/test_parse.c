@@ -260,8 +260,12 @@ static expr *fresh(arena *memory, expr_kind kind) {
 static expr *random_leaf(arena *memory) {
   static const char *const names[] = {"a", "bc", "S_p", "eps"};
   static const char *const units[] = {"GPa", "kg/m^3", "1/s"};
-  expr *e = fresh(memory, random_below(3) ? EXPR_NAME : EXPR_NUMBER);
-  if (e->kind == EXPR_NAME) {
+  expr *e = fresh(memory, random_below(9) == 0 ? EXPR_HOLE
+                          : random_below(3)    ? EXPR_NAME
+                                               : EXPR_NUMBER);
+  if (e->kind == EXPR_HOLE) {
+    if (random_below(4) == 0) e->unit_text = units[random_below(3)];
+  } else if (e->kind == EXPR_NAME) {
     e->name = names[random_below(4)];
     e->indexed = random_below(4) == 0;
     e->primed = random_below(6) == 0;
@@ -344,6 +348,8 @@ static bool same(const expr *a, const expr *b) {
               same(a->cases[i].value, b->cases[i].value);
     return equal;
   }
+  case EXPR_HOLE:
+    return same_text(a->unit_text, b->unit_text);
   }
   return false;
 }

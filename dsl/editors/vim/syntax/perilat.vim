@@ -22,6 +22,8 @@ syntax match perilatNumber "\.\d\+\([eEdD][+-]\=\d\+\)\=" nextgroup=perilatUnit 
 syntax match perilatUnit "\[[^]]*\]" contained
 syntax region perilatString start=+"+ end=+"+ oneline
 syntax match perilatOperator "\*\*\|[-+*/<>=:&|]\|[<>=/]="
+" still to be written
+syntax match perilatHole "?" nextgroup=perilatUnit skipwhite
 syntax match perilatComment "!.*$" contains=perilatTodo
 syntax match perilatDoc "!>.*$"
 syntax keyword perilatTodo contained TODO FIXME
@@ -38,6 +40,7 @@ highlight default link perilatString String
 highlight default link perilatOperator Operator
 highlight default link perilatComment Comment
 highlight default link perilatDoc SpecialComment
+highlight default link perilatHole Todo
 highlight default link perilatTodo Todo
 
 let b:current_syntax = "perilat"

@@ -1,0 +1,188 @@
+#include "generator/drive/driven_law.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include "dsl/semantics/law_reads.h"
+#include "generator/drive/drive_bond.h"
+#include "generator/drive/drive_family.h"
+#include "generator/kernel/document.h"
+#include "generator/kernel/material_law.h"
+#include "generator/plan/plan.h"
+#include "runtime/analysis/material.h"
+#include "runtime/deck/deck_value.h"
+
+/* Tips of cracks are not driven. */
+static bool can_be_driven(driven_law *r) {
+  if (r->law->kind != PL_CRACK) return true;
+  diag_report(r->said, DIAG_NOT_SUPPORTED, r->in->material.item.where,
+              "`perilat drive` drives bonds, particles and points; `%s` is a law of cracks",
+              r->law->name);
+  diag_hint(r->said, "see it at work in `perilat run` with a &crack");
+  return false;
+}
+
+drive_kind driven_law_kind(const driven_law *r) {
+  return r->law->kind == PL_STATE       ? DRIVE_OF_FAMILIES
+         : r->law->kind == PL_CONTINUUM ? DRIVE_OF_POINTS
+                                        : DRIVE_OF_BONDS;
+}
+
+/* A bond of a chain has an area, another one a thickness. */
+static bool has_section(driven_law *r) {
+  const bool given = r->in->bond.area > 0;
+  if (driven_law_kind(r) != DRIVE_OF_BONDS || law_reads(r->model.law, QUANTITY_AREA) == given)
+    return true;
+  if (given)
+    diag_report(r->said, DIAG_CONFLICT, deck_where(&r->in->bond.item, "area"),
+                "the law `%s` does not read `area`", r->law->name);
+  else
+    diag_report(r->said, DIAG_MISSING_KEY, r->in->bond.item.where,
+                "the law `%s` reads `area`: `&bond` must give it", r->law->name);
+  if (!given) diag_hint(r->said, "such as &bond area = '100 mm^2' /");
+  return false;
+}
+
+/* Bonds stretch and turn; particles are strained; points bear stress, too. */
+static bool is_driven_by(drive_kind of, drive_quantity q) {
+  if (of == DRIVE_OF_BONDS) return q < DRIVE_STRAIN_XX;
+  return q >= DRIVE_STRAIN_XX && (of == DRIVE_OF_POINTS || q < DRIVE_STRESS_XX);
+}
+
+static bool refuse_quantity(driven_law *r, const drive_piece *p, bool beyond) {
+  static const char *const laws[] = {[DRIVE_OF_BONDS] = "bonds",
+                                     [DRIVE_OF_FAMILIES] = "families",
+                                     [DRIVE_OF_POINTS] = "a continuum"};
+  static const char *const hints[] = {
+      [DRIVE_OF_BONDS] = "a bond is driven by stretch, theta_i, theta_j, twist",
+      [DRIVE_OF_FAMILIES] = "a particle is driven by strain_xx, strain_yy, strain_xy",
+      [DRIVE_OF_POINTS] = "a point is driven by strain_xx, ..., stress_xx, ..."};
+  diag_report(r->said, DIAG_LAW_KIND, p->where,
+              beyond ? "a law of %s in the plane knows no such strain"
+                     : "a law of %s is not driven by this quantity",
+              laws[driven_law_kind(r)]);
+  diag_hint(r->said, "%s", hints[driven_law_kind(r)]);
+  return false;
+}
+
+/* Beyond the plane in space only. */
+static bool suits_law(driven_law *r) {
+  for (int k = 0; k < r->in->piece_count; k++) {
+    const drive_quantity q = r->in->pieces[k].quantity;
+    const bool beyond = q == DRIVE_STRAIN_ZZ || q == DRIVE_STRAIN_YZ || q == DRIVE_STRAIN_XZ;
+    if (!is_driven_by(driven_law_kind(r), q)) return refuse_quantity(r, &r->in->pieces[k], false);
+    if (driven_law_kind(r) == DRIVE_OF_FAMILIES && beyond && r->law->dimensions == 2)
+      return refuse_quantity(r, &r->in->pieces[k], true);
+  }
+  return driven_law_kind(r) != DRIVE_OF_POINTS || drive_point_suits(r->in, r->law, r->said);
+}
+
+/* A point is of the setting that the path asks for. */
+static bool take_setting(driven_law *r) {
+  if (r->model.law->tree->law != LAW_CONTINUUM || !r->in->point.setting) return true;
+  const law *in_setting = drive_point_setting(r->in, r->model.law, r->said);
+  if (!in_setting) return false;
+  r->model.law = in_setting;
+  plan_free(r->model.plan);
+  return model_plan(&r->model);
+}
+
+/* The kernel of the law, which has been read without errors. */
+static bool open_kernel(driven_law *r, bool compiled) {
+  char error[256];
+  const char *note;
+  r->law = model_kernel(&r->model, !compiled, &note, error, sizeof error);
+  if (note) fprintf(stderr, "perilat: warning: %s\n", note);
+  if (!r->law) say_error("%s", error);
+  return r->law != NULL;
+}
+
+static int find_field(const pl_law *kernel, const char *name) {
+  for (int f = 0; f < kernel->field_count; f++)
+    if (strcasecmp(kernel->fields[f].name, name) == 0) return f;
+  return -1;
+}
+
+static bool refuse_field(driven_law *r, const deck_assignment *a) {
+  const pl_law *kernel = r->law;
+  const char **names = arena_alloc(r->memory, ((size_t)kernel->field_count + 1) * sizeof *names);
+  for (int f = 0; f < kernel->field_count; f++)
+    names[f] = kernel->fields[f].name;
+  diag_report(r->said, DIAG_UNKNOWN_KEY, a->name_where, "the law `%s` has no state or damage `%s`",
+              kernel->name, a->name);
+  diag_suggest(r->said, a->name, names, kernel->field_count);
+  return false;
+}
+
+static bool set_field(driven_law *r, const deck_assignment *a) {
+  int f = find_field(r->law, a->name);
+  if (f < 0) return refuse_field(r, a);
+  const pl_field *field = &r->law->fields[f];
+  unit wanted = {.dim = DIMENSIONLESS};
+  const char *bad;
+  size_t bad_length;
+  if (*field->unit) (void)unit_parse(field->unit, strlen(field->unit), &wanted, &bad, &bad_length);
+  if (a->word || (a->has_unit && !dim_equal(a->dim, wanted.dim))) {
+    char needs[96];
+    dim_describe(wanted.dim, needs, sizeof needs);
+    diag_report(r->said, DIAG_UNITS, a->value_where, "`%s` is %s", field->name, needs);
+    return false;
+  }
+  if (field->kind == PL_FIELD_DAMAGE && !(a->value >= 0 && a->value <= 1)) {
+    diag_report(r->said, DIAG_OUT_OF_BOUNDS, a->value_where, "the damage `%s` is between 0 and 1",
+                field->name);
+    return false;
+  }
+  r->initial[f] = a->value;
+  return true;
+}
+
+/* Parameters, and where state and damage begin. */
+static bool set_values(driven_law *r) {
+  const pl_law *kernel = r->law;
+  r->parameters = arena_alloc(r->memory, ((size_t)kernel->parameter_count + 1) * sizeof(double));
+  r->initial = arena_alloc(r->memory, ((size_t)kernel->field_count + 1) * sizeof(double));
+  for (int f = 0; f < kernel->field_count; f++)
+    r->initial[f] = kernel->fields[f].initial;
+  bool good = material_parameters(&r->model.values, kernel, r->parameters, r->said);
+  for (int k = 0; k < r->in->initial.assignment_count; k++)
+    good = set_field(r, &r->in->initial.assignments[k]) && good;
+  return good;
+}
+
+driven_outcome driven_law_open(driven_law *r, arena *memory, const drive_input *in, bool compiled,
+                               diagnostics *said) {
+  *r = (driven_law){.in = in, .memory = memory, .said = said};
+  bool good = material_law_open(&in->material, NULL, in->path, &r->model, said);
+  r->opened = r->model.memory != NULL;
+  if (!good || !take_setting(r)) return DRIVEN_BAD_LAW;
+  if (!open_kernel(r, compiled)) return DRIVEN_NO_KERNEL;
+  return can_be_driven(r) && has_section(r) && suits_law(r) && set_values(r) ? DRIVEN_READY
+                                                                             : DRIVEN_UNSUITED;
+}
+
+void driven_law_columns(const driven_law *r, drive_table *out) {
+  if (driven_law_kind(r) == DRIVE_OF_FAMILIES)
+    drive_family_columns(r->in, r->model.law, r->law, out);
+  else if (driven_law_kind(r) == DRIVE_OF_POINTS)
+    drive_point_columns(r->in, r->law, out);
+  else
+    drive_columns(r->law, out);
+}
+
+bool driven_law_march(const driven_law *r, drive_table *out, drive_band *band) {
+  switch (driven_law_kind(r)) {
+  case DRIVE_OF_FAMILIES:
+    return drive_family_run(r->in, r->model.law, r->law, r->parameters, r->initial, out, r->said);
+  case DRIVE_OF_POINTS:
+    return drive_point_run(r->in, r->law, r->parameters, r->initial, out, band, r->said);
+  default:
+    return drive_run(r->in, r->law, r->parameters, r->initial, out, r->said);
+  }
+}
+
+void driven_law_close(driven_law *r) {
+  if (r->opened) model_close(&r->model);
+  *r = (driven_law){.in = NULL};
+}
