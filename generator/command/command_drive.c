@@ -8,6 +8,9 @@
 #include <string.h>
 
 #include "dsl/base/elementary.h"
+#include "generator/against/difference_draw.h"
+#include "generator/against/difference_words.h"
+#include "generator/against/reference_law.h"
 #include "generator/command/commands.h"
 #include "generator/drive/drive_bond.h"
 #include "generator/drive/drive_draw.h"
@@ -32,10 +35,13 @@ enum { DRIVE_FAILED = 2, ERROR_LENGTH = 4096 };
 typedef struct drive_options {
   const char *law, *path;
   const char *csv, *hdf5, *picture;
+  const char *against; /* the law of reference, or NULL */
+  double tolerance;    /* of that comparison */
   const char *const *settings;
   int setting_count;
   bool compiled;
   bool check_only;
+  bool json;
   diag_json *report; /* diagnostics go here; NULL: to stderr as text */
 } drive_options;
 
@@ -51,6 +57,10 @@ typedef struct driving {
   drive_expectations *expectations;
   drive_table table;
   drive_band band; /* of points */
+  reference_law reference;
+  table_difference difference;
+  bool compared;
+  drive_verdict *verdicts; /* [expect_count], once it was driven */
 } driving;
 
 static void tell(const driving *r, const diagnostics *d) {
@@ -80,6 +90,14 @@ static bool take_file(drive_options *o, const char *file) {
   return true;
 }
 
+static bool read_tolerance(const char *given, double *tolerance) {
+  char *end;
+  *tolerance = strtod(given, &end);
+  if (end != given && !*end && *tolerance >= 0 && isfinite(*tolerance)) return true;
+  say_error("--tolerance takes a number that is not negative, not `%s`", given);
+  return false;
+}
+
 static bool read_options(int argc, char **argv, drive_options *o, const char **settings) {
   int bad = 0;
   for (int at = 0; at < argc && !bad;) {
@@ -94,6 +112,12 @@ static bool read_options(int argc, char **argv, drive_options *o, const char **s
       o->hdf5 = value;
     else if ((value = option_value(argc, argv, &at, "--picture", &bad)))
       o->picture = value;
+    else if ((value = option_value(argc, argv, &at, "--against", &bad)))
+      o->against = value;
+    else if ((value = option_value(argc, argv, &at, "--tolerance", &bad)))
+      bad = !read_tolerance(value, &o->tolerance);
+    else if (option_flag(argv, &at, "--json"))
+      o->json = true;
     else if (argv[at][0] == '-')
       bad = option_unknown("drive", argv[at]);
     else
@@ -270,13 +294,22 @@ static void note_band(const driving *r) {
 static bool spares_inputs(const driving *r) {
   const drive_output *o = &r->in->output;
   const char *const written[] = {o->csv, o->hdf5, o->picture};
+  const char *reference = r->reference.of.opened ? r->reference.of.model.path : NULL;
   for (size_t k = 0; k < sizeof written / sizeof *written; k++)
     if (written[k] &&
-        (same_file(written[k], r->options->path) || same_file(written[k], r->of.model.path))) {
+        (same_file(written[k], r->options->path) || same_file(written[k], r->of.model.path) ||
+         (reference && same_file(written[k], reference)))) {
       say_error("the output would overwrite `%s`", written[k]);
       return false;
     }
   return true;
+}
+
+static bool draw(const driving *r, char *error, size_t size) {
+  const char *const labels[] = {r->in->material.model, r->options->against};
+  if (!r->compared) return drive_draw(r->in, &r->table, r->in->output.picture, error, size);
+  return difference_draw(r->in, &r->table, &r->reference.table, labels, r->in->output.picture,
+                         error, size);
 }
 
 static bool write_files(const driving *r) {
@@ -289,7 +322,7 @@ static bool write_files(const driving *r) {
   } files[] = {
       {o->csv, !o->csv || drive_write_csv(&r->table, o->csv, error, sizeof error)},
       {o->hdf5, !o->hdf5 || drive_write_hdf5(r->in, &r->table, o->hdf5, error, sizeof error)},
-      {o->picture, !o->picture || drive_draw(r->in, &r->table, o->picture, error, sizeof error)}};
+      {o->picture, !o->picture || draw(r, error, sizeof error)}};
   for (size_t k = 0; k < sizeof files / sizeof *files; k++) {
     if (files[k].path && files[k].written) printf("written %s\n", files[k].path);
     good = good && files[k].written;
@@ -317,15 +350,51 @@ static void print_verdict(const driving *r, const drive_expect *e, const drive_v
 
 static int judge(driving *r) {
   const int count = r->in->expect_count;
-  drive_verdict *verdicts = arena_alloc(r->memory, ((size_t)count + 1) * sizeof *verdicts);
-  drive_judge(r->expectations, r->of.parameters, &r->table, verdicts);
+  r->verdicts = arena_alloc(r->memory, ((size_t)count + 1) * sizeof *r->verdicts);
+  drive_judge(r->expectations, r->of.parameters, &r->table, r->verdicts);
   int passed = 0;
   for (int k = 0; k < count; k++) {
-    print_verdict(r, &r->in->expects[k], &verdicts[k]);
-    passed += verdicts[k].passed;
+    print_verdict(r, &r->in->expects[k], &r->verdicts[k]);
+    passed += r->verdicts[k].passed;
   }
   if (count) printf("%d of %d expectations hold\n", passed, count);
   return passed == count ? 0 : DRIVE_FAILED;
+}
+
+/* --- beside a reference ----------------------------------------------------------------------- */
+
+/* 0, or an exit status. */
+static int drive_the_other(driving *r) {
+  const char *path = r->options->against;
+  if (!path) return 0;
+  if (!file_suits(path, FILES(LAW), "--against", "a law")) return INPUT_WRONG;
+  const driven_outcome outcome =
+      reference_law_drive(&r->reference, r->memory, r->in, path, &r->said);
+  if (r->reference.of.opened) tell(r, &r->reference.of.model.said);
+  if (outcome != DRIVEN_READY) return outcome == DRIVEN_NO_KERNEL ? DRIVE_FAILED : INPUT_WRONG;
+  if (driven_law_kind(&r->reference.of) == driven_law_kind(&r->of)) return 0;
+  say_error("`%s` and `%s` are laws of different things", r->in->material.model, path);
+  return INPUT_WRONG;
+}
+
+static void compare(driving *r) {
+  if (!r->options->against) return;
+  table_difference_find(&r->difference, &r->table, &r->reference.table, r->options->tolerance,
+                        r->reference.skip, true);
+  r->compared = true;
+}
+
+static int tell_difference(const driving *r) {
+  const table_difference *d = &r->difference;
+  if (!r->compared) return 0;
+  printf("against %s: ", r->options->against);
+  difference_say(d, &r->table, "that of the reference", stdout);
+  putchar('\n');
+  difference_rows(d, &r->reference.table, "  ", stdout);
+  if (d->skipped)
+    printf("  %ld of %ld rows are left out: there a case of the reference begins\n", d->skipped,
+           d->rows);
+  return d->kind == DIFFERENCE_NONE ? 0 : DRIVE_FAILED;
 }
 
 /* Everything that can be wrong before the bond moves. 0, or an exit status. */
@@ -336,7 +405,9 @@ static int prepare(driving *r) {
       driven_law_open(&r->of, r->memory, r->in, r->options->compiled, &r->said);
   if (r->of.opened) tell(r, &r->of.model.said);
   if (outcome == DRIVEN_NO_KERNEL) return DRIVE_FAILED;
-  if (outcome != DRIVEN_READY || !spares_inputs(r)) return INPUT_WRONG;
+  if (outcome != DRIVEN_READY) return INPUT_WRONG;
+  const int status = drive_the_other(r);
+  if (status || !spares_inputs(r)) return status ? status : INPUT_WRONG;
   driven_law_columns(&r->of, &r->columns);
   r->expectations = drive_expectations_read(r->in, &r->of.model, &r->columns, &r->said);
   return r->expectations ? 0 : INPUT_WRONG;
@@ -347,6 +418,7 @@ static int drive(driving *r) {
   int status = prepare(r);
   if (status || r->options->check_only) return status;
   if (!driven_law_march(&r->of, &r->table, &r->band)) return INPUT_WRONG;
+  compare(r);
   describe(r);
   if (driven_law_kind(&r->of) != DRIVE_OF_FAMILIES) note_fall(r);
   if (driven_law_kind(&r->of) == DRIVE_OF_POINTS) note_band(r);
@@ -355,7 +427,9 @@ static int drive(driving *r) {
     report_bad(r);
     return DRIVE_FAILED;
   }
+  const int apart = tell_difference(r);
   status = judge(r);
+  status = status ? status : apart;
   return status ? status : written ? 0 : DRIVE_FAILED;
 }
 
@@ -363,6 +437,8 @@ static void close_drive(driving *r) {
   if (r->expectations) drive_expectations_free(r->expectations);
   if (r->columns.memory) drive_table_free(&r->columns);
   if (r->table.memory) drive_table_free(&r->table);
+  if (r->compared) table_difference_free(&r->difference);
+  reference_law_close(&r->reference);
   driven_law_close(&r->of);
   diag_clear(&r->said);
   source_clear(&r->sources);
@@ -384,29 +460,89 @@ static void print_checked(const driving *r) {
            path, path);
 }
 
-static int drive_as_asked(const drive_options *o) {
+/* --- for other programs ----------------------------------------------------------------------- */
+
+static void put_expectations(const driving *r, json *j) {
+  json_put_array(j, "expectations");
+  for (int k = 0; k < r->in->expect_count; k++) {
+    const drive_verdict *v = &r->verdicts[k];
+    const span where = r->in->expects[k].item.where;
+    json_object(j);
+    json_put_text(j, "quantity", r->in->expects[k].quantity);
+    json_put_integer(j, "line", source_place(&r->sources, where.file, where.begin).line);
+    json_put_bool(j, "passed", v->passed);
+    json_put_number(j, "found", v->found);
+    json_put_number(j, "expected", v->expected);
+    json_put_number(j, "allowed", v->allowed);
+    json_put_text(j, "unit", v->unit);
+    json_object_end(j);
+  }
+  json_array_end(j);
+}
+
+static void put_difference(const driving *r, json *j) {
+  char *sentence;
+  size_t length;
+  FILE *out = must_open_text(&sentence, &length);
+  difference_say(&r->difference, &r->table, "that of the reference", out);
+  must_close_text(out);
+  json_put_object(j, "against");
+  json_put_text(j, "reference", r->options->against);
+  json_put_bool(j, "equal", r->difference.kind == DIFFERENCE_NONE);
+  json_put_text(j, "sentence", sentence);
+  difference_json(&r->difference, &r->reference.table, j);
+  json_object_end(j);
+  free(sentence);
+}
+
+/* What was driven, what was expected, what it was compared with. */
+static void put_drive(const driving *r, json *j) {
+  if (!r->table.memory) return;
+  json_put_text(j, "law", r->of.law->name);
+  json_put_integer(j, "rows", r->table.rows);
+  if (r->verdicts) put_expectations(r, j);
+  if (r->compared) put_difference(r, j);
+}
+
+static int drive_as_asked(const drive_options *o, json *j) {
   driving r = {.options = o, .memory = arena_new()};
   diag_begin(&r.said, &r.sources);
   int status = drive(&r);
   if (!status && o->check_only && !o->report) print_checked(&r);
   fflush(stdout);
   tell(&r, &r.said);
+  if (j) {
+    diag_json_end(o->report, status != INPUT_WRONG);
+    put_drive(&r, j);
+  }
   close_drive(&r);
   return status;
 }
 
+static int drive_to_json(drive_options *o) {
+  document d;
+  diag_json report;
+  document_begin(&d);
+  diag_json_begin(&report, &d.writer, o->path);
+  o->report = &report;
+  return document_end(&d, drive_as_asked(o, &d.writer));
+}
+
 int drive_check(const char *path, const char *const *settings, int count, diag_json *report) {
-  return drive_as_asked(&(drive_options){.path = path,
-                                         .settings = settings,
-                                         .setting_count = count,
-                                         .check_only = true,
-                                         .report = report});
+  const drive_options o = {.path = path,
+                           .settings = settings,
+                           .setting_count = count,
+                           .check_only = true,
+                           .report = report};
+  return drive_as_asked(&o, NULL);
 }
 
 int command_drive(int argc, char **argv) {
   const char **settings = must_calloc((size_t)argc + 1, sizeof *settings);
-  drive_options o = {.settings = settings};
-  int status = read_options(argc, argv, &o, settings) ? drive_as_asked(&o) : INPUT_WRONG;
+  drive_options o = {.settings = settings, .tolerance = 1e-6};
+  int status = INPUT_WRONG;
+  if (read_options(argc, argv, &o, settings))
+    status = o.json ? drive_to_json(&o) : drive_as_asked(&o, NULL);
   free(settings);
   return status;
 }

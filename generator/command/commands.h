@@ -16,8 +16,8 @@
   "0 done, 1 the input is wrong, 2 a run failed or there is no answer, 130 stopped by Ctrl-C, "    \
   "143 by SIGTERM, 129 by SIGHUP: the same command goes on"
 #define DRIVE_STATUS                                                                               \
-  "0 all expectations hold, 1 the input is wrong, 2 an expectation fails or the law gives no "     \
-  "number"
+  "0 all expectations hold, 1 the input is wrong, 2 an expectation fails, the law gives no "       \
+  "number or differs from the one of --against"
 /* X(name, files, endings, what it does, exit status): `endings` are those of the files that
    shells offer, blanks between. */
 #define COMMANDS(X)                                                                                \
@@ -117,6 +117,10 @@
   X(drive, "--csv", "FILE", "write the table as comma-separated values")                           \
   X(drive, "--hdf5", "FILE", "write the table as a result")                                        \
   X(drive, "--picture", "FILE", "draw the curve: PNG, SVG or PDF by the name's ending")            \
+  X(drive, "--against", "reference.plm",                                                           \
+    "drive this law, too, and say in words how the two differ; with --picture both curves")        \
+  X(drive, "--tolerance", "R", "of --against: the relative difference that counts as none (1e-6)") \
+  X(drive, "--json", "", "what came out, as one JSON document on the standard output")             \
   X(plot, "-o", "FILE",                                                                            \
     "the picture: PNG, SVG or PDF by the name's ending (RESULT_HISTORY.png, RESULT_FIELD.png)")    \
   X(plot, "--title", "TEXT", "title of the picture")                                               \

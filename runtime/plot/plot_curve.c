@@ -363,14 +363,29 @@ bool plot_histories_read(plot_histories *h, const char *path, const char *x, con
   return good;
 }
 
+bool plot_series_draw(const plot_series *series, int count, const char *x_unit, const char *y_unit,
+                      const plot_curve_options *o, char *error, size_t size) {
+  curve *curves = must_calloc((size_t)count + 1, sizeof *curves);
+  for (int k = 0; k < count; k++) {
+    const size_t bytes = (size_t)series[k].count * sizeof(double);
+    curve *c = &curves[k];
+    *c = (curve){.x = must_alloc(bytes + 1), .y = must_alloc(bytes + 1), .count = series[k].count};
+    memcpy(c->x, series[k].x, bytes);
+    memcpy(c->y, series[k].y, bytes);
+    snprintf(c->label, sizeof c->label, "%s", series[k].label ? series[k].label : "");
+  }
+  const char *title = o->title ? o->title : "";
+  const bool good = draw_all(curves, count, o, x_unit, y_unit, title, error, size);
+  for (int k = 0; k < count; k++) {
+    free(curves[k].x);
+    free(curves[k].y);
+  }
+  free(curves);
+  return good;
+}
+
 bool plot_values(const double *x, const double *y, long count, const char *x_unit,
                  const char *y_unit, const plot_curve_options *o, char *error, size_t size) {
-  size_t bytes = (size_t)count * sizeof(double);
-  curve c = {.x = must_alloc(bytes + 1), .y = must_alloc(bytes + 1), .count = count};
-  memcpy(c.x, x, bytes);
-  memcpy(c.y, y, bytes);
-  bool good = draw_all(&c, 1, o, x_unit, y_unit, o->title ? o->title : "", error, size);
-  free(c.x);
-  free(c.y);
-  return good;
+  const plot_series one = {x, y, count, NULL};
+  return plot_series_draw(&one, 1, x_unit, y_unit, o, error, size);
 }

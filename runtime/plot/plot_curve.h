@@ -43,8 +43,17 @@ typedef struct plot_histories {
 } plot_histories;
 bool plot_histories_read(plot_histories *h, const char *path, const char *x, const char *y,
                          char *error, size_t size);
-/* One curve of values at hand; o->x and o->y name the axes, x_unit and y_unit are the values' SI
-   units. */
+/* A curve of values at hand, in SI. */
+typedef struct plot_series {
+  const double *x, *y; /* [count] */
+  long count;
+  const char *label; /* in the legend of several */
+} plot_series;
+/* Several of them, the later ones above the earlier; o->x and o->y name the axes, x_unit and y_unit
+   are the values' SI units. */
+bool plot_series_draw(const plot_series *series, int count, const char *x_unit, const char *y_unit,
+                      const plot_curve_options *o, char *error, size_t size);
+/* One of them, without a legend. */
 bool plot_values(const double *x, const double *y, long count, const char *x_unit,
                  const char *y_unit, const plot_curve_options *o, char *error, size_t size);
 

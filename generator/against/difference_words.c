@@ -1,0 +1,227 @@
+#include "generator/against/difference_words.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "dsl/base/units.h"
+
+static const char *const side_words[] = {
+#define X(code, name, words) words,
+    DIFFERENCE_SIDES(X)
+#undef X
+};
+static const char *const side_names[] = {
+#define X(code, name, words) name,
+    DIFFERENCE_SIDES(X)
+#undef X
+};
+static const char *const total_words[] = {
+#define X(code, name, words) words,
+    DIFFERENCE_TOTALS(X)
+#undef X
+};
+static const char *const total_names[] = {
+#define X(code, name, words) name,
+    DIFFERENCE_TOTALS(X)
+#undef X
+};
+static const char *const kind_names[] = {
+#define X(code, name) name,
+    DIFFERENCE_KINDS(X)
+#undef X
+};
+
+static const struct {
+  const char *name, *words;
+} spoken[] = {{"N", "the force N"},
+              {"M_i", "the moment M_i"},
+              {"M_j", "the moment M_j"},
+              {"T", "the twisting moment T"},
+              {"stored", "the stored energy"},
+              {"dissipated_damage", "the energy that damage or yield takes"},
+              {"dissipated_damping", "the energy that damping takes"},
+              {"dissipated", "the energy that it dissipates"},
+              {"external", "the work done on it"}};
+
+const char *column_words(const char *name) {
+  for (size_t k = 0; k < sizeof spoken / sizeof *spoken; k++)
+    if (strcmp(spoken[k].name, name) == 0) return spoken[k].words;
+  return name;
+}
+
+/* "twice that of the reference", "0.73 times what it should be". */
+static void say_ratio(double ratio, const char *should, FILE *out) {
+  const char *known = ratio_words(fabs(ratio));
+  if (ratio < 0) fputs("minus ", out);
+  if (known)
+    fprintf(out, "%s %s", known, should);
+  else
+    fprintf(out, "%.4g times %s", fabs(ratio), should);
+}
+
+static const char *unit_shown(const char *unit_text) {
+  return unit_is_pure(unit_text) ? "" : unit_text;
+}
+
+static void say_place(const drive_table *t, long row, FILE *out) {
+  fprintf(out, "at %.6g s, %s %.6g", t->columns[DRIVE_COLUMN_TIME].values[row],
+          t->columns[t->way].name, t->columns[t->way].values[row]);
+}
+
+static void say_total(const table_difference *d, const char *should, FILE *out) {
+  if (d->total != TOTAL_PEAK && !isnan(d->totals[TOTAL_PEAK]))
+    fprintf(out, "%s agrees, but ", total_words[TOTAL_PEAK]);
+  fprintf(out, "%s is ", total_words[d->total]);
+  say_ratio(d->totals[d->total], should, out);
+}
+
+static void say_side(const table_difference *d, const char *should, FILE *out) {
+  fprintf(out, "%s is wrong only %s", column_words(d->columns[d->of].name), side_words[d->side]);
+  const bool minus = fabs(d->ratio + 1) <= 1e-6;
+  if (isnan(d->ratio) || (!minus && !ratio_words(fabs(d->ratio)))) return;
+  fputs(minus ? ": there it has the wrong sign" : ": there it is ", out);
+  if (d->ratio == 0)
+    fputs("0", out);
+  else if (!minus)
+    say_ratio(d->ratio, should, out);
+}
+
+static void say_ratio_of_all(const table_difference *d, const char *should, FILE *out) {
+  const column_difference *q = &d->columns[d->of];
+  if (q->energy) fputs("the forces agree, but ", out);
+  fprintf(out, "%s is ", column_words(q->name));
+  if (d->ratio == 0)
+    fputs("0", out);
+  else
+    say_ratio(d->ratio, should, out);
+  fputs(" in all states", out);
+}
+
+static void say_state(const table_difference *d, const drive_table *answer, FILE *out) {
+  const column_difference *q = &d->columns[d->of];
+  if (q->energy) fputs("the forces agree, but ", out);
+  fprintf(out, "%s first differs ", column_words(q->name));
+  say_place(answer, d->row, out);
+  fprintf(out, ": it is %.6g, not %.6g%s%s", q->answer[d->row] + 0.0, q->reference[d->row] + 0.0,
+          *unit_shown(q->unit) ? " " : "", unit_shown(q->unit));
+}
+
+void difference_say(const table_difference *d, const drive_table *answer, const char *should,
+                    FILE *out) {
+  const char *name = d->column_count ? column_words(d->columns[d->of].name) : "";
+  switch (d->kind) {
+  case DIFFERENCE_NONE:
+    fprintf(out, "equal within %.3g in %ld rows", d->tolerance, d->rows - d->skipped);
+    return;
+  case DIFFERENCE_NO_NUMBER:
+    fprintf(out, "`%s` is not a number ", d->bad);
+    say_place(answer, d->row, out);
+    return;
+  case DIFFERENCE_RATIO:
+    say_ratio_of_all(d, should, out);
+    return;
+  case DIFFERENCE_SIGN:
+    fprintf(out, "%s has the wrong sign in all states", name);
+    return;
+  case DIFFERENCE_LATE:
+    fprintf(out, "%s is one step late: each state answers with what belongs to the one before it",
+            name);
+    return;
+  case DIFFERENCE_EARLY:
+    fprintf(out, "%s is one step early: each state answers with what belongs to the one after it",
+            name);
+    return;
+  case DIFFERENCE_TOTAL:
+    say_total(d, should, out);
+    return;
+  case DIFFERENCE_SIDE:
+    say_side(d, should, out);
+    return;
+  case DIFFERENCE_STATE:
+    say_state(d, answer, out);
+  }
+}
+
+/* --- two rows --------------------------------------------------------------------------------- */
+
+enum { MOST_SHOWN = 5 };
+
+/* Columns that differ in the row, the one that is spoken of first. */
+static int shown_columns(const table_difference *d, const column_difference **shown) {
+  int count = 0;
+  for (int c = d->of; c < d->column_count && count < MOST_SHOWN; c++) {
+    const column_difference *q = &d->columns[c];
+    const double apart = fabs(q->answer[d->row] - q->reference[d->row]);
+    if (c == d->of || !(apart <= d->tolerance * q->scale)) shown[count++] = q;
+  }
+  return count;
+}
+
+static void head(const column_difference *q, FILE *out) {
+  char text[80];
+  snprintf(text, sizeof text, "%s%s%s%s", q->name, *unit_shown(q->unit) ? " [" : "",
+           unit_shown(q->unit), *unit_shown(q->unit) ? "]" : "");
+  fprintf(out, "  %16s", text);
+}
+
+void difference_rows(const table_difference *d, const drive_table *t, const char *indent,
+                     FILE *out) {
+  const column_difference *shown[MOST_SHOWN];
+  if (d->kind == DIFFERENCE_NONE || d->kind == DIFFERENCE_NO_NUMBER) return;
+  const int count = shown_columns(d, shown);
+  fprintf(out, "%sfirst differs%11s  %13s", indent, "time [s]", t->columns[t->way].name);
+  for (int k = 0; k < count; k++)
+    head(shown[k], out);
+  for (int of = 0; of < 2; of++) {
+    fprintf(out, "\n%s%-11s  %11.6g  %13.6g", indent, of ? "reference" : "answer",
+            t->columns[DRIVE_COLUMN_TIME].values[d->row], t->columns[t->way].values[d->row] + 0.0);
+    for (int k = 0; k < count; k++)
+      fprintf(out, "  %16.9g", (of ? shown[k]->reference : shown[k]->answer)[d->row] + 0.0);
+  }
+  fputc('\n', out);
+}
+
+/* --- for other programs ----------------------------------------------------------------------- */
+
+static void put_first(const table_difference *d, const drive_table *t, json *j) {
+  json_put_object(j, "first");
+  json_put_integer(j, "row", d->row);
+  json_put_number(j, "time", t->columns[DRIVE_COLUMN_TIME].values[d->row]);
+  json_put_number(j, t->columns[t->way].name, t->columns[t->way].values[d->row]);
+  for (int of = 0; of < 2; of++) {
+    json_put_object(j, of ? "reference" : "answer");
+    for (int c = 0; c < d->column_count; c++)
+      json_put_number(j, d->columns[c].name,
+                      (of ? d->columns[c].reference : d->columns[c].answer)[d->row]);
+    json_object_end(j);
+  }
+  json_object_end(j);
+}
+
+void difference_json(const table_difference *d, const drive_table *t, json *j) {
+  const bool any = d->kind != DIFFERENCE_NONE, column = any && d->column_count > 0;
+  json_put_text(j, "difference", kind_names[d->kind]);
+  json_put_text(j, "of", column ? d->columns[d->of].name : d->bad);
+  json_put_number(j, "ratio",
+                  d->kind == DIFFERENCE_RATIO || d->kind == DIFFERENCE_SIGN ||
+                          d->kind == DIFFERENCE_SIDE
+                      ? d->ratio
+                      : NAN);
+  json_put_text(j, "side", d->kind == DIFFERENCE_SIDE ? side_names[d->side] : NULL);
+  json_put_text(j, "total", d->kind == DIFFERENCE_TOTAL ? total_names[d->total] : NULL);
+  json_put_object(j, "totals");
+  for (int k = 0; k < TOTAL_COUNT; k++)
+    json_put_number(j, total_names[k], d->totals[k]);
+  json_object_end(j);
+  json_put_number(j, "tolerance", d->tolerance);
+  json_put_integer(j, "rows", d->rows);
+  json_put_integer(j, "skipped", d->skipped);
+  json_put_object(j, "worst");
+  for (int c = 0; c < d->column_count; c++)
+    json_put_number(j, d->columns[c].name, d->columns[c].worst);
+  json_object_end(j);
+  if (column && d->row >= 0)
+    put_first(d, t, j);
+  else
+    json_key(j, "first"), json_null(j);
+}

@@ -1,0 +1,25 @@
+/* A difference of two tables in sentences, as two rows, and for other programs. */
+#ifndef PERILAT_GENERATOR_DIFFERENCE_WORDS_H
+#define PERILAT_GENERATOR_DIFFERENCE_WORDS_H
+
+#include <stdio.h>
+
+#include "dsl/base/json.h"
+#include "generator/against/table_difference.h"
+
+/* One sentence without a full stop: "N is twice that of the reference in all states". `should` is
+   what the answer is measured by: "that of the reference", "what it should be". The tables are
+   those that were compared. */
+void difference_say(const table_difference *d, const drive_table *answer, const char *should,
+                    FILE *out);
+/* The first state that differs: a head, the row of the answer and that of the reference, with the
+   columns that differ there. Each line begins with `indent`; nothing where all is equal. */
+void difference_rows(const table_difference *d, const drive_table *reference, const char *indent,
+                     FILE *out);
+/* Keys in an object that is open: `difference`, `of`, `ratio`, `side`, `total`, `totals`, `rows`,
+   `skipped`, `worst`, `first`. */
+void difference_json(const table_difference *d, const drive_table *reference, json *j);
+/* "the force N", "the stored energy", or the name itself. */
+const char *column_words(const char *name);
+
+#endif
