@@ -164,8 +164,8 @@ static void head(const column_difference *q, FILE *out) {
   fprintf(out, "  %16s", text);
 }
 
-void difference_rows(const table_difference *d, const drive_table *t, const char *indent,
-                     FILE *out) {
+void difference_rows(const table_difference *d, const drive_table *t, const char *const names[2],
+                     const char *indent, FILE *out) {
   const column_difference *shown[MOST_SHOWN];
   if (d->kind == DIFFERENCE_NONE || d->kind == DIFFERENCE_NO_NUMBER) return;
   const int count = shown_columns(d, shown);
@@ -173,7 +173,7 @@ void difference_rows(const table_difference *d, const drive_table *t, const char
   for (int k = 0; k < count; k++)
     head(shown[k], out);
   for (int of = 0; of < 2; of++) {
-    fprintf(out, "\n%s%-11s  %11.6g  %13.6g", indent, of ? "reference" : "answer",
+    fprintf(out, "\n%s%-11s  %11.6g  %13.6g", indent, names[of],
             t->columns[DRIVE_COLUMN_TIME].values[d->row], t->columns[t->way].values[d->row] + 0.0);
     for (int k = 0; k < count; k++)
       fprintf(out, "  %16.9g", (of ? shown[k]->reference : shown[k]->answer)[d->row] + 0.0);

@@ -12,10 +12,11 @@
    those that were compared. */
 void difference_say(const table_difference *d, const drive_table *answer, const char *should,
                     FILE *out);
-/* The first state that differs: a head, the row of the answer and that of the reference, with the
-   columns that differ there. Each line begins with `indent`; nothing where all is equal. */
-void difference_rows(const table_difference *d, const drive_table *reference, const char *indent,
-                     FILE *out);
+/* The first state that differs: a head, the rows of both with the columns that differ there, under
+   `names`: of the answer, of the reference. Each line begins with `indent`; nothing where all is
+   equal. */
+void difference_rows(const table_difference *d, const drive_table *reference,
+                     const char *const names[2], const char *indent, FILE *out);
 /* Keys in an object that is open: `difference`, `of`, `ratio`, `side`, `total`, `totals`, `rows`,
    `skipped`, `worst`, `first`. */
 void difference_json(const table_difference *d, const drive_table *reference, json *j);

@@ -390,7 +390,8 @@ static int tell_difference(const driving *r) {
   printf("against %s: ", r->options->against);
   difference_say(d, &r->table, "that of the reference", stdout);
   putchar('\n');
-  difference_rows(d, &r->reference.table, "  ", stdout);
+  difference_rows(d, &r->reference.table, (const char *const[]){"answer", "reference"}, "  ",
+                  stdout);
   if (d->skipped)
     printf("  %ld of %ld rows are left out: there a case of the reference begins\n", d->skipped,
            d->rows);

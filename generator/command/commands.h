@@ -18,6 +18,8 @@
 #define DRIVE_STATUS                                                                               \
   "0 all expectations hold, 1 the input is wrong, 2 an expectation fails, the law gives no "       \
   "number or differs from the one of --against"
+#define GRADE_STATUS                                                                               \
+  "0 all points that are not given by hand, 1 the exercise or the command is wrong, 2 less"
 /* X(name, files, endings, what it does, exit status): `endings` are those of the files that
    shells offer, blanks between. */
 #define COMMANDS(X)                                                                                \
@@ -33,6 +35,8 @@
     "many runs: values crossed, strength, convergence, parameters that fit a curve", STUDY_STATUS) \
   X(drive, "[law.plm] path.nml", "plm nml",                                                        \
     "one bond, particle or point along a path: table, picture, expectations", DRIVE_STATUS)        \
+  X(grade, "EXERCISE [answer.plm | CLASS]", "plm txt", "answers to an exercise, marked in words",  \
+    GRADE_STATUS)                                                                                  \
   X(plot, "result.h5 ...", "h5 hdf5",                                                              \
     "curves, or a map of particles or bonds, as PNG, SVG or PDF", COMMAND_STATUS)                  \
   X(compare, "a.h5 b.h5 | lab.csv", "h5 hdf5 csv",                                                 \
@@ -121,6 +125,18 @@
     "drive this law, too, and say in words how the two differ; with --picture both curves")        \
   X(drive, "--tolerance", "R", "of --against: the relative difference that counts as none (1e-6)") \
   X(drive, "--json", "", "what came out, as one JSON document on the standard output")             \
+  X(grade, "--public", "", "only what can be judged without the teacher's folder")                 \
+  X(grade, "--self-test", "",                                                                      \
+    "put the exercise to the test: solution and equal forms get all points, every known wrong "    \
+    "law loses some, no two look alike, every case is reached")                                    \
+  X(grade, "--publish", "FOLDER", "write what students get: nothing that is hidden")               \
+  X(grade, "--csv", "FILE", "a row an answer, a column an item")                                   \
+  X(grade, "--junit", "FILE", "as test results for continuous integration")                        \
+  X(grade, "--html", "FILE", "as a page, with both curves")                                        \
+  X(grade, "--json", "", "as one JSON document on the standard output")                            \
+  X(grade, "--seed", "N", "other random numbers than the exercise's own")                          \
+  X(grade, "--time", "'20 s'", "processor time that an answer may take (20 s)")                    \
+  X(grade, "--memory", "2GB", "memory that an answer may take (2GB)")                              \
   X(plot, "-o", "FILE",                                                                            \
     "the picture: PNG, SVG or PDF by the name's ending (RESULT_HISTORY.png, RESULT_FIELD.png)")    \
   X(plot, "--title", "TEXT", "title of the picture")                                               \

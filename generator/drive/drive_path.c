@@ -8,6 +8,7 @@
 
 #include "generator/drive/drive_grammar.h"
 #include "generator/drive/drive_motion.h"
+#include "generator/drive/group_keys.h"
 #include "generator/kernel/settings.h"
 #include "runtime/deck/deck_load.h"
 #include "runtime/deck/deck_set.h"
@@ -24,47 +25,6 @@ typedef struct reader {
   diagnostics *d;
   drive_input *in;
 } reader;
-
-static void copy_places(arena *a, const namelist_group *from, deck_item *item) {
-  deck_key *keys = arena_alloc(a, ((size_t)from->key_count + 1) * sizeof *keys);
-  for (int k = 0; k < from->key_count; k++)
-    keys[k] = (deck_key){from->keys[k].name, from->keys[k].name_where, from->keys[k].value_where};
-  *item = (deck_item){.where = from->where, .keys = keys, .key_count = from->key_count};
-}
-
-static void report_unknown(const reader *r, const deck_group_info *info, const namelist_key *key) {
-  const char *names[DECK_MOST_KEYS];
-  diag_report(r->d, DIAG_UNKNOWN_KEY, key->name_where, "`&%s` has no key `%s`", info->name,
-              key->name);
-  deck_suggest(r->d, key->name, names, deck_key_names(info, names), "its keys are");
-}
-
-/* Reads the keys that the table says how to read. */
-static bool read_keys(const reader *r, const namelist_group *from, const deck_group_info *info,
-                      void *item) {
-  int errors = r->d->errors;
-  for (int k = 0; k < from->key_count; k++) {
-    const namelist_key *key = &from->keys[k];
-    const namelist_key *first = namelist_find(from, key->name);
-    int at = deck_key_find(info, key->name);
-    if (first != key) {
-      diag_report(r->d, DIAG_DUPLICATE_KEY, key->name_where, "`%s` is given twice in this `&%s`",
-                  key->name, info->name);
-      diag_note(r->d, first->name_where, "it is given here");
-    } else if (at < 0 && !info->open) {
-      report_unknown(r, info, key);
-    } else if (at >= 0 && !key->broken && info->keys[at].offset != DECK_NO_FIELD) {
-      deck_field_read(r->memory, &info->keys[at], key, item, r->d);
-    }
-  }
-  for (int k = 0; k < info->key_count; k++)
-    if (info->keys[k].required && !namelist_find(from, info->keys[k].name)) {
-      diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&%s` has no `%s`", info->name,
-                  info->keys[k].name);
-      diag_hint(r->d, "%s: %s", info->keys[k].name, info->keys[k].doc);
-    }
-  return !from->broken && r->d->errors == errors;
-}
 
 static bool read_real(const reader *r, const namelist_group *g, const char *name,
                       const char *unit_text, deck_bound bound, double *value) {
@@ -139,7 +99,7 @@ static bool wants_cycles(const namelist_group *g) {
 static void read_path(const reader *r, const namelist_group *g) {
   drive_piece p = {.where = g->where};
   const deck_group_info *info = drive_grammar.groups[DRIVE_GROUP_path];
-  if (!read_keys(r, g, info, &p)) return;
+  if (!group_keys_read(r->memory, g, info, &p, r->d)) return;
   int quantity =
       deck_choice_read(r->memory, namelist_find(g, "quantity"), info->keys[0].choices, r->d);
   if (quantity < 0) return;
@@ -168,8 +128,8 @@ static bool read_formula(const reader *r, const namelist_key *key, drive_expect 
 static void read_expect(const reader *r, const namelist_group *g) {
   drive_expect e = {.at_time = NAN, .at_stretch = NAN};
   deck_defaults(r->memory, drive_grammar.groups[DRIVE_GROUP_expect], &e);
-  copy_places(r->memory, g, &e.item);
-  if (!read_keys(r, g, drive_grammar.groups[DRIVE_GROUP_expect], &e)) return;
+  group_places(r->memory, g, &e.item);
+  if (!group_keys_read(r->memory, g, drive_grammar.groups[DRIVE_GROUP_expect], &e, r->d)) return;
   const namelist_key *formula = namelist_find(g, "formula");
   e.value = namelist_find(g, "value");
   e.absolute = namelist_find(g, "absolute");
@@ -190,9 +150,10 @@ static void read_expect(const reader *r, const namelist_group *g) {
 /* --- the file --------------------------------------------------------------------------------- */
 
 static void read_material(const reader *r, const namelist_group *g, int kind, deck_material *m) {
-  if (!read_keys(r, g, drive_grammar.groups[kind], m) || !settings_of_group(r->memory, g, m, r->d))
+  if (!group_keys_read(r->memory, g, drive_grammar.groups[kind], m, r->d) ||
+      !settings_of_group(r->memory, g, m, r->d))
     return;
-  copy_places(r->memory, g, &m->item);
+  group_places(r->memory, g, &m->item);
   const namelist_key *name = kind == DRIVE_GROUP_material ? namelist_find(g, "model") : NULL;
   static const deck_key_info model_key = {.name = "model", .type = DECK_NAME, .offset = 0};
   if (name) deck_field_read(r->memory, &model_key, name, &m->model, r->d);
@@ -202,24 +163,24 @@ static void read_group(const reader *r, const namelist_group *g, int kind) {
   drive_input *in = r->in;
   switch (kind) {
   case DRIVE_GROUP_simulation:
-    copy_places(r->memory, g, &in->simulation.item);
-    read_keys(r, g, drive_grammar.groups[kind], &in->simulation);
+    group_places(r->memory, g, &in->simulation.item);
+    group_keys_read(r->memory, g, drive_grammar.groups[kind], &in->simulation, r->d);
     return;
   case DRIVE_GROUP_bond:
-    copy_places(r->memory, g, &in->bond.item);
-    read_keys(r, g, drive_grammar.groups[kind], &in->bond);
+    group_places(r->memory, g, &in->bond.item);
+    group_keys_read(r->memory, g, drive_grammar.groups[kind], &in->bond, r->d);
     return;
   case DRIVE_GROUP_particle:
-    copy_places(r->memory, g, &in->particle.item);
-    read_keys(r, g, drive_grammar.groups[kind], &in->particle);
+    group_places(r->memory, g, &in->particle.item);
+    group_keys_read(r->memory, g, drive_grammar.groups[kind], &in->particle, r->d);
     return;
   case DRIVE_GROUP_point:
-    copy_places(r->memory, g, &in->point.item);
-    read_keys(r, g, drive_grammar.groups[kind], &in->point);
+    group_places(r->memory, g, &in->point.item);
+    group_keys_read(r->memory, g, drive_grammar.groups[kind], &in->point, r->d);
     return;
   case DRIVE_GROUP_output:
-    copy_places(r->memory, g, &in->output.item);
-    read_keys(r, g, drive_grammar.groups[kind], &in->output);
+    group_places(r->memory, g, &in->output.item);
+    group_keys_read(r->memory, g, drive_grammar.groups[kind], &in->output, r->d);
     return;
   case DRIVE_GROUP_material:
     read_material(r, g, kind, &in->material);

@@ -1,0 +1,168 @@
+#define _GNU_SOURCE
+#include "generator/grade/grade_child.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <ftw.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "dsl/base/characters.h"
+#include "generator/kernel/document.h"
+#include "runtime/base/clock.h"
+
+enum {
+  MOST_COPIED = 20, /* laws beside an answer */
+  SPARE = 4,        /* the clock may run so many times the processor time, and a while longer */
+  A_WHILE = 5,      /* s */
+  MOST_ENTRIES = 64
+};
+#define MOST_SAID ((size_t)8 << 20) /* B, of records */
+
+/* --- the folder ------------------------------------------------------------------------------- */
+
+/* An ordinary file of a bearable size, not a link. Returns what is wrong with it, or NULL. */
+static const char *copy_law(const char *from, const char *folder, const char *name) {
+  char to[4096];
+  struct stat about;
+  const int in = open(from, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (in < 0) return errno == ELOOP ? "it is a link, not a file" : "it can not be read";
+  const char *bad = fstat(in, &about) != 0 || !S_ISREG(about.st_mode) ? "it is no ordinary file"
+                    : (size_t)about.st_size > MODEL_LIMIT             ? "it is longer than 1 MB"
+                                                                      : NULL;
+  snprintf(to, sizeof to, "%s/%s", folder, name);
+  const int out = bad ? -1 : open(to, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (!bad && out < 0) bad = "it can not be copied";
+  char *text = bad ? NULL : must_alloc(MODEL_LIMIT + 1);
+  ssize_t got = 0;
+  while (!bad && (got = read(in, text, MODEL_LIMIT + 1)) > 0)
+    if (write(out, text, (size_t)got) != got) bad = "it can not be copied";
+  if (got < 0) bad = "it can not be read";
+  free(text);
+  if (out >= 0) close(out);
+  close(in);
+  return bad;
+}
+
+/* Further laws beside the answer, so that it may include them. */
+static void copy_others(const handed_in *answer, const char *folder) {
+  DIR *at = answer->folder ? opendir(answer->folder) : NULL;
+  int copied = 0;
+  for (struct dirent *e; at && copied < MOST_COPIED && (e = readdir(at));) {
+    char from[4096];
+    if (!text_ends_in(e->d_name, ".plm") || strcmp(e->d_name, "answer.plm") == 0) continue;
+    snprintf(from, sizeof from, "%s/%s", answer->folder, e->d_name);
+    copied += copy_law(from, folder, e->d_name) == NULL;
+  }
+  if (at) closedir(at);
+}
+
+static int remove_entry(const char *path, const struct stat *about, int kind, struct FTW *at) {
+  (void)about, (void)kind, (void)at;
+  return remove(path);
+}
+
+static bool make_folder(char *folder, size_t size) {
+  const char *temporary = getenv("TMPDIR");
+  snprintf(folder, size, "%s/perilat-grade-XXXXXX", temporary && *temporary ? temporary : "/tmp");
+  if (mkdtemp(folder)) return true;
+  say_error("there is no place for answers: %s: %s", folder, strerror(errno));
+  return false;
+}
+
+/* --- the process ------------------------------------------------------------------------------ */
+
+static void be_child(const judge_request *q, const char *folder, const confinement *to, int pipe) {
+  FILE *out = fdopen(pipe, "w");
+  if (!out || !confine(folder, to)) _exit(3);
+  judge_answer(q, out);
+  fclose(out);
+  _exit(0);
+}
+
+/* All that it says until it ends, or `seconds` of the clock have passed; killed then. */
+static char *listen(int from, pid_t child, double seconds, size_t *size, bool *late) {
+  const double end = monotonic_seconds() + seconds;
+  char *said = NULL;
+  size_t room = 0;
+  *size = 0;
+  *late = false;
+  for (;;) {
+    const double left = end - monotonic_seconds();
+    struct pollfd one = {.fd = from, .events = POLLIN};
+    const int ready = poll(&one, 1, left > 0 ? (int)(1e3 * left) + 1 : 0);
+    if (ready < 0 && errno == EINTR) continue;
+    if (*size + 65536 > room) said = must_realloc(said, room = 2 * room + 65536);
+    const ssize_t got = ready > 0 ? read(from, said + *size, 65536) : -1;
+    if (got == 0) return said;
+    *size += got > 0 ? (size_t)got : 0;
+    *late = ready == 0;
+    if (got > 0 && *size <= MOST_SAID) continue;
+    kill(child, SIGKILL);
+    return said;
+  }
+}
+
+static const char *what_ended(arena *a, int status, bool late, const confinement *to) {
+  const bool signalled = WIFSIGNALED(status);
+  const int with = signalled ? WTERMSIG(status) : 0;
+  if (late || with == SIGXCPU) return arena_printf(a, "it takes longer than %.3g s", to->seconds);
+  if (with == SIGXFSZ) return "it writes too much";
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 2)
+    return arena_printf(a, "it needs more than %.3g GB of memory", 1e-9 * (double)to->memory);
+  return signalled ? arena_printf(a, "the program that reads it failed (%s)", strsignal(with))
+                   : "the program that reads it failed";
+}
+
+/* Runs the child in the folder. False where there is no process to be had. */
+static bool run_child(marks *m, const judge_request *q, const char *folder, const confinement *to) {
+  int ends[2], status = 0;
+  bool late;
+  size_t size;
+  fflush(NULL);
+  if (pipe2(ends, O_CLOEXEC) != 0) return false;
+  const pid_t child = fork();
+  if (child == 0) {
+    close(ends[0]);
+    be_child(q, folder, to, ends[1]);
+  }
+  close(ends[1]);
+  if (child < 0) {
+    close(ends[0]);
+    return false;
+  }
+  char *said = listen(ends[0], child, SPARE * to->seconds + A_WHILE, &size, &late);
+  close(ends[0]);
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR)
+    continue;
+  records_read(m, said, size);
+  if (!m->ended) m->trouble = what_ended(m->memory, status, late, to);
+  free(said);
+  return true;
+}
+
+bool grade_in_child(marks *m, const judge_request *q, const handed_in *answer,
+                    const confinement *to) {
+  char folder[4096];
+  const double begun = monotonic_seconds();
+  judge_request here = *q;
+  if (!answer->file) {
+    m->trouble = "there is no answer";
+    return true;
+  }
+  if (!make_folder(folder, sizeof folder)) return false;
+  here.answer = q->basis->of->of_answers ? "answers.txt" : "answer.plm";
+  m->trouble = copy_law(answer->file, folder, here.answer);
+  if (!m->trouble) copy_others(answer, folder);
+  const bool good = m->trouble || run_child(m, &here, folder, to);
+  if (!good) say_error("no process can be started: %s", strerror(errno));
+  nftw(folder, remove_entry, MOST_ENTRIES, FTW_DEPTH | FTW_PHYS);
+  m->seconds = monotonic_seconds() - begun;
+  return good;
+}

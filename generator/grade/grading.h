@@ -1,0 +1,27 @@
+/* One exercise opened for grading: what its answers are measured by, and one answer judged by it. */
+#ifndef PERILAT_GENERATOR_GRADING_H
+#define PERILAT_GENERATOR_GRADING_H
+
+#include "generator/grade/grade_child.h"
+#include "generator/grade/grade_options.h"
+
+typedef struct grading {
+  const grade_options *o;
+  arena *memory;
+  source_set sources;
+  diagnostics said;
+  exercise *e;
+  grade_basis basis;
+  bool opened; /* the basis is */
+} grading;
+
+/* Reads the exercise and drives its laws. False, with messages kept for grading_close, where it is
+   broken. To be closed in any case. */
+bool grading_open(grading *g, const grade_options *o);
+/* Prints what is wrong with the exercise. */
+void grading_close(grading *g);
+/* Judges one answer; m is opened here. False where the grader fails, after a sentence or with a
+   message kept. */
+bool grading_judge(grading *g, const handed_in *answer, marks *m);
+
+#endif

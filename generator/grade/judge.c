@@ -1,0 +1,291 @@
+#include "generator/grade/judge.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "generator/against/table_difference.h"
+#include "generator/check/physics.h"
+#include "generator/grade/judge_path.h"
+#include "generator/grade/measure.h"
+#include "runtime/deck/deck_value.h"
+
+typedef struct judging {
+  const judge_request *q;
+  const grade_basis *b;
+  arena *memory;
+  FILE *out;
+  bool reads, obeys;
+  declared_names declared;
+  path_outcome *outcomes; /* [case_count], of those that were driven */
+  bool all_right;
+  const char *first_error; /* "code: message" of a law that does not read */
+} judging;
+
+static void put_mark(const judging *j, int item, double share, int passed, int of, double value) {
+  const double numbers[4] = {share, passed, of, value};
+  record_write(j->out, RECORD_MARK, item, numbers, NULL);
+}
+
+/* --- check ------------------------------------------------------------------------------------ */
+
+/* Errors alone, as `perilat check` prints them. */
+static void put_messages(const judging *j, const diagnostics *said) {
+  diagnostics errors = *said;
+  char *text;
+  size_t length;
+  int holes = 0;
+  errors.items = must_calloc((size_t)said->count + 1, sizeof *errors.items);
+  errors.count = 0;
+  for (int k = 0; k < said->count; k++) {
+    if (diag_severity(said->items[k].code) != SEVERITY_ERROR) continue;
+    errors.items[errors.count++] = said->items[k];
+    holes += said->items[k].code == DIAG_HOLE;
+  }
+  FILE *to = must_open_text(&text, &length);
+  diag_print(&errors, to);
+  must_close_text(to);
+  const double numbers[4] = {errors.count, said->count - errors.count, holes, 0};
+  record_write(j->out, RECORD_CHECKED, -1, numbers, NULL);
+  if (errors.count) record_write(j->out, RECORD_MESSAGES, -1, NULL, text);
+  free(errors.items);
+  free(text);
+}
+
+static const char *first_error(arena *a, const diagnostics *said) {
+  for (int k = 0; k < said->count; k++)
+    if (diag_severity(said->items[k].code) == SEVERITY_ERROR)
+      return arena_printf(a, "%s: %s", diag_name(said->items[k].code), said->items[k].message);
+  return NULL;
+}
+
+static void check(judging *j) {
+  model m;
+  const bool opened = model_open(&m, j->q->answer, NULL, 0);
+  j->reads = opened && model_plan(&m);
+  j->obeys = j->reads && physics_check(m.law, NULL, &m.said, NULL);
+  j->first_error = j->reads ? NULL : first_error(j->memory, &m.said);
+  put_messages(j, &m.said);
+  model_close(&m);
+  if (j->reads) j->declared = names_declared(j->memory, j->q->answer);
+}
+
+static void judge_check(judging *j, int k) {
+  const char *of = j->b->of->items[k].of;
+  const bool reads = !of || strcmp(of, "reads") == 0, physics = !of || strcmp(of, "physics") == 0;
+  const int parts = reads + physics, passed = (reads && j->reads) + (physics && j->obeys);
+  put_mark(j, k, (double)passed / parts, passed, parts, NAN);
+  j->all_right = j->all_right && passed == parts;
+}
+
+/* --- paths ------------------------------------------------------------------------------------ */
+
+/* "path 2 of 3: ..."; what is said is the item's choice. */
+static void put_outcome(const judging *j, int k, const path_case *c, int of,
+                        const path_outcome *o) {
+  const exercise_item *item = &j->b->of->items[k];
+  if (item->show == SHOW_NOTHING) return;
+  char *words =
+      of > 1 ? arena_printf(j->memory, "path %d of %d: %s", c->number, of, o->words) : o->words;
+  record_write(j->out, RECORD_WORDS, k, NULL, words);
+  if (item->show >= SHOW_STATE && o->state) record_write(j->out, RECORD_STATE, k, NULL, o->state);
+}
+
+/* The item's paths, from case `first` on. Words are about the first that is wrong. */
+static void judge_cases(judging *j, int k, path_case *cases, int count, path_outcome *outcomes) {
+  int passed = 0;
+  bool said = false;
+  for (int c = 0; c < count && j->reads; c++) {
+    judge_path(&outcomes[c], j->memory, &cases[c], j->q->answer, &j->declared);
+    passed += outcomes[c].right;
+    if (outcomes[c].right || said) continue;
+    put_outcome(j, k, &cases[c], count, &outcomes[c]);
+    said = true;
+  }
+  const bool all_or_nothing = j->b->of->items[k].kind == ITEM_SAMPLE;
+  const double share = count ? (double)passed / count : 0;
+  put_mark(j, k, all_or_nothing ? floor(share) : share, passed, count, NAN);
+  j->all_right = j->all_right && passed == count;
+}
+
+static void judge_paths(judging *j, int k) {
+  int first = 0;
+  while (first < j->b->case_count && j->b->cases[first].item != &j->b->of->items[k])
+    first++;
+  judge_cases(j, k, &j->b->cases[first], j->b->of->items[k].found_count, &j->outcomes[first]);
+}
+
+static void judge_samples(judging *j, int k) {
+  int first = 0, count = 0;
+  while (first < j->q->sample_count && j->q->samples[first].item != &j->b->of->items[k])
+    first++;
+  while (first + count < j->q->sample_count &&
+         j->q->samples[first + count].item == &j->b->of->items[k])
+    count++;
+  path_outcome *outcomes = arena_alloc(j->memory, ((size_t)count + 1) * sizeof *outcomes);
+  judge_cases(j, k, &j->q->samples[first], count, outcomes);
+  for (int c = 0; c < count; c++)
+    if (outcomes[c].table.memory) drive_table_free(&outcomes[c].table);
+}
+
+/* --- numbers ---------------------------------------------------------------------------------- */
+
+/* What is expected; NaN after a mark of 0. */
+static double expected_value(const judging *j, int k) {
+  const exercise_item *item = &j->b->of->items[k];
+  deck_quantity quantity;
+  source_set sources = {NULL, 0};
+  diagnostics unheard;
+  if (!item->value) return j->b->measured[k];
+  diag_begin(&unheard, &sources);
+  const bool good = deck_quantity_read(&item->value->values[0], "value", &quantity, &unheard);
+  diag_clear(&unheard);
+  return good ? quantity.value : NAN;
+}
+
+static void put_number(judging *j, int k, double value, double expected, const char *why) {
+  const exercise_item *item = &j->b->of->items[k];
+  const bool right = fabs(value - expected) <= item->tolerance * fabs(expected);
+  const char *what = item->kind != ITEM_RUN                ? item->quantity
+                     : strcmp(item->of, "dissipated") == 0 ? "the dissipated energy"
+                                                           : item->monitor;
+  const char *ratio = expected != 0 ? ratio_words(fabs(value / expected)) : NULL;
+  put_mark(j, k, right, right, 1, value);
+  j->all_right = j->all_right && right;
+  if (right || item->show == SHOW_NOTHING) return;
+  if (isnan(value))
+    record_write(j->out, RECORD_WORDS, k, NULL, why);
+  else if (ratio)
+    record_write(j->out, RECORD_WORDS, k, NULL,
+                 arena_printf(j->memory, "%s is %.5g, %s what it should be", what, value, ratio));
+  else
+    record_write(j->out, RECORD_WORDS, k, NULL,
+                 arena_printf(j->memory, "%s is %.5g, %.3g times what it should be", what, value,
+                              value / expected));
+}
+
+static void judge_implied(judging *j, int k) {
+  const exercise_item *item = &j->b->of->items[k];
+  const char *why = "";
+  const double value = j->reads ? measure_implied(j->memory, item, j->q->answer, &why) : NAN;
+  put_number(j, k, value, expected_value(j, k), why);
+}
+
+/* The energies must balance. */
+static void put_imbalance(judging *j, int k, double value, const char *why) {
+  const exercise_item *item = &j->b->of->items[k];
+  const bool right = value <= item->tolerance;
+  put_mark(j, k, right, right, 1, value);
+  j->all_right = j->all_right && right;
+  if (right || item->show == SHOW_NOTHING) return;
+  record_write(
+      j->out, RECORD_WORDS, k, NULL,
+      isnan(value)
+          ? why
+          : arena_printf(j->memory, "the energies of the run miss %.3g of the largest", value));
+}
+
+static void judge_run(judging *j, int k) {
+  const exercise_item *item = &j->b->of->items[k];
+  const char *why = "";
+  const double value = j->reads ? measure_run(j->memory, item, j->q->answer, NULL, 0, &why) : NAN;
+  double expected = expected_value(j, k);
+  if (j->reads && item->like_count && !isnan(value))
+    expected = measure_run(j->memory, item, j->q->answer, item->like, item->like_count, &why);
+  if (strcmp(item->of, "imbalance") == 0)
+    put_imbalance(j, k, value, why);
+  else
+    put_number(j, k, value, expected, why);
+}
+
+/* --- known wrong laws ------------------------------------------------------------------------- */
+
+static bool tables_agree(const drive_table *answer, const reference_law *wrong) {
+  const drive_table *w = &wrong->table;
+  table_difference d;
+  if (answer->of != w->of) return false;
+  if ((answer->bad_row >= 0) != (w->bad_row >= 0)) return false;
+  table_difference_find(&d, answer, w, 1e-6, wrong->skip, true);
+  const bool none = d.kind == DIFFERENCE_NONE;
+  table_difference_free(&d);
+  return none;
+}
+
+static bool answers_like(const judging *j, int wrong) {
+  const grade_basis *b = j->b;
+  int alike = 0;
+  for (int k = 0; k < b->case_count; k++) {
+    const reference_law *w = wrong_table(b, k, wrong);
+    const bool driven = j->outcomes[k].table.memory != NULL;
+    if (!w && !driven) continue;
+    if (!w || !driven || !tables_agree(&j->outcomes[k].table, w)) return false;
+    alike++;
+  }
+  return alike > 0;
+}
+
+/* One that does not read is known by what is first said of it. */
+static bool fails_like(const judging *j, int wrong) {
+  model m;
+  const bool reads = model_open(&m, j->b->of->wrong[wrong].path, NULL, 0);
+  const char *first = reads ? NULL : first_error(j->memory, &m.said);
+  model_close(&m);
+  return first && j->first_error && strcmp(first, j->first_error) == 0;
+}
+
+static void find_known(const judging *j) {
+  const exercise *e = j->b->of;
+  if (j->all_right || !j->b->declared) return;
+  for (int w = 0; w < e->wrong_count; w++) {
+    const bool alike = j->reads ? answers_like(j, w) : !j->b->declared[w].count && fails_like(j, w);
+    if (!alike) continue;
+    record_write(j->out, RECORD_SENTENCE, -1, (const double[4]){w, 0, 0, 0}, e->wrong[w].sentence);
+    return;
+  }
+}
+
+/* --- the whole -------------------------------------------------------------------------------- */
+
+static void judge_item(judging *j, int k) {
+  const exercise_item *item = &j->b->of->items[k];
+  if (!item_is_judged(item, j->q->only_public)) return;
+  switch ((item_kind)item->kind) {
+  case ITEM_CHECK:
+    judge_check(j, k);
+    return;
+  case ITEM_PATH:
+    judge_paths(j, k);
+    return;
+  case ITEM_SAMPLE:
+    judge_samples(j, k);
+    return;
+  case ITEM_IMPLIED:
+    judge_implied(j, k);
+    return;
+  case ITEM_RUN:
+    judge_run(j, k);
+    return;
+  default:
+    return;
+  }
+}
+
+static bool takes_long(const exercise_item *item) {
+  return item->kind == ITEM_RUN;
+}
+
+void judge_answer(const judge_request *q, FILE *out) {
+  const grade_basis *b = q->basis;
+  judging j = {.q = q, .b = b, .memory = arena_new(), .out = out, .all_right = true};
+  j.outcomes = arena_alloc(j.memory, ((size_t)b->case_count + 1) * sizeof *j.outcomes);
+  check(&j);
+  for (int late = 0; late < 2; late++) {
+    for (int k = 0; k < b->of->item_count; k++)
+      if (takes_long(&b->of->items[k]) == late) judge_item(&j, k);
+    if (!late) find_known(&j);
+  }
+  record_write(out, RECORD_END, -1, NULL, NULL);
+  for (int k = 0; k < b->case_count; k++)
+    if (j.outcomes[k].table.memory) drive_table_free(&j.outcomes[k].table);
+  arena_free(j.memory);
+}

@@ -1,0 +1,243 @@
+#include "generator/grade/measure.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/semantics/law_reads.h"
+#include "generator/interpreter/interpreted.h"
+#include "generator/kernel/material_law.h"
+#include "generator/kernel/settings.h"
+#include "generator/run/run.h"
+#include "runtime/analysis/implied.h"
+#include "runtime/analysis/material.h"
+#include "runtime/analysis/stability.h"
+#include "runtime/deck/deck_value.h"
+#include "runtime/deck/lattice_kind.h"
+#include "runtime/result/result_read.h"
+
+static const char result_name[] = "run.h5";
+
+/* --- implied ---------------------------------------------------------------------------------- */
+
+typedef struct implying {
+  arena *memory;
+  const exercise_item *item;
+  source_set sources;
+  diagnostics said;
+  deck_material material;
+  deck_lattice lattice;
+  model model;
+} implying;
+
+/* "s=20 mm": a size, not a parameter of the law. */
+static bool set_size(implying *m, const char *text) {
+  double *size = text[0] == 's' ? &m->lattice.spacing : &m->lattice.thickness;
+  if ((text[0] != 's' && text[0] != 't') || text[1 + strspn(text + 1, " ")] != '=') return false;
+  const char *value = strchr(text, '=') + 1;
+  value += strspn(value, " ");
+  const int file = source_add(&m->sources, "set", text, strlen(text));
+  const span where = source_whole(&m->sources, file);
+  const namelist_value v = {
+      .kind = NAMELIST_TEXT, .text = value, .where = where, .text_where = where};
+  deck_real_read(&v, "set", "m", BOUND_POSITIVE, size, &m->said);
+  return true;
+}
+
+static bool take_settings(implying *m) {
+  const exercise_item *item = m->item;
+  const char **of_law = arena_alloc(m->memory, ((size_t)item->set_count + 1) * sizeof *of_law);
+  int count = 0;
+  for (int k = 0; k < item->set_count; k++)
+    if (!set_size(m, item->set[k])) of_law[count++] = item->set[k];
+  m->lattice.stiffness_thickness = m->lattice.mass_thickness = m->lattice.thickness;
+  return settings_read(m->memory, &m->sources, of_law, count, &m->material, &m->said) &&
+         m->said.errors == 0;
+}
+
+static void choose_lattice(implying *m, const law *l) {
+  m->lattice = law_reads(l, QUANTITY_AREA)
+                   ? lattice_default_chain(10e-3, 100e-6)
+                   : lattice_default(law_setting_name(l->setting), 10e-3, 100e-3);
+}
+
+static double choose(const char *quantity, const pl_law *kernel, const double *values,
+                     const rows *w) {
+  implied_elasticity elastic;
+  implied_bond bond;
+  double strain;
+  if (strcmp(quantity, "stable_step") == 0 || strcmp(quantity, "omega_max") == 0) {
+    step_limit step;
+    if (!(w->mass > 0)) return NAN;
+    stability_limit(kernel, values, NULL, w, &step);
+    return quantity[0] == 's' ? step.limit : step.omega_max;
+  }
+  if (strcmp(quantity, "peak_stress") == 0) return implied_strength(kernel, values, w, 0, &strain);
+  if (strcmp(quantity, "crack_energy") == 0) return implied_crack_energy(kernel, values, w, 0);
+  if (strcmp(quantity, "work_of_fracture") == 0) {
+    implied_bond_curve(kernel, values, w, 0, &bond);
+    return bond.row_energy;
+  }
+  if (!implied_elastic(kernel, values, w, &elastic)) return NAN;
+  return strcmp(quantity, "E") == 0    ? elastic.E[0]
+         : strcmp(quantity, "nu") == 0 ? elastic.nu[0]
+                                       : elastic.G;
+}
+
+static double imply(implying *m) {
+  pl_law *kernel = plan_interpreted(m->model.plan);
+  double *values = arena_alloc(m->memory, ((size_t)kernel->parameter_count + 1) * sizeof *values);
+  double value = NAN;
+  if (material_parameters(&m->model.values, kernel, values, &m->said)) {
+    rows *w = implied_lattice_like(&m->lattice, material_density(kernel, values));
+    value = w ? choose(m->item->quantity, kernel, values, w) : NAN;
+    if (w) rows_free(w);
+  }
+  plan_interpreted_free(kernel);
+  return value;
+}
+
+double measure_implied(arena *a, const exercise_item *item, const char *answer, const char **why) {
+  implying m = {.memory = a, .item = item, .material = {.model = answer}};
+  model first;
+  double value = NAN;
+  diag_begin(&m.said, &m.sources);
+  const bool read = model_open(&first, answer, NULL, 0);
+  if (read) choose_lattice(&m, first.law);
+  model_close(&first);
+  if (read && take_settings(&m) &&
+      material_law_open(&m.material, &m.lattice, "deck.nml", &m.model, &m.said))
+    value = imply(&m);
+  if (isnan(value))
+    *why = arena_printf(a, "your law implies no `%s`%s%s", item->quantity, m.said.count ? ": " : "",
+                        m.said.count ? m.said.items[0].message : "");
+  if (m.model.memory) model_close(&m.model);
+  diag_clear(&m.said);
+  source_clear(&m.sources);
+  return value;
+}
+
+/* --- a run ------------------------------------------------------------------------------------ */
+
+static double largest_energy(result_file *f) {
+  static const char *const terms[] = {"energy/kinetic", "energy/stored", "energy/dissipated_damage",
+                                      "energy/dissipated_damping", "energy/external"};
+  double most = 0;
+  char unit_text[64], error[256];
+  for (size_t k = 0; k < sizeof terms / sizeof *terms; k++) {
+    long count;
+    double *v =
+        result_read_series(f, terms[k], &count, unit_text, sizeof unit_text, error, sizeof error);
+    for (long q = 0; v && q < count; q++)
+      most = fabs(v[q]) > most ? fabs(v[q]) : most;
+    free(v);
+  }
+  return most;
+}
+
+static double *series(result_file *f, const char *name, long *count, char *error, size_t size) {
+  char unit_text[64];
+  return result_read_series(f, name, count, unit_text, sizeof unit_text, error, size);
+}
+
+static long peak_of(const double *v, long count) {
+  long best = 0;
+  for (long k = 1; k < count; k++)
+    if (fabs(v[k]) > fabs(v[best])) best = k;
+  return best;
+}
+
+/* Of the whole run: in parts of its largest energy. */
+static double worst_imbalance(result_file *f, char *error, size_t size) {
+  long count;
+  double *v = series(f, "energy/imbalance", &count, error, size);
+  const double most = largest_energy(f),
+               value = v && count && most > 0 ? fabs(v[peak_of(v, count)]) / most : NAN;
+  free(v);
+  return value;
+}
+
+static double total_dissipated(result_file *f, char *error, size_t size) {
+  long counts[2];
+  double *v = series(f, "energy/dissipated_damage", &counts[0], error, size),
+         *w = series(f, "energy/dissipated_damping", &counts[1], error, size);
+  const double value = v && w && counts[0] && counts[1] ? v[counts[0] - 1] + w[counts[1] - 1] : NAN;
+  free(v);
+  free(w);
+  return value;
+}
+
+static double of_monitor(result_file *f, const exercise_item *item, char *error, size_t size) {
+  long count, other;
+  double *v = series(f, item->monitor, &count, error, size);
+  double *w = strcmp(item->of, "at peak") == 0 ? series(f, item->at, &other, error, size) : NULL;
+  double value = NAN;
+  if (v && count && strcmp(item->of, "last") == 0)
+    value = v[count - 1];
+  else if (v && w && other == count && count)
+    value = v[peak_of(w, count)];
+  else if (v && count && strcmp(item->of, "peak") == 0)
+    value = v[peak_of(v, count)];
+  free(v);
+  free(w);
+  return value;
+}
+
+static double read_result(arena *a, const exercise_item *item, const char **why) {
+  char error[1024] = "the deck has no such monitor";
+  result_file *f = result_read(result_name, error, sizeof error);
+  if (!f) {
+    *why = "the run left no result";
+    return NAN;
+  }
+  const double value = strcmp(item->of, "imbalance") == 0 ? worst_imbalance(f, error, sizeof error)
+                       : strcmp(item->of, "dissipated") == 0
+                           ? total_dissipated(f, error, sizeof error)
+                           : of_monitor(f, item, error, sizeof error);
+  if (isnan(value)) *why = arena_printf(a, "%s", error);
+  result_read_close(f);
+  return value;
+}
+
+double measure_run(arena *a, const exercise_item *item, const char *answer, const char *const *more,
+                   int more_count, const char **why) {
+  const int most = item->set_count + more_count + 2;
+  deck_override *all = arena_alloc(a, (size_t)most * sizeof *all);
+  int count = 0;
+  const char *of = item->material ? arena_printf(a, "[%s]", item->material) : "";
+  all[count++].text = arena_printf(a, "material%s.model=%s", of, answer);
+  all[count++].text = arena_printf(a, "output.result=%s", result_name);
+  for (int k = 0; k < item->set_count; k++)
+    all[count++].text = item->set[k];
+  for (int k = 0; k < more_count; k++)
+    all[count++].text = more[k];
+  const run_options o = {.program = "perilat run",
+                         .deck_path = item->found[0].path,
+                         .overrides = all,
+                         .override_count = count,
+                         .threads = 1,
+                         .interpret = true,
+                         .no_physics = true};
+  const int status = run_deck(&o);
+  if (status == 0) return read_result(a, item, why);
+  *why = status == INPUT_WRONG ? "the deck refuses your law" : "the run with your law failed";
+  return NAN;
+}
+
+/* --- units ------------------------------------------------------------------------------------ */
+
+const char *measure_unit(const exercise_item *item) {
+  static const struct {
+    const char *quantity, *unit;
+  } units[] = {{"E", "Pa"},
+               {"G", "Pa"},
+               {"nu", "1"},
+               {"stable_step", "s"},
+               {"omega_max", "1/s"},
+               {"peak_stress", "Pa"},
+               {"crack_energy", "N/m"},
+               {"work_of_fracture", "N/m"}};
+  for (size_t k = 0; item->quantity && k < sizeof units / sizeof *units; k++)
+    if (strcmp(units[k].quantity, item->quantity) == 0) return units[k].unit;
+  return NULL;
+}

@@ -1,0 +1,16 @@
+/* One number of an answer: what the law implies on a lattice, or what a run with it gives. */
+#ifndef PERILAT_GENERATOR_GRADE_MEASURE_H
+#define PERILAT_GENERATOR_GRADE_MEASURE_H
+
+#include "generator/exercise/exercise.h"
+
+/* In SI; NaN with a sentence in *why (of the arena) where there is none. The law's file `answer` is
+   in the working folder; `set` is the item's, or what it is compared with. */
+double measure_implied(arena *a, const exercise_item *item, const char *answer, const char **why);
+/* Runs the item's deck on the interpreter, in the working folder, with `more` set, too. */
+double measure_run(arena *a, const exercise_item *item, const char *answer, const char *const *more,
+                   int more_count, const char **why);
+/* The unit in which the item's `value` stands; "" for pure numbers. */
+const char *measure_unit(const exercise_item *item);
+
+#endif
