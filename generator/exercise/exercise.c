@@ -161,7 +161,7 @@ static bool find_files(const reader *r, exercise_item *item, const char *pattern
     add_file(r, item, names[k], hidden);
   if (count) return true;
   diag_report(r->d, DIAG_FILE, where, "there is no file `%s` in %s or its folder %s",
-              name_shown(pattern), e->folder, teacher);
+              name_shown(pattern), e->name, teacher);
   return false;
 }
 
@@ -280,7 +280,7 @@ static void find_kept(const reader *r, int file) {
   e->solution = is_ordinary_file(solution) ? solution : NULL;
   if (needed && !e->solution)
     diag_report(r->d, DIAG_FILE, (span){0, 0, (uint16_t)file},
-                "there is no solution to judge by, `%s`", solution);
+                "there is no solution to judge by, `%s`", solution + strlen(e->folder) + 1);
   find_known(r, "equal", &e->equal, &e->equal_count);
   find_known(r, "wrong", &e->wrong, &e->wrong_count);
   for (int k = 0; k < e->wrong_count; k++)
@@ -331,7 +331,10 @@ exercise *exercise_read(arena *a, source_set *sources, const char *folder, diagn
   reader r = {a, sources, d, e};
   char error[4096];
   size_t length;
-  *e = (exercise){.folder = folder, .name = name_of(a, folder)};
+  char *whole = realpath(folder, NULL);
+  *e = (exercise){.folder = whole ? arena_text(a, whole, strlen(whole)) : folder};
+  free(whole);
+  e->name = name_of(a, e->folder);
   e->file = path_in(a, folder, file_name);
   char *text = read_text_file(e->file, EXERCISE_LIMIT, &length, error, sizeof error);
   if (!text) {
@@ -340,7 +343,7 @@ exercise *exercise_read(arena *a, source_set *sources, const char *folder, diagn
   }
   const int file = source_add(sources, e->file, text, length), errors = d->errors;
   free(text);
-  e->kept = is_folder(path_in(a, folder, teacher));
+  e->kept = is_folder(path_in(a, e->folder, teacher));
   deck_defaults(a, exercise_grammar.groups[EXERCISE_GROUP_EXERCISE], e);
   const namelist *n = namelist_read(a, sources, file, d);
   e->items = arena_alloc(a, ((size_t)n->group_count + 1) * sizeof *e->items);

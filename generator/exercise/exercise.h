@@ -28,7 +28,7 @@ typedef enum item_show { SHOW_NOTHING, SHOW_WORDS, SHOW_STATE, SHOW_CURVE } item
 
 /* A file that an item names. */
 typedef struct exercise_file {
-  const char *path; /* from the working folder */
+  const char *path; /* from the root */
   const char *name; /* as in the exercise: "hidden/1.nml" */
   bool hidden;      /* it stands in the teacher's folder */
 } exercise_file;
@@ -71,8 +71,9 @@ typedef struct exercise {
   deck_item item;
   const char *title;
   int minutes, points;
-  const char *folder, *file; /* as they were given: "05_memory", "05_memory/exercise.nml" */
-  const char *name;          /* "05_memory" */
+  const char *folder; /* from the root: processes that judge work elsewhere */
+  const char *file;   /* as it was given: "05_memory/exercise.nml" */
+  const char *name;   /* "05_memory" */
   exercise_item *items;
   int item_count;
   bool kept;            /* the teacher's folder is there */

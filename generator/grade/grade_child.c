@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "dsl/base/characters.h"
+#include "generator/grade/judge_table.h"
 #include "generator/kernel/document.h"
 #include "runtime/base/clock.h"
 
@@ -81,7 +82,10 @@ static bool make_folder(char *folder, size_t size) {
 static void be_child(const judge_request *q, const char *folder, const confinement *to, int pipe) {
   FILE *out = fdopen(pipe, "w");
   if (!out || !confine(folder, to)) _exit(3);
-  judge_answer(q, out);
+  if (q->basis->of->of_answers)
+    judge_table(q, out);
+  else
+    judge_answer(q, out);
   fclose(out);
   _exit(0);
 }

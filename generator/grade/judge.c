@@ -6,6 +6,7 @@
 
 #include "generator/against/table_difference.h"
 #include "generator/check/physics.h"
+#include "generator/grade/curve_text.h"
 #include "generator/grade/judge_path.h"
 #include "generator/grade/measure.h"
 #include "runtime/deck/deck_value.h"
@@ -18,6 +19,7 @@ typedef struct judging {
   bool reads, obeys;
   declared_names declared;
   path_outcome *outcomes; /* [case_count], of those that were driven */
+  cases_seen seen;
   bool all_right;
   const char *first_error; /* "code: message" of a law that does not read */
 } judging;
@@ -96,7 +98,7 @@ static void judge_cases(judging *j, int k, path_case *cases, int count, path_out
   int passed = 0;
   bool said = false;
   for (int c = 0; c < count && j->reads; c++) {
-    judge_path(&outcomes[c], j->memory, &cases[c], j->q->answer, &j->declared);
+    judge_path(&outcomes[c], j->memory, &cases[c], j->q->answer, &j->declared, &j->seen);
     passed += outcomes[c].right;
     if (outcomes[c].right || said) continue;
     put_outcome(j, k, &cases[c], count, &outcomes[c]);
@@ -244,6 +246,28 @@ static void find_known(const judging *j) {
   }
 }
 
+/* --- cases ------------------------------------------------------------------------------------ */
+
+/* What of the law no path has tried. */
+static void put_cases(const judging *j) {
+  model m;
+  int reached = 0, last = 0;
+  const bool reads = model_open(&m, j->q->answer, NULL, 0);
+  for (int k = 0; k < j->seen.count && reads; k++) {
+    const case_seen *one = &j->seen.items[k];
+    const bool known = one->where.end > 0 && one->where.file == 0;
+    const int line = known ? source_line_number(&m.sources, 0, one->where.begin) : 0;
+    reached += one->was_true && one->was_false;
+    if ((one->was_true && one->was_false) || line == last) continue;
+    last = line;
+    record_write(j->out, RECORD_NOTE, -1, NULL,
+                 line ? arena_printf(j->memory, "a case of line %d is never reached", line)
+                      : "a case of the law is never reached");
+  }
+  model_close(&m);
+  record_write(j->out, RECORD_CASES, -1, (const double[4]){j->seen.count, reached, 0, 0}, NULL);
+}
+
 /* --- the whole -------------------------------------------------------------------------------- */
 
 static void judge_item(judging *j, int k) {
@@ -284,8 +308,10 @@ void judge_answer(const judge_request *q, FILE *out) {
       if (takes_long(&b->of->items[k]) == late) judge_item(&j, k);
     if (!late) find_known(&j);
   }
+  if (j.reads) put_cases(&j);
   record_write(out, RECORD_END, -1, NULL, NULL);
   for (int k = 0; k < b->case_count; k++)
     if (j.outcomes[k].table.memory) drive_table_free(&j.outcomes[k].table);
+  free(j.seen.items);
   arena_free(j.memory);
 }

@@ -38,14 +38,21 @@ static char *unsuited_words(arena *a, const diagnostics *said) {
   return arena_printf(a, "your law can not be driven along this path");
 }
 
+static bool march(path_outcome *out, const driven_law *of, cases_seen *seen) {
+  drive_band band;
+  case_witness *w = seen ? case_witness_begin(of->law) : NULL;
+  const bool good = driven_law_march(of, &out->table, &band);
+  if (w) case_witness_end(w, seen);
+  return good;
+}
+
 /* False after words. */
 static bool drive_along(path_outcome *out, arena *a, driven_law *of, const drive_input *in,
-                        diagnostics *said) {
-  drive_band band;
+                        cases_seen *seen, diagnostics *said) {
   const driven_outcome outcome = driven_law_open(of, a, in, false, said);
   if (outcome == DRIVEN_BAD_LAW && of->opened && of->model.said.errors > 0)
     out->words = arena_printf(a, "your law has errors");
-  else if (outcome != DRIVEN_READY || !driven_law_march(of, &out->table, &band))
+  else if (outcome != DRIVEN_READY || !march(out, of, seen))
     out->words = unsuited_words(a, said);
   return !out->words;
 }
@@ -86,7 +93,7 @@ static bool only_at_hand(arena *a, const path_case *c, const char *answer,
   if (!c->plain) return false;
   const drive_input *in = input_here(a, c, c->plain, answer, declared, &missing);
   const bool good =
-      drive_along(&plain, a, &of, in, said) && agrees(c, &plain.table, &c->right_plain);
+      drive_along(&plain, a, &of, in, NULL, said) && agrees(c, &plain.table, &c->right_plain);
   driven_law_close(&of);
   if (plain.table.memory) drive_table_free(&plain.table);
   return good;
@@ -149,7 +156,7 @@ static void meet(path_outcome *out, arena *a, const driven_law *of, const drive_
 /* --- the whole -------------------------------------------------------------------------------- */
 
 void judge_path(path_outcome *out, arena *a, const path_case *c, const char *answer,
-                const declared_names *declared) {
+                const declared_names *declared, cases_seen *seen) {
   const char *missing;
   source_set sources = {NULL, 0};
   diagnostics said;
@@ -162,7 +169,7 @@ void judge_path(path_outcome *out, arena *a, const path_case *c, const char *ans
     out->words = arena_printf(
         a, "your law has no parameter `%s`, which the exercise sets: keep those of the starter",
         missing);
-  } else if (drive_along(out, a, &of, in, &said)) {
+  } else if (drive_along(out, a, &of, in, seen, &said)) {
     if (expects)
       meet(out, a, &of, in, &said);
     else

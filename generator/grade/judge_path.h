@@ -3,6 +3,7 @@
 #define PERILAT_GENERATOR_JUDGE_PATH_H
 
 #include "generator/grade/grade_basis.h"
+#include "generator/interpreter/case_witness.h"
 
 /* What came of one path. */
 typedef struct path_outcome {
@@ -12,8 +13,9 @@ typedef struct path_outcome {
   drive_table table; /* without memory where it could not be driven */
 } path_outcome;
 
-/* Texts in the arena; the table must be freed where it has memory. */
+/* Texts in the arena; the table must be freed where it has memory. What of the answer's cases is
+   reached goes to `seen`. */
 void judge_path(path_outcome *out, arena *a, const path_case *c, const char *answer,
-                const declared_names *declared);
+                const declared_names *declared, cases_seen *seen);
 
 #endif

@@ -43,6 +43,11 @@ static void print_lines(const char *text, const char *indent, FILE *out) {
   }
 }
 
+/* The sentence of a known wrong law says it all. */
+static bool needs_words(const exercise_item *item, const marks *m) {
+  return !m->sentence || item->kind == ITEM_ANSWERS;
+}
+
 static void print_item(const exercise_item *item, const item_mark *i, const marks *m, FILE *out) {
   const char *title = name_shown(item->title);
   if (item->kind == ITEM_HAND) {
@@ -56,8 +61,8 @@ static void print_item(const exercise_item *item, const item_mark *i, const mark
   fprintf(out, "  %5s of %3d  %s", points_shown(i->share * item->points), item->points, title);
   if (i->of > 1 && i->passed < i->of) fprintf(out, ": %d of %d", i->passed, i->of);
   fputc('\n', out);
-  if (i->words && !m->sentence) print_lines(i->words, "                ", out);
-  if (i->state && !m->sentence) print_lines(i->state, "                  ", out);
+  if (i->words && needs_words(item, m)) print_lines(i->words, "                ", out);
+  if (i->state && needs_words(item, m)) print_lines(i->state, "                  ", out);
 }
 
 static void print_sum(const exercise *e, const marks *m, FILE *out) {
@@ -71,8 +76,8 @@ static void print_sum(const exercise *e, const marks *m, FILE *out) {
 void marks_print(const exercise *e, const marks *m, FILE *out) {
   fprintf(out, "%s: %s\n", name_shown(m->name), name_shown(e->title));
   if (m->holes)
-    fprintf(out, "  %d hole%s `?` still to be written\n", m->holes,
-            m->holes == 1 ? " is" : "s are");
+    fprintf(out, "  %d hole%s `?` %s still to be written\n", m->holes, m->holes == 1 ? "" : "s",
+            m->holes == 1 ? "is" : "are");
   if (m->messages) print_lines(m->messages, "  ", out);
   if (m->sentence) print_lines(m->sentence, "  ", out);
   for (int k = 0; k < e->item_count; k++)

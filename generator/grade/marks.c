@@ -104,6 +104,10 @@ static void take_record(marks *m, const record_head *h, char *text) {
   case RECORD_NOTE:
     m->notes = joined(m->memory, m->notes, text);
     return;
+  case RECORD_CASES:
+    m->cases = bounded(h->numbers[0], 1000000);
+    m->reached = bounded(h->numbers[1], 1000000);
+    return;
   case RECORD_END:
     m->ended = true;
     return;

@@ -26,6 +26,7 @@ typedef struct marks {
   char *messages;              /* its errors as they are printed, or NULL */
   char *sentence;              /* of a known wrong law, or NULL */
   int known;                   /* which one; -1: none */
+  int cases, reached;          /* conditions of the law, and those that were seen true and false */
   char *notes;                 /* lines that cost nothing, or NULL */
   const char *trouble;         /* why it was not judged to the end, or NULL */
   double seconds;
@@ -34,7 +35,7 @@ typedef struct marks {
 
 /* X(code): what a record says */
 #define MARK_RECORDS(X)                                                                            \
-  X(MARK) X(WORDS) X(STATE) X(CURVE) X(CHECKED) X(MESSAGES) X(SENTENCE) X(NOTE) X(END)
+  X(MARK) X(WORDS) X(STATE) X(CURVE) X(CHECKED) X(MESSAGES) X(SENTENCE) X(NOTE) X(CASES) X(END)
 typedef enum mark_record {
 #define X(code) RECORD_##code,
   MARK_RECORDS(X)

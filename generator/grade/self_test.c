@@ -9,16 +9,21 @@ static void print_verdict(bool good, const char *name) {
   printf("%s  %s: ", good ? "ok  " : "FAIL", name_shown(name));
 }
 
-/* All points. */
-static bool test_right(grading *g, const char *name, const char *path) {
+/* All points; of the solution `all_cases` are reached. */
+static bool test_right(grading *g, const char *name, const char *path, bool all_cases) {
   marks m;
   const handed_in answer = {name, path, NULL};
   bool good = grading_judge(g, &answer, &m);
   const mark_sums s = marks_add_up(g->e, &m);
   good = good && marks_are_full(g->e, &m);
-  print_verdict(good, name);
-  printf("%s of %d points\n", points_shown(s.got), s.judged);
+  const bool whole = !all_cases || m.reached == m.cases;
+  print_verdict(good && whole, name);
+  printf("%s of %d points", points_shown(s.got), s.judged);
+  if (m.cases) printf(", %d of %d conditions seen true and false", m.reached, m.cases);
+  putchar('\n');
+  if (!whole && m.notes) printf("      %s\n", m.notes);
   if (!good) marks_print(g->e, &m, stdout);
+  good = good && whole;
   marks_close(&m);
   return good;
 }
@@ -49,9 +54,9 @@ static bool test_wrong(grading *g, int wrong) {
 bool self_test(grading *g) {
   const exercise *e = g->e;
   bool good = true;
-  if (e->solution) good = test_right(g, "solution", e->solution);
+  if (e->solution) good = test_right(g, "solution", e->solution, true);
   for (int k = 0; k < e->equal_count; k++)
-    good = test_right(g, e->equal[k].name, e->equal[k].path) && good;
+    good = test_right(g, e->equal[k].name, e->equal[k].path, false) && good;
   for (int k = 0; k < e->wrong_count; k++)
     good = test_wrong(g, k) && good;
   printf("%s: %d equal form%s, %d wrong answer%s: %s\n", name_shown(e->name), e->equal_count,

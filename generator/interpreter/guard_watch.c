@@ -29,14 +29,18 @@ static bool asks_for_number(const ir *g, ir_node guard) {
   return ir_operation(g, guard) == IR_EQ && ir_operand(g, guard, 0) == ir_operand(g, guard, 1);
 }
 
+bool choice_is_case(const ir *g, ir_node choice) {
+  const ir_node guard = ir_operand(g, choice, 0);
+  return !is_limit(g, choice) && !ir_is_uniform(g, guard) && !asks_for_number(g, guard);
+}
+
 static int find_guards(const kernel_plan *p, ir_node *guards) {
   const ir *g = p->graph;
   const int nodes = ir_count(g);
   if (p->form != FORM_STRIPS) return 0;
   unsigned char *marks = segment_needed(g, plan_segment(p, PROGRAM_STATES));
   for (ir_node n = 0; n < nodes; n++)
-    if (marks[n] && ir_operation(g, n) == IR_SELECT && !is_limit(g, n) &&
-        !ir_is_uniform(g, ir_operand(g, n, 0)) && !asks_for_number(g, ir_operand(g, n, 0)))
+    if (marks[n] && ir_operation(g, n) == IR_SELECT && choice_is_case(g, n))
       marks[ir_operand(g, n, 0)] = GUARD;
   int count = 0;
   for (ir_node n = 0; n < nodes; n++)

@@ -7,6 +7,9 @@
 
 typedef struct guard_watch guard_watch;
 
+/* Does this choice (IR_SELECT) decide between cases of the law, by the state? */
+bool choice_is_case(const ir *g, ir_node choice);
+
 /* Watches every condition that decides between cases and depends on the state, not on parameters
    alone. A limit put on a value ("the larger of a and b") decides nothing. `most`: states that it
    is shown at once. */

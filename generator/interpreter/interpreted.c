@@ -345,3 +345,14 @@ void plan_interpreted_free(pl_law *kernel) {
   arena_free(p->memory);
   free(p);
 }
+
+void plan_interpreted_watch(const pl_law *kernel, interpreter_look *look, void *context) {
+  const interpreted *p = kernel->context;
+  for (int k = 0; k < p->worker_count; k++)
+    runner_watch(p->workers[k].run, look, context);
+}
+
+const kernel_plan *plan_of_interpreted(const pl_law *kernel) {
+  const interpreted *p = kernel->context;
+  return p->plan;
+}

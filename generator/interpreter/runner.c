@@ -175,6 +175,14 @@ void runner_free(runner *r) {
   free(r);
 }
 
+void runner_watch(runner *r, interpreter_look *look, void *context) {
+  const kernel_program *of = r->plan->programs;
+  for (int task = 0; task < PROGRAM_COUNT; task++)
+    for (int k = 0; k < of[task].pass_count; k++)
+      for (int s = 0; s < of[task].passes[k].segment_count; s++)
+        if (r->run[task][k][s]) interpreter_watch(r->run[task][k][s], look, context);
+}
+
 void runner_take_parameters(runner *r, const double *parameters) {
   for (int k = 0; k < r->plan->law->parameters.count; k++)
     r->at[IR_FROM_PARAMETER][k] = parameters + k;

@@ -35,6 +35,9 @@ typedef struct runner {
 runner *runner_new(const kernel_plan *p, const ir_node *inputs);
 void runner_free(runner *r);
 
+/* interpreter_watch of all of its segments. */
+void runner_watch(runner *r, interpreter_look *look, void *context);
+
 /* From here on parameters, or uniforms, are those. */
 void runner_take_parameters(runner *r, const double *parameters);
 void runner_take_uniforms(runner *r, const double *uniforms);

@@ -65,14 +65,16 @@ struct interpreter {
   int search_count;
   const double **roots; /* lanes of each root */
   int root_count;
+  interpreter_look *look; /* or NULL */
+  void *look_context;
 };
 
 static double *lanes_of(const interpreter *p, int slot) {
   return p->lanes + (size_t)slot * INTERPRET_LANES;
 }
 
-/* Lanes of node n, by bisection: nodes are sorted. */
-static double *find_lanes(const interpreter *p, ir_node n) {
+/* Slot of node n, or of the one before which it would stand, by bisection: nodes are sorted. */
+static int find_slot(const interpreter *p, ir_node n) {
   int low = 0, high = p->slot_count - 1;
   while (low < high) {
     const int middle = (low + high) / 2;
@@ -81,8 +83,13 @@ static double *find_lanes(const interpreter *p, ir_node n) {
     else
       high = middle;
   }
-  assert(p->slot_count > 0 && p->nodes[low] == n);
-  return lanes_of(p, low);
+  return low;
+}
+
+static double *find_lanes(const interpreter *p, ir_node n) {
+  const int slot = find_slot(p, n);
+  assert(p->slot_count > 0 && p->nodes[slot] == n);
+  return lanes_of(p, slot);
 }
 
 static step step_of(const interpreter *p, const ir *g, int slot) {
@@ -226,7 +233,18 @@ void interpreter_run(interpreter *p, const interpreter_inputs *in, int count,
     run_steps(p->steps, p->step_count, lanes);
     for (int k = 0; k < p->root_count; k++)
       memcpy(outputs[k] + first, p->roots[k], sizeof(double) * (size_t)lanes);
+    if (p->look) p->look(p->look_context, p, lanes);
   }
+}
+
+void interpreter_watch(interpreter *p, interpreter_look *look, void *context) {
+  p->look = look;
+  p->look_context = context;
+}
+
+const double *interpreter_lanes(const interpreter *p, ir_node n) {
+  const int slot = find_slot(p, n);
+  return p->slot_count > 0 && p->nodes[slot] == n ? lanes_of(p, slot) : NULL;
 }
 
 ir_node interpreter_first_bad(const interpreter *p) {

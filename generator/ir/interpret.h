@@ -27,6 +27,13 @@ typedef struct interpreter_inputs {
 void interpreter_run(interpreter *p, const interpreter_inputs *in, int count,
                      double *const *outputs);
 
+/* From here on called after the states of each run, at most INTERPRET_LANES of them at a time, were
+   evaluated; NULL: nothing is. */
+typedef void interpreter_look(void *context, const interpreter *p, int count);
+void interpreter_watch(interpreter *p, interpreter_look *look, void *context);
+/* Values [count] of node `n` then; NULL where the roots do not need it. */
+const double *interpreter_lanes(const interpreter *p, ir_node n);
+
 /* After interpreter_run with count = 1: the first node, in evaluation order, that is not finite, or
    IR_NONE. interpreter_value is what node `n`, needed by the roots, had. */
 ir_node interpreter_first_bad(const interpreter *p);

@@ -1,0 +1,212 @@
+#include "generator/grade/publish.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "dsl/base/characters.h"
+#include "generator/exercise/exercise_files.h"
+#include "generator/exercise/exercise_grammar.h"
+#include "generator/kernel/document.h"
+#include "generator/kernel/model.h"
+
+enum { DEEPEST = 4 };
+#define LONGEST ((size_t)64 << 20) /* B, of a file */
+static const char own_file[] = "exercise.nml", kept[] = "teacher";
+
+typedef struct publishing {
+  const exercise *e;
+  const source_set *sources;
+  arena *memory;
+  const char *folder;
+  const char **secrets; /* texts of all files in the teacher's folder */
+  size_t *lengths;
+  int secret_count;
+} publishing;
+
+static bool fail(const char *what, const char *path) {
+  say_error("%s `%s`: %s", what, path, strerror(errno));
+  return false;
+}
+
+/* --- what is kept ----------------------------------------------------------------------------- */
+
+static char *whole_text(const char *path, size_t *length) {
+  char error[1024];
+  char *text = read_text_file(path, LONGEST, length, error, sizeof error);
+  if (!text) say_error("%s", error);
+  return text;
+}
+
+/* Every entry of a folder that is no dot file; in alphabetical order. */
+static int entries_of(arena *a, const char *folder, const char ***names) {
+  struct dirent **at;
+  int count = 0;
+  const int all = scandir(folder, &at, NULL, alphasort);
+  *names = arena_alloc(a, ((size_t)(all > 0 ? all : 0) + 1) * sizeof **names);
+  for (int k = 0; k < all; k++) {
+    if (at[k]->d_name[0] != '.')
+      (*names)[count++] = arena_text(a, at[k]->d_name, strlen(at[k]->d_name));
+    free(at[k]);
+  }
+  if (all >= 0) free(at);
+  return count;
+}
+
+static bool learn_secrets(publishing *p, const char *folder, int depth) {
+  const char **names;
+  const int count = entries_of(p->memory, folder, &names);
+  for (int k = 0; k < count; k++) {
+    const char *path = path_in(p->memory, folder, names[k]);
+    if (is_folder(path) && depth < DEEPEST) {
+      if (!learn_secrets(p, path, depth + 1)) return false;
+    } else if (is_ordinary_file(path)) {
+      size_t length;
+      char *text = whole_text(path, &length);
+      if (!text) return false;
+      p->secrets = arena_room(p->memory, p->secrets, p->secret_count, sizeof *p->secrets);
+      p->lengths = arena_room(p->memory, p->lengths, p->secret_count, sizeof *p->lengths);
+      p->secrets[p->secret_count] = arena_text(p->memory, text, length);
+      p->lengths[p->secret_count++] = length;
+      free(text);
+    }
+  }
+  return true;
+}
+
+static bool is_secret(const publishing *p, const char *text, size_t length) {
+  for (int k = 0; k < p->secret_count; k++)
+    if (length > 0 && p->lengths[k] == length && memcmp(p->secrets[k], text, length) == 0)
+      return true;
+  return false;
+}
+
+/* --- files ------------------------------------------------------------------------------------ */
+
+static bool write_file(const char *path, const char *text, size_t length) {
+  FILE *out = fopen(path, "wbx");
+  if (!out) return fail("cannot write", path);
+  const bool good = fwrite(text, 1, length, out) == length;
+  if (fclose(out) == 0 && good) return true;
+  return fail("cannot write", path);
+}
+
+static bool copy_file(const publishing *p, const char *from, const char *to) {
+  size_t length;
+  char *text = whole_text(from, &length);
+  if (!text) return false;
+  bool good = !is_secret(p, text, length);
+  if (!good) say_error("`%s` is the same as a file of %s/: nothing of it is published", from, kept);
+  good = good && write_file(to, text, length);
+  free(text);
+  if (good) printf("written %s\n", to);
+  return good;
+}
+
+/* Links are left out: they may lead anywhere. */
+static bool copy_folder(const publishing *p, const char *from, const char *to, int depth) {
+  const char **names;
+  const int count = entries_of(p->memory, from, &names);
+  for (int k = 0; k < count; k++) {
+    const char *path = path_in(p->memory, from, names[k]),
+               *target = path_in(p->memory, to, names[k]);
+    struct stat about;
+    if (depth == 0 && (strcmp(names[k], kept) == 0 || strcmp(names[k], own_file) == 0)) continue;
+    if (lstat(path, &about) != 0) return fail("cannot read", path);
+    if (S_ISDIR(about.st_mode)) {
+      if (depth == DEEPEST) continue;
+      if (mkdir(target, 0777) != 0) return fail("cannot make the folder", target);
+      if (!copy_folder(p, path, target, depth + 1)) return false;
+    } else if (S_ISREG(about.st_mode)) {
+      if (!copy_file(p, path, target)) return false;
+    }
+  }
+  return true;
+}
+
+/* --- the exercise's own file ------------------------------------------------------------------ */
+
+static void put_text(FILE *out, const char *name, const char *text) {
+  fprintf(out, "%s = '", name);
+  for (const char *c = text; *c; c++)
+    fputs(*c == '\'' ? "''" : (char[]){*c, 0}, out);
+  fputc('\'', out);
+}
+
+/* As it was written. */
+static void put_key(const publishing *p, const deck_key *key, FILE *out) {
+  const source *s = &p->sources->items[key->value_where.file];
+  const span at = key->value_where;
+  fprintf(out, "  %s = %.*s", key->name, (int)(at.end - at.begin), s->text + at.begin);
+}
+
+static void put_item(const publishing *p, const exercise_item *item, FILE *out) {
+  fputs("&item  ", out);
+  if (!item_is_public(item)) {
+    const bool by_hand = item->kind == ITEM_HAND;
+    fprintf(out, "kind = '%s'  ", item_kind_names[item->kind]);
+    put_text(out, "title", item->title);
+    fprintf(out, "  points = %d%s", item->points, by_hand ? "" : "  hidden = .true.");
+  }
+  for (int k = 0; item_is_public(item) && k < item->item.key_count; k++)
+    put_key(p, &item->item.keys[k], out);
+  fputs("  /\n", out);
+}
+
+static bool write_exercise(const publishing *p) {
+  const exercise *e = p->e;
+  const char *path = path_in(p->memory, p->folder, own_file);
+  char *text;
+  size_t length;
+  FILE *out = must_open_text(&text, &length);
+  fputs("&exercise  ", out);
+  put_text(out, "title", e->title);
+  fprintf(out, "  minutes = %d  points = %d  /\n\n", e->minutes, e->points);
+  for (int k = 0; k < e->item_count; k++)
+    put_item(p, &e->items[k], out);
+  must_close_text(out);
+  const bool good = write_file(path, text, length);
+  free(text);
+  if (good) printf("written %s\n", path);
+  return good;
+}
+
+/* --- the whole -------------------------------------------------------------------------------- */
+
+static bool make_folder(const publishing *p) {
+  const char **names;
+  if (mkdir(p->folder, 0777) == 0) return true;
+  if (errno != EEXIST || !is_folder(p->folder)) return fail("cannot make the folder", p->folder);
+  if (entries_of(p->memory, p->folder, &names) == 0) return true;
+  say_error("the folder `%s` is not empty", p->folder);
+  return false;
+}
+
+/* Would it be found in itself? */
+static bool lies_inside(const char *folder, const char *of) {
+  char *whole = realpath(of, NULL), *at = realpath(folder, NULL);
+  const size_t length = whole ? strlen(whole) : 0;
+  const bool inside =
+      whole && at && strncmp(at, whole, length) == 0 && (at[length] == '/' || at[length] == 0);
+  free(whole);
+  free(at);
+  return inside;
+}
+
+bool publish(const exercise *e, const source_set *sources, const char *folder) {
+  publishing p = {.e = e, .sources = sources, .memory = arena_new(), .folder = folder};
+  bool good = make_folder(&p);
+  if (good && lies_inside(folder, e->folder)) {
+    say_error("`%s` lies in the exercise itself", folder);
+    rmdir(folder);
+    good = false;
+  }
+  good = good && learn_secrets(&p, path_in(p.memory, e->folder, kept), 0) &&
+         copy_folder(&p, e->folder, folder, 0) && write_exercise(&p);
+  arena_free(p.memory);
+  return good;
+}
