@@ -4,8 +4,8 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-# Fortran's and C++'s own compilers read decks and headers; packages are made and judged; ParaView and h5py open results.
-export PERILAT_PACKAGES="gfortran g++ dpkg-dev lintian patch python3-paraview xvfb xauth python3-h5py"
+# Fortran's and C++'s own compilers read decks and headers; packages are made and judged; ParaView and h5py open results, a browser and xmllint pages.
+export PERILAT_PACKAGES="gfortran g++ dpkg-dev lintian patch python3-paraview xvfb xauth python3-h5py chromium libxml2-utils"
 
 bash examples/first_light.sh
 

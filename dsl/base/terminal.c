@@ -8,6 +8,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "dsl/base/arena.h"
 #include "dsl/base/characters.h"
 
 /* --- what gets through ------------------------------------------------------------------------ */
@@ -115,6 +116,33 @@ void terminal_begin(void) {
 void terminal_expect_data(void) {
   fflush(stdout);
   guards[0].open = !isatty(STDOUT_FILENO);
+}
+
+/* --- what is kept ----------------------------------------------------------------------------- */
+
+void terminal_record_begin(terminal_record *t) {
+  *t = (terminal_record){.streams = {stdout, stderr}};
+  stdout = must_open_text(&t->texts[0], &t->lengths[0]);
+  stderr = must_open_text(&t->texts[1], &t->lengths[1]);
+}
+
+void terminal_record_end(terminal_record *t) {
+  must_close_text(stdout);
+  must_close_text(stderr);
+  stdout = t->streams[0];
+  stderr = t->streams[1];
+}
+
+void terminal_record_show(terminal_record *t) {
+  fputs(t->texts[0], stdout);
+  fflush(stdout);
+  fputs(t->texts[1], stderr);
+  terminal_record_drop(t);
+}
+
+void terminal_record_drop(terminal_record *t) {
+  free(t->texts[0]);
+  free(t->texts[1]);
 }
 
 /* --- what the terminal is --------------------------------------------------------------------- */

@@ -14,6 +14,19 @@ void terminal_begin(void);
  * unless a terminal shows it. */
 void terminal_expect_data(void);
 
+/* From here on what is printed is kept, and not shown: on the standard output, and on the error
+   stream. For what is to be shown and stored. */
+typedef struct terminal_record {
+  FILE *streams[2];
+  char *texts[2]; /* malloc'ed; once it has ended */
+  size_t lengths[2];
+} terminal_record;
+void terminal_record_begin(terminal_record *t);
+void terminal_record_end(terminal_record *t);
+/* Shows what was kept, and lets go of it; lets go of it alone. */
+void terminal_record_show(terminal_record *t);
+void terminal_record_drop(terminal_record *t);
+
 /* Columns; 0 where `out` is no terminal. */
 int terminal_columns(FILE *out);
 /* A terminal that understands control sequences. */

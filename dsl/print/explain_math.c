@@ -13,11 +13,12 @@
   X("gamma", "gamma")                                                                              \
   X("delta", "delta")                                                                              \
   X("eps", "varepsilon")                                                                           \
-  X("epsilon", "epsilon") X("zeta", "zeta") X("eta", "eta") X("theta", "theta") X("iota", "iota")  \
-      X("kappa", "kappa") X("lambda", "lambda") X("mu", "mu") X("nu", "nu") X("xi", "xi")          \
-          X("pi", "pi") X("rho", "rho") X("sigma", "sigma") X("tau", "tau")                        \
-              X("upsilon", "upsilon") X("phi", "varphi") X("chi", "chi") X("psi", "psi")           \
-                  X("omega", "omega") X("Gamma", "Gamma") X("Delta", "Delta") X("Theta", "Theta")  \
+  X("epsilon", "epsilon")                                                                          \
+  X("zeta", "zeta") X("eta", "eta") X("theta", "theta") X("iota", "iota") X("kappa", "kappa")      \
+      X("lambda", "lambda") X("mu", "mu") X("nu", "nu") X("xi", "xi") X("pi", "pi")                \
+          X("rho", "rho") X("sigma", "sigma") X("tau", "tau") X("upsilon", "upsilon")              \
+              X("phi", "varphi") X("chi", "chi") X("psi", "psi") X("omega", "omega")               \
+                  X("Gamma", "Gamma") X("Delta", "Delta") X("Theta", "Theta")                      \
                       X("Lambda", "Lambda") X("Xi", "Xi") X("Pi", "Pi") X("Sigma", "Sigma")        \
                           X("Upsilon", "Upsilon") X("Phi", "Phi") X("Psi", "Psi")                  \
                               X("Omega", "Omega")

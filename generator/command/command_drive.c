@@ -17,6 +17,7 @@
 #include "generator/drive/drive_expect.h"
 #include "generator/drive/drive_family.h"
 #include "generator/drive/drive_grammar.h"
+#include "generator/drive/drive_hdf5.h"
 #include "generator/drive/drive_path.h"
 #include "generator/drive/drive_point.h"
 #include "generator/drive/drive_table.h"
@@ -24,6 +25,7 @@
 #include "generator/drive/driven_law.h"
 #include "generator/drive/explain_bad.h"
 #include "generator/drive/explain_point.h"
+#include "generator/facts/law_judged.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/settings.h"
 #include "generator/run/run.h"
@@ -39,7 +41,7 @@ typedef struct drive_options {
   double tolerance;    /* of that comparison */
   const char *const *settings;
   int setting_count;
-  bool compiled;
+  bool compiled, confined;
   bool check_only;
   bool json;
   diag_json *report; /* diagnostics go here; NULL: to stderr as text */
@@ -104,6 +106,8 @@ static bool read_options(int argc, char **argv, drive_options *o, const char **s
     const char *value;
     if (option_flag(argv, &at, "--compiled"))
       o->compiled = true;
+    else if (option_flag(argv, &at, "--confined"))
+      o->confined = true;
     else if ((value = option_value(argc, argv, &at, "--set", &bad)))
       settings[o->setting_count++] = value;
     else if ((value = option_value(argc, argv, &at, "--csv", &bad)))
@@ -266,6 +270,20 @@ static void note_fall(const driving *r) {
         "energy");
 }
 
+/* What is driven may be what `perilat check` rejects: its first error, in a line. */
+static void note_rejected(driving *r) {
+  diagnostics found;
+  diag_begin(&found, &r->of.model.sources);
+  if (!law_obeys_alone(r->of.model.law, &found)) {
+    int first = 0;
+    while (diag_severity(found.items[first].code) != SEVERITY_ERROR)
+      first++;
+    printf("note: `perilat check %s` rejects this law [%s]\n  %s\n", r->of.model.path,
+           diag_name(found.items[first].code), found.items[first].message);
+  }
+  diag_clear(&found);
+}
+
 static void print_direction(const double *vector, int dimensions) {
   for (int k = 0; k < dimensions; k++)
     printf("%s%.4g", k ? ", " : "(", vector[k] + 0.0);
@@ -423,6 +441,7 @@ static int drive(driving *r) {
   describe(r);
   if (driven_law_kind(&r->of) != DRIVE_OF_FAMILIES) note_fall(r);
   if (driven_law_kind(&r->of) == DRIVE_OF_POINTS) note_band(r);
+  note_rejected(r);
   bool written = write_files(r);
   if (r->table.bad_row >= 0) {
     report_bad(r);
@@ -508,6 +527,7 @@ static void put_drive(const driving *r, json *j) {
 static int drive_as_asked(const drive_options *o, json *j) {
   driving r = {.options = o, .memory = arena_new()};
   diag_begin(&r.said, &r.sources);
+  if (o->confined) model_confine(o->path);
   int status = drive(&r);
   if (!status && o->check_only && !o->report) print_checked(&r);
   fflush(stdout);

@@ -16,6 +16,7 @@
 #include "generator/results/result_table.h"
 #include "generator/run/run.h"
 #include "generator/study/study_info.h"
+#include "generator/study/study_read.h"
 #include "generator/study/study_request.h"
 #include "runtime/result/result_fields.h"
 #include "runtime/result/result_find.h"

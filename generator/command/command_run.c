@@ -9,8 +9,8 @@
 #include "generator/command/run_options.h"
 #include "generator/drive/drive_grammar.h"
 #include "generator/emit/plan_dump.h"
+#include "generator/facts/law_judged.h"
 #include "generator/interpreter/interpreted.h"
-#include "generator/intervals/interval_check.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/material_law.h"
 #include "generator/kernel/model.h"
@@ -90,14 +90,6 @@ static bool take_values(checking *c, double **values) {
   return good;
 }
 
-/* Mechanics and ranges of a law that is right otherwise. */
-static bool check_values(checking *c, const double *values) {
-  bool good = physics_check(c->model.law, &(physics_options){.parameters = values}, &c->model.said,
-                            &c->physics);
-  interval_check(c->model.law, &c->model.said);
-  return good;
-}
-
 /* 0, or an exit status. */
 static int check_as_law(checking *c, const run_options *o, const char *path, const char *dump) {
   const char **settings =
@@ -111,7 +103,7 @@ static int check_as_law(checking *c, const run_options *o, const char *path, con
   if (dump) return dump_stage(&c->model, dump);
   double *values;
   if (!model_plan(&c->model) || !take_values(c, &values)) return 1;
-  return o->no_physics || check_values(c, values) ? 0 : 1;
+  return o->no_physics || law_obeys(c->model.law, values, &c->model.said, &c->physics) ? 0 : 1;
 }
 
 static void say(const run_options *o, const diagnostics *d) {

@@ -39,6 +39,8 @@
     GRADE_STATUS)                                                                                  \
   X(plot, "result.h5 ...", "h5 hdf5",                                                              \
     "curves, or a map of particles or bonds, as PNG, SVG or PDF", COMMAND_STATUS)                  \
+  X(report, "result.h5 [other.h5] | study.h5", "h5 hdf5",                                          \
+    "a run, two runs or a study as one page of HTML, to be looked at and sent", COMMAND_STATUS)    \
   X(compare, "a.h5 b.h5 | lab.csv", "h5 hdf5 csv",                                                 \
     "where two results, or a result and a table, differ most",                                     \
     "0 the same, 1 an input is wrong, 2 different")                                                \
@@ -118,6 +120,8 @@
     "set a parameter or an option of the law, or group.key of the path; may be given several "     \
     "times")                                                                                       \
   X(drive, "--compiled", "", "drive the compiled kernel, not the interpreter")                     \
+  X(drive, "--confined", "",                                                                       \
+    "read and write in the path's folder alone, and read the models that come along")              \
   X(drive, "--csv", "FILE", "write the table as comma-separated values")                           \
   X(drive, "--hdf5", "FILE", "write the table as a result")                                        \
   X(drive, "--picture", "FILE", "draw the curve: PNG, SVG or PDF by the name's ending")            \
@@ -172,6 +176,7 @@
   X(plot, "--factor", "F", "displacements of the map times F; so that they are seen if not given") \
   X(plot, "--slice", "z=0.05",                                                                     \
     "a slice of a body in space, half a spacing to either side; its surface if not given")         \
+  X(report, "-o", "FILE", "the page; RESULT.html if not given")                                    \
   X(compare, "--tolerance", "R", "largest relative difference that counts as the same (0)")        \
   X(compare, "--x", "NAME", "history along x of the curve that is compared with a table (time)")   \
   X(compare, "--y", "NAME", "history along y (load)")                                              \

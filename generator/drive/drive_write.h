@@ -1,4 +1,4 @@
-/* The table of a drive as text and file. */
+/* The table of a drive as text and as comma-separated values. */
 #ifndef PERILAT_GENERATOR_DRIVE_WRITE_H
 #define PERILAT_GENERATOR_DRIVE_WRITE_H
 
@@ -10,8 +10,5 @@
    the columns are left out, and said to be. */
 void drive_print(const drive_input *in, const drive_table *t, FILE *out);
 bool drive_write_csv(const drive_table *t, const char *path, char *error, size_t size);
-/* As a result file of two particles: `perilat plot` and `perilat info` read it. */
-bool drive_write_hdf5(const drive_input *in, const drive_table *t, const char *path, char *error,
-                      size_t size);
 
 #endif

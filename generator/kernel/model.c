@@ -19,6 +19,7 @@
 #include "generator/kernel/toolchain_cache.h"
 #include "generator/kernel/toolchain_compiler.h"
 #include "runtime/base/clock.h"
+#include "runtime/base/confined.h"
 #include "runtime/base/ordinary_file.h"
 
 #define PATH_LIMIT 4096
@@ -165,19 +166,40 @@ static char *try_parents(const char *from, const char *name) {
   return NULL;
 }
 
-static char *try_program_tree(const char *name) {
-  char program[PATH_LIMIT], folder[PATH_LIMIT], models[PATH_LIMIT + 32];
+enum { PROGRAM_FOLDERS = 3 };
+
+/* Where models may stand from the program's own place; false where that is not known. */
+static bool program_folders(char models[PROGRAM_FOLDERS][PATH_LIMIT + 32]) {
+  static const char *const relative[PROGRAM_FOLDERS] = {"../models", PERILAT_DATA_FOLDER "/models",
+                                                        "models"};
+  char program[PATH_LIMIT], folder[PATH_LIMIT];
   ssize_t n = readlink("/proc/self/exe", program, sizeof program - 1);
-  if (n <= 0) return NULL;
+  if (n <= 0) return false;
   program[n] = 0;
   folder_of(program, folder, sizeof folder);
-  static const char *const relative[] = {"../models", PERILAT_DATA_FOLDER "/models", "models"};
-  for (size_t k = 0; k < sizeof relative / sizeof *relative; k++) {
-    snprintf(models, sizeof models, "%s/%s", folder, relative[k]);
-    char *found = try_path(models, name);
-    if (found) return found;
-  }
-  return NULL;
+  for (int k = 0; k < PROGRAM_FOLDERS; k++)
+    snprintf(models[k], sizeof models[k], "%s/%s", folder, relative[k]);
+  return true;
+}
+
+static char *try_program_tree(const char *name) {
+  char models[PROGRAM_FOLDERS][PATH_LIMIT + 32], *found = NULL;
+  if (!program_folders(models)) return NULL;
+  for (int k = 0; k < PROGRAM_FOLDERS && !found; k++)
+    found = try_path(models[k], name);
+  return found;
+}
+
+bool model_confine(const char *file) {
+  char folder[PATH_LIMIT], models[PROGRAM_FOLDERS][PATH_LIMIT + 32];
+  const char *readable[PROGRAM_FOLDERS + 1];
+  int count = 0;
+  folder_of(file, folder, sizeof folder);
+  if (program_folders(models))
+    for (int k = 0; k < PROGRAM_FOLDERS; k++)
+      readable[count++] = models[k];
+  if (getenv("PERILAT_MODELS")) readable[count++] = getenv("PERILAT_MODELS");
+  return files_confine(folder, readable, count);
 }
 
 char *model_find(const char *name, const char *beside) {
@@ -228,6 +250,7 @@ void model_suggest(const char *name, const char *beside, diagnostics *said) {
 /* include "x.plm": beside the including file, then wherever models are found. */
 static char *read_include(void *context, const char *name, const char *from, char **found) {
   (void)context;
+  if (files_are_confined() && (name[0] == '/' || strstr(name, ".."))) return NULL;
   char *path = model_find(name, from);
   if (!path) return NULL;
   size_t length;

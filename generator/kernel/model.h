@@ -56,6 +56,10 @@ bool same_file(const char *a, const char *b);
    be NULL); in $PERILAT_MODELS; in models/ under the working folder and its parents; in the
    models of this program's source or installation tree. */
 char *model_find(const char *name, const char *beside);
+/* From here on the process reads files in the folder of `file` and those of the models that come
+   along, and writes in the first alone, whatever a law or a path names; what a law includes is
+   named neither by an absolute path nor by one with `..`. */
+bool model_confine(const char *file);
 /* Of a name that was not found: the hint "did you mean `x`?", x among the models where `elastic`
    is. */
 void model_suggest(const char *name, const char *beside, diagnostics *said);

@@ -109,6 +109,9 @@ void conclude(const run *r, double seconds, long steps) {
   conclude_deaths(r);
   fflush(stdout);
   warn_of_doubts(r);
+}
+
+void tell_result(const run *r) {
   long frames = (long)result_mark(r->result).count;
   printf("  written    %s (%ld frame%s) and its .xdmf for ParaView\n", r->result_path, frames,
          frames == 1 ? "" : "s");

@@ -5,8 +5,10 @@
 
 #include "generator/report/run_state.h"
 
-/* What came out. */
+/* What came out, to stdout, and how far it is to be trusted, to stderr. */
 void conclude(const run *r, double seconds, long steps);
+/* Where it is. */
+void tell_result(const run *r);
 /* Which &stop ended the run early. */
 void print_stop(const run *r);
 /* "end of the run", "stopped by &stop: load was below 5 % of its peak": how a run ended. */

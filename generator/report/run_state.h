@@ -33,6 +33,7 @@ typedef struct run {
   char started[32];
   double *frame_buffer;
   profile profile; /* with --profile */
+  const char *said_begin, *said_warnings; /* what was said before the march */
   /* How it ended: */
   const char *ending; /* "end", "stopped", "interrupted", "failed" */
   int signal;         /* that interrupted it, or 0 */

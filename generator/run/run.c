@@ -150,11 +150,29 @@ static int set_up(run *r) {
   return 0;
 }
 
-/* Of laws, then of the deck. */
-static void tell_all(const run *r) {
-  for (int k = 0; k < r->open_models; k++)
-    tell(r, &r->models[k].said);
-  tell(r, &r->said);
+/* Of laws, then of the deck. What is said is kept for the result. */
+static void tell_all(run *r) {
+  char *text = NULL;
+  size_t length;
+  FILE *kept = must_open_text(&text, &length);
+  for (int k = 0; k <= r->open_models; k++) {
+    const diagnostics *d = k < r->open_models ? &r->models[k].said : &r->said;
+    tell(r, d);
+    diag_print(d, kept);
+  }
+  must_close_text(kept);
+  r->said_warnings = arena_text(r->memory, text, length);
+  free(text);
+}
+
+/* The same of what is about to be done. */
+static void announce_kept(run *r) {
+  terminal_record said;
+  terminal_record_begin(&said);
+  announce(r);
+  terminal_record_end(&said);
+  r->said_begin = arena_text(r->memory, said.texts[0], said.lengths[0]);
+  terminal_record_show(&said);
 }
 
 static void let_go(run *r) {
@@ -279,13 +297,21 @@ static int execute(run *r) {
   const bool saved = stopped_by_user && written && write_checkpoint(r);
   if (status == STEP_BAD) report_bad(r);
   const run_end end = {status, exit_status(status, saved), seconds};
-  written = written && finish_result(r, &end);
+  terminal_record said;
+  terminal_record_begin(&said);
+  conclude(r, seconds, simulation_step_done(r->simulation) - first);
+  terminal_record_end(&said);
+  written = written && finish_result(r, &end, &said);
   if (!written) give_up_writing(r, status);
   if (written && !(stopped_by_user && r->is_kept)) remove_remains(r);
   stopping_release(&signals);
   r->is_written = written;
-  if (!written) return RUN_FAILED;
-  conclude(r, seconds, simulation_step_done(r->simulation) - first);
+  if (!written) {
+    terminal_record_drop(&said);
+    return RUN_FAILED;
+  }
+  terminal_record_show(&said);
+  tell_result(r);
   if (status == STEP_STOPPED) print_stop(r);
   if (r->options->profile) print_profile(r, seconds, simulation_step_done(r->simulation) - first);
   if (stopped_by_user) print_stopped(r, saved);
@@ -363,7 +389,7 @@ int run_deck(const run_options *o) {
     diag_print_topics(stderr); /* of these messages, not of the run's */
   if (o->report && (!o->check_only || o->modes)) diag_json_end(o->report, status == 0);
   if (!status) {
-    if (!o->report || !o->check_only) announce(&r);
+    if (!o->report || !o->check_only) announce_kept(&r);
     status = !o->check_only ? start(&r) : o->modes ? tell_modes(&r) : 0;
   }
   if (o->report && !o->check_only) put_run(o->report->document, &r);

@@ -441,6 +441,7 @@ result_header describe_result(run *r) {
                      .version = perilat_version,
                      .kernel_key = all_kernel_keys(r),
                      .threads = simulation_threads(r->simulation),
+                     .deck_name = r->options->deck_path,
                      .deck_text = r->sources.items[0].text,
                      .overrides = list_overrides(r)};
   h.models = collect_texts(r, false, &h.model_count);
@@ -565,7 +566,21 @@ void remove_remains(run *r) {
   result_discard(r->result);
 }
 
-bool finish_result(run *r, const run_end *end) {
+/* What the run said, but for nothing. */
+static int list_said(run *r, const terminal_record *said, result_text texts[3]) {
+  const char *warnings =
+      arena_printf(r->memory, "%s%s", r->said_warnings ? r->said_warnings : "", said->texts[1]);
+  const result_text all[] = {{"begin", r->said_begin ? r->said_begin : ""},
+                             {"end", said->texts[0]},
+                             {"warnings", warnings}};
+  int count = 0;
+  for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+    if (*all[k].text) texts[count++] = all[k];
+  return count;
+}
+
+bool finish_result(run *r, const run_end *end, const terminal_record *said) {
+  result_text texts[3];
   const int count = simulation_series_count(r->simulation);
   result_series *series = arena_alloc(r->memory, (size_t)count * sizeof *series);
   char ended[512], error[ERROR_LENGTH];
@@ -583,6 +598,8 @@ bool finish_result(run *r, const run_end *end) {
                      .steps = simulation_step_done(r->simulation),
                      .series = series,
                      .series_count = count};
+  e.said = texts;
+  e.said_count = list_said(r, said, texts);
   e.history_count = simulation_history(r->simulation, &e.time);
   const bool good = result_finish(r->result, &e, error, sizeof error);
   if (!good) say_error("%s", error);

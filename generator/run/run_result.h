@@ -2,6 +2,7 @@
 #ifndef PERILAT_GENERATOR_RUN_RESULT_H
 #define PERILAT_GENERATOR_RUN_RESULT_H
 
+#include "dsl/base/terminal.h"
 #include "generator/report/run_state.h"
 
 void choose_paths(run *r);
@@ -24,7 +25,7 @@ bool begin_anew(run *r);
 bool resume(run *r);
 bool write_frame(run *r);
 bool write_checkpoint(run *r);
-bool finish_result(run *r, const run_end *end);
+bool finish_result(run *r, const run_end *end, const terminal_record *said);
 /* When what has been written is complete: no checkpoint, no frames beside the result. */
 void remove_remains(run *r);
 /* A checkpoint stands, and the frames that it counts on. */

@@ -6,8 +6,6 @@
 
 #include "dsl/base/json.h"
 
-/* Whether the file is one that can be read. */
-bool study_is_table(const char *path);
 /* Prints it, or puts `columns` and `cases` into the document. False after a message. */
 bool study_info(const char *path, json *w);
 

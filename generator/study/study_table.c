@@ -238,6 +238,19 @@ static bool write_columns(hid_t file, const study_table *t) {
   return good;
 }
 
+/* Which columns are shown, in their order, a line each. */
+static bool write_shown(hid_t file, const study_table *t) {
+  char *text = NULL;
+  size_t length;
+  FILE *out = must_open_text(&text, &length);
+  for (int k = 0; k < t->column_count; k++)
+    if (t->columns[k].shown) fprintf(out, "%s\n", t->columns[k].name);
+  must_close_text(out);
+  const bool good = h5_attribute_text(file, "shown", text);
+  free(text);
+  return good;
+}
+
 static bool write_curve(hid_t file, const study_row *row) {
   char group[1000], path[1100];
   if (!row->there) return true;
@@ -258,7 +271,7 @@ static bool write_file(const char *path, const study_table *t, const study_row *
   h5_quiet();
   const hid_t file = h5_create(path);
   if (file < 0) return false;
-  bool good = write_columns(file, t) && h5_make_group(file, "/cases");
+  bool good = write_columns(file, t) && write_shown(file, t) && h5_make_group(file, "/cases");
   for (int r = 0; r < t->rows && good; r++)
     good = write_curve(file, &rows[r]);
   for (int r = 0; r < t->rows && good; r++)

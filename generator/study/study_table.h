@@ -10,6 +10,7 @@ typedef struct study_column {
   const char **texts;      /* [rows] */
   double *values;          /* [rows] in SI, or of a varied key in the unit that it was given in */
   bool shown;              /* when the table is printed */
+  int place;               /* of a table that is read: where it is shown */
 } study_column;
 
 typedef struct study_table {

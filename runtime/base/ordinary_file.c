@@ -6,6 +6,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "runtime/base/confined.h"
+
 static const char *objection(int file, int flags) {
   struct stat about;
   if (fstat(file, &about) != 0) return strerror(errno);
@@ -15,6 +17,11 @@ static const char *objection(int file, int flags) {
 }
 
 int ordinary_file_open(const char *path, int flags, const char **why) {
+  const bool writes = (flags & O_ACCMODE) != O_RDONLY;
+  if (writes ? !file_may_be_written(path) : !file_may_be_read(path)) {
+    *why = "it is none of the files that may be used here";
+    return -1;
+  }
   const int file = open(path, flags | O_NONBLOCK | O_CLOEXEC, 0666);
   if (file < 0) {
     *why = errno == ELOOP && (flags & O_NOFOLLOW) ? "it is a link" : strerror(errno);

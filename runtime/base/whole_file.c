@@ -9,6 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "runtime/base/confined.h"
+
 static const char ending[] = ".part";
 
 static bool is_direct(const whole_file *f) {
@@ -29,6 +31,10 @@ static bool make_working(whole_file *f) {
 
 bool whole_file_begin(whole_file *f, const char *path) {
   struct stat about;
+  if (!file_may_be_written(path)) {
+    errno = EACCES;
+    return false;
+  }
   const bool exists = stat(path, &about) == 0, ordinary = !exists || S_ISREG(about.st_mode);
   char *target = exists && ordinary ? realpath(path, NULL) : NULL;
   const int length = snprintf(f->target, sizeof f->target, "%s", target ? target : path);

@@ -208,33 +208,28 @@ static const plot_mesh *mesh_of(const plot_meshes *m, const plot_crack *k) {
   return NULL;
 }
 
-/* One face of the legs from point `from` to point `to`; side is 1 on the left. */
-static void trace_face(canvas *c, const plot_mesh *m, const mesh_view *v, const map_place *at,
-                       const plot_crack *k, long from, long to, double side) {
-  for (long n = from; n < to; n++) {
-    const double *a = k->points + 2 * n, *b = a + 2;
-    const double way[2] = {b[0] - a[0], b[1] - a[1]}, length = pl_hypot(way[0], way[1]);
-    const int parts = (int)pl_fmin(pl_fmax(ceil(4 * length / m->size), 1), 2000);
-    const double off = 1e-3 * m->size / pl_fmax(length, 1e-300);
-    for (int q = n == from ? 0 : 1; q <= parts; q++) {
-      const double u = (double)q / parts, point[2] = {a[0] + u * way[0], a[1] + u * way[1]},
-                   beside[2] = {-side * off * way[1], side * off * way[0]};
-      double moved[2], shown[2];
-      plot_mesh_face(m, v, point, beside, moved);
-      place(at, moved, shown);
-      if (n == from && q == 0)
-        cairo_move_to(c->cr, shown[0], shown[1]);
-      else
-        cairo_line_to(c->cr, shown[0], shown[1]);
-    }
-  }
+typedef struct tracing {
+  canvas *c;
+  const map_place *at;
+  bool begun;
+} tracing;
+
+static void trace_point(void *context, const double moved[2]) {
+  tracing *t = context;
+  double shown[2];
+  place(t->at, moved, shown);
+  if (t->begun)
+    cairo_line_to(t->c->cr, shown[0], shown[1]);
+  else
+    cairo_move_to(t->c->cr, shown[0], shown[1]);
+  t->begun = true;
 }
 
 static void draw_legs(canvas *c, const plot_mesh *m, const mesh_view *v, const map_place *at,
                       const plot_crack *k, long from, long to, double width) {
   if (to <= from || !(m->size > 0)) return;
-  trace_face(c, m, v, at, k, from, to, 1);
-  trace_face(c, m, v, at, k, from, to, -1);
+  for (int side = 1; side >= -1; side -= 2)
+    plot_mesh_crack_face(m, v, k, from, to, side, trace_point, &(tracing){c, at, false});
   cairo_set_line_width(c->cr, width);
   cairo_stroke(c->cr);
 }

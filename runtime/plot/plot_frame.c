@@ -683,22 +683,13 @@ static void describe_extents(plot_frame *m) {
   }
 }
 
-bool plot_frame_read(plot_frame *m, const char *path, const plot_map_options *o, char *error,
-                     size_t size) {
-  *m = (plot_frame){.factor = 1, .damage_of = "damage of bonds:"};
-  result_file *f = result_read(path, error, size);
-  if (!f) return false;
-  bool good = read_frame(f, path, m, o, error, size);
-  if (result_trouble(f)) {
-    snprintf(error, size, "%s", result_trouble(f));
-    good = false;
-  }
-  result_read_close(f);
-  if (good && m->dimensions == 2 && o->slice_axis >= 0) {
+/* What is shown of what was read. */
+static bool show_frame(plot_frame *m, const plot_map_options *o, char *error, size_t size) {
+  bool good = true;
+  if (m->dimensions == 2 && o->slice_axis >= 0) {
     snprintf(error, size, "a slice is cut out of a body in space; this one is in the plane");
-    good = false;
+    return false;
   }
-  if (!good) return false;
   const bool crowded = m->of_damage && has_crowded_bonds(m);
   const bool surface = m->dimensions == 3 && o->slice_axis < 0;
   if (m->second && (crowded || surface)) {
@@ -714,5 +705,26 @@ bool plot_frame_read(plot_frame *m, const char *path, const plot_map_options *o,
   if (surface) take_surface(m, o->component);
   if (m->dimensions == 3 && o->slice_axis >= 0) good = take_slice(m, o, error, size);
   if (crowded || m->surface) m->bonds = 0;
+  return good;
+}
+
+bool plot_frame_take(plot_frame *m, result_file *f, const char *path, const plot_map_options *o,
+                     char *error, size_t size) {
+  *m = (plot_frame){.factor = 1, .damage_of = "damage of bonds:"};
+  bool good = read_frame(f, path, m, o, error, size);
+  if (result_trouble(f)) {
+    snprintf(error, size, "%s", result_trouble(f));
+    good = false;
+  }
+  return good && show_frame(m, o, error, size);
+}
+
+bool plot_frame_read(plot_frame *m, const char *path, const plot_map_options *o, char *error,
+                     size_t size) {
+  *m = (plot_frame){.factor = 1};
+  result_file *f = result_read(path, error, size);
+  if (!f) return false;
+  const bool good = plot_frame_take(m, f, path, o, error, size);
+  result_read_close(f);
   return good;
 }

@@ -43,6 +43,9 @@ typedef struct plot_frame {
 /* False with a sentence in `error`. To be freed in either case. */
 bool plot_frame_read(plot_frame *m, const char *path, const plot_map_options *o, char *error,
                      size_t size);
+/* The same of a result that is open, whose path is named in sentences. */
+bool plot_frame_take(plot_frame *m, result_file *f, const char *path, const plot_map_options *o,
+                     char *error, size_t size);
 void plot_frame_free(plot_frame *m);
 
 /* Component of value k, or its size for component -1. */

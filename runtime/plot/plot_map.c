@@ -13,6 +13,7 @@
 #include "runtime/base/quantity.h"
 #include "runtime/plot/canvas.h"
 #include "runtime/plot/colour_scale.h"
+#include "runtime/plot/damage_classes.h"
 #include "runtime/plot/plot_cells.h"
 #include "runtime/plot/plot_frame.h"
 #include "runtime/plot/plot_map.h"
@@ -30,19 +31,7 @@ enum {
   MOST_HEIGHT = 1500
 };
 
-typedef struct damage_class {
-  double up_to;
-  colour ink;
-  const char *text; /* of two damages: what stands behind the name of one */
-  int of;           /* of two damages: 0, 1 */
-} damage_class;
-
-/* The worse below the better; the last is that of separated bonds. */
-enum { CLASSES = 6, KINDS = 5, SEPARATED = CLASSES - 1 };
-static const damage_class classes[CLASSES] = {
-    {0.0, {0.80, 0.82, 0.85}, "sound", 0},     {0.3, {0.95, 0.80, 0.10}, "0 - 0.3", 0},
-    {0.6, {0.95, 0.50, 0.05}, "0.3 - 0.6", 0}, {0.8, {0.55, 0.30, 0.10}, "0.6 - 0.8", 0},
-    {1.0, {0.85, 0.05, 0.05}, "0.8 - 1", 0},   {INFINITY, {0, 0, 0}, "separated", 0}};
+enum { CLASSES = DAMAGE_CLASSES, KINDS = 5, SEPARATED = CLASSES - 1 };
 static const damage_class kinds[KINDS] = {{0.0, {0.80, 0.82, 0.85}, "sound", 0},
                                           {1.0, {0.95, 0.80, 0.10}, " below 1", 0},
                                           {1.0, {0.35, 0.70, 0.95}, " below 1", 1},
@@ -145,16 +134,8 @@ static double at_y(const map *m, double y) {
   return m->at.origin_y - (y - m->at.bottom) * m->at.scale;
 }
 
-static int class_of(double damage) {
-  if (damage >= 1) return SEPARATED;
-  int k = 0;
-  while (k < SEPARATED - 1 && damage > classes[k].up_to)
-    k++;
-  return k;
-}
-
 static const damage_class *classes_of(const map *m) {
-  return m->frame.second ? kinds : classes;
+  return m->frame.second ? kinds : damage_classes;
 }
 static int class_count(const map *m) {
   return m->frame.second ? KINDS : CLASSES;
@@ -165,7 +146,7 @@ static int class_of_bond(const map *m, long b) {
   if (!m->frame.damage) return 0;
   const double damage = m->frame.damage[b];
   if (isnan(damage)) return NO_CLASS;
-  if (!m->frame.second) return class_of(damage);
+  if (!m->frame.second) return damage_class_of(damage);
   if (!(damage > 0)) return 0;
   const bool second = m->frame.second[b] > 0;
   return damage >= 1 ? second ? KINDS - 2 : KINDS - 1 : second ? 2 : 1;
@@ -217,7 +198,7 @@ static void draw_bonds(canvas *c, const map *m, bool coloured) {
 
 static colour particle_colour(const map *m, long p, int component, double low, double high) {
   const double value = plot_frame_value(&m->frame, p, component);
-  if (m->frame.of_damage) return classes[class_of(value)].ink;
+  if (m->frame.of_damage) return damage_classes[damage_class_of(value)].ink;
   return isnan(value) ? scale_no_value : scale_colour(scale_part(value, low, high));
 }
 
@@ -253,7 +234,7 @@ static void draw_particles(canvas *c, const map *m, int component, double low, d
     for (long p = 0; p < m->frame.particles; p++) {
       const bool ball = coloured && !is_dot(m, p, component);
       if (nodes && nodes[p]) continue;
-      if ((by_class ? class_of(m->frame.values[p]) : ball ? BALLS : DOTS) != k) continue;
+      if ((by_class ? damage_class_of(m->frame.values[p]) : ball ? BALLS : DOTS) != k) continue;
       draw_particle(c, m, p, coloured ? particle_colour(m, p, component, low, high) : plain_ink,
                     pl_fmax(0.7, ball ? whole : 0.2 * whole), ball && m->frame.surface);
     }
@@ -417,7 +398,7 @@ static void find_classes(const map *m, bool occurs[CLASSES]) {
   for (long b = 0; b < m->frame.bonds; b++)
     if (class_of_bond(m, b) != NO_CLASS) occurs[class_of_bond(m, b)] = true;
   for (long p = 0; m->frame.of_damage && m->frame.values && p < m->frame.value_count; p++)
-    occurs[class_of(m->frame.values[p])] = true;
+    occurs[damage_class_of(m->frame.values[p])] = true;
 }
 
 static void draw_damage_legend(canvas *c, const sheet *s) {
@@ -520,9 +501,9 @@ static void draw_crack_legend(canvas *c, const sheet *s) {
     for (long b = 0; b < s->panels[n].frame.bonds; b++)
       any = any || is_separated(&s->panels[n], b);
   if (!any) return;
-  canvas_colour(c, classes[SEPARATED].ink);
+  canvas_colour(c, damage_classes[SEPARATED].ink);
   canvas_line(c, x, y, x + 28, y, 5);
-  canvas_text(c, x + 36, y + 6, 18, ANCHOR_LEFT, classes[SEPARATED].text);
+  canvas_text(c, x + 36, y + 6, 18, ANCHOR_LEFT, damage_classes[SEPARATED].text);
 }
 
 /* --- the picture ------------------------------------------------------------------------------ */

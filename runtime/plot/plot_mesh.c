@@ -370,6 +370,27 @@ void plot_mesh_face(const plot_mesh *m, const mesh_view *v, const double at[2],
     }
 }
 
+void plot_mesh_crack_face(const plot_mesh *m, const mesh_view *v, const plot_crack *k, long from,
+                          long to, double side, crack_point *take, void *context) {
+  for (long n = from; n < to; n++) {
+    const double *a = k->points + 2 * n, *b = a + 2;
+    const double way[2] = {b[0] - a[0], b[1] - a[1]}, length = pl_hypot(way[0], way[1]);
+    const int parts = (int)pl_fmin(pl_fmax(ceil(4 * length / m->size), 1), 2000);
+    const double off = 1e-3 * m->size / pl_fmax(length, 1e-300);
+    for (int q = n == from ? 0 : 1; q <= parts; q++) {
+      const double u = (double)q / parts, point[2] = {a[0] + u * way[0], a[1] + u * way[1]},
+                   beside[2] = {-side * off * way[1], side * off * way[0]};
+      double moved[2];
+      plot_mesh_face(m, v, point, beside, moved);
+      take(context, moved);
+    }
+  }
+}
+
+bool plot_mesh_is_cut(const plot_mesh *m, const mesh_view *v, long cell) {
+  return view_of(m, v, cell).near_count > 0;
+}
+
 /* --- outline ---------------------------------------------------------------------------------- */
 
 typedef struct cell_side {

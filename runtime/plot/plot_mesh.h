@@ -57,6 +57,13 @@ void plot_mesh_parts(const plot_mesh *m, const mesh_view *v, int whole, int cut,
    which its side lies. */
 void plot_mesh_face(const plot_mesh *m, const mesh_view *v, const double at[2],
                     const double side[2], double moved[2]);
+/* One face of the crack's legs from point `from` to point `to`, in points near to each other; side
+   is 1 on the left, -1 on the right. */
+typedef void crack_point(void *context, const double moved[2]);
+void plot_mesh_crack_face(const plot_mesh *m, const mesh_view *v, const plot_crack *k, long from,
+                          long to, double side, crack_point *take, void *context);
+/* Whether a crack cuts the cell, so that it comes in `cut` parts. */
+bool plot_mesh_is_cut(const plot_mesh *m, const mesh_view *v, long cell);
 /* Sides of cells that belong to one cell alone, in pairs of particles, [*count][2]; to be freed. */
 int32_t *plot_mesh_outline(const plot_mesh *m, long *count);
 

@@ -335,6 +335,7 @@ static bool write_attributes(hid_t file, const result_header *h, const result_en
   return h5_attribute_text(file, "perilat_version", h->version) &&
          h5_attribute_text(file, "started", h->started) &&
          h5_attribute_text(file, "title", h->title) &&
+         h5_attribute_text(file, "deck", h->deck_name ? h->deck_name : "") &&
          h5_attribute_text(file, "kernel_key", h->kernel_key) &&
          h5_attribute_text(file, "compiler", h->compiler ? h->compiler : "") &&
          h5_attribute_text(file, "flags", h->flags ? h->flags : "") &&
@@ -351,6 +352,7 @@ static bool write_hdf5(const result *r, const result_ending *e, frame_sets *fram
   if (file < 0) return false;
   const bool good =
       write_attributes(file, &r->header, e) && write_input(file, &r->header) &&
+      (e->said_count == 0 || write_texts(file, "/said", e->said, e->said_count)) &&
       write_particles(file, &r->header) && mesh_views_write_meshes(file, &r->header) &&
       write_history(file, &r->header, e) && write_frames(file, r, frames, error, size) &&
       views_write(file, &r->header, &frames->meshes, frames->count);

@@ -4,8 +4,9 @@
    stable:
 
      /                      attributes seal (sealed_file.h), perilat_version, started (ISO 8601),
-                            title, dt, steps, kernel_key, compiler, flags (of the kernels), threads,
+                            title, deck (its name), dt, steps, kernel_key, compiler, flags (of the kernels), threads,
                             ended (how, in words), status (of exit), wall_seconds
+     /said/<when>           what the run said: begin, end, warnings (only where it said any)
      /input/deck            text; /input/set: what --set changed in it, one a line (only then);
                             /input/models/<name> law text; /input/kernels/<name> generated C;
                             /input/files/<name> tables of loads (only then)
@@ -111,6 +112,7 @@ typedef struct result_header {
   const char *title, *started, *version, *kernel_key;
   const char *compiler, *flags; /* of the kernels */
   int threads;
+  const char *deck_name; /* of its file, as it was given; NULL: not known */
   const char *deck_text;
   const char *overrides; /* of --set, one a line; NULL or "" without */
   const result_text *models, *kernels;
@@ -134,9 +136,11 @@ typedef struct result_header {
 } result_header;
 
 typedef struct result_ending {
-  const char *ended; /* how, in words */
-  int status;        /* of exit */
-  double seconds;    /* wall time since the run began or was resumed */
+  const char *ended;       /* how, in words */
+  const result_text *said; /* [said_count] what the run said: "begin", ... */
+  int said_count;
+  int status;     /* of exit */
+  double seconds; /* wall time since the run began or was resumed */
   double dt;
   long steps;
   const double *time; /* [history_count] */

@@ -1,0 +1,10 @@
+# Writes the style and the script of a page (`perilat report`) as C constants.
+file(WRITE ${OUT} "/* Generated from generator/page/page.css and page.js. */\n#include \"generator/page/assets.h\"\n")
+foreach(pair "style;css" "script;js")
+  list(GET pair 0 name)
+  list(GET pair 1 ending)
+  file(READ ${SOURCE_DIR}/generator/page/page.${ending} hex HEX)
+  string(REGEX REPLACE "([0-9a-f][0-9a-f])" "(char)0x\\1," bytes "${hex}")
+  string(REGEX REPLACE "(((char).0x..,){24})" "\\1\n" bytes "${bytes}")
+  file(APPEND ${OUT} "const char page_${name}[] = {\n${bytes}0};\n")
+endforeach()

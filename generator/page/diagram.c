@@ -1,0 +1,184 @@
+#include "generator/page/diagram.h"
+
+#include <math.h>
+
+#include "dsl/base/elementary.h"
+#include "dsl/base/units.h"
+#include "generator/page/html.h"
+#include "runtime/plot/plot_axes.h"
+
+typedef struct drawing {
+  const diagram *d;
+  FILE *out;
+  axis x, y;
+} drawing;
+
+static void widen(const double *values, long count, double *low, double *high) {
+  for (long k = 0; k < count; k++)
+    if (isfinite(values[k])) {
+      *low = pl_fmin(*low, values[k]);
+      *high = pl_fmax(*high, values[k]);
+    }
+}
+
+static bool choose_axes(drawing *w) {
+  const diagram *d = w->d;
+  double low[2] = {INFINITY, d->stacked ? 0 : INFINITY},
+         high[2] = {-INFINITY, d->stacked ? 0 : -INFINITY};
+  char none[256];
+  for (int k = 0; k < d->count; k++) {
+    widen(d->curves[k].x, d->curves[k].count, &low[0], &high[0]);
+    widen(d->curves[k].y, d->curves[k].count, &low[1], &high[1]);
+  }
+  return axis_set(&w->x, d->x_name, d->x_unit, NULL, low[0], high[0], none, sizeof none) &&
+         axis_set(&w->y, d->y_name, d->y_unit, NULL, low[1], high[1], none, sizeof none);
+}
+
+/* --- axes ------------------------------------------------------------------------------------- */
+
+static void put_number(const drawing *w, const axis *a, double shown, double x, double y,
+                       const char *side) {
+  fprintf(w->out, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">%.6g</text>\n", x, y, side,
+          fabs(shown) < 1e-9 * a->step ? 0 : shown);
+}
+
+static void put_grid(const drawing *w) {
+  const axis *x = &w->x, *y = &w->y;
+  const long nx = lround((x->high - x->low) / x->step), ny = lround((y->high - y->low) / y->step);
+  fputs("<path class=\"grid\" d=\"", w->out);
+  for (long k = 0; k <= nx; k++)
+    fprintf(w->out, "M%.1f %dV%d", axis_along_x(x, (x->low + (double)k * x->step) / x->factor),
+            DIAGRAM_TOP, DIAGRAM_BOTTOM);
+  for (long k = 0; k <= ny; k++)
+    fprintf(w->out, "M%d %.1fH%d", DIAGRAM_LEFT,
+            axis_along_y(y, (y->low + (double)k * y->step) / y->factor), DIAGRAM_RIGHT);
+  fputs("\"/>\n<path class=\"axis\" d=\"", w->out);
+  if (y->low < 0 && y->high > 0)
+    fprintf(w->out, "M%d %.1fH%d", DIAGRAM_LEFT, axis_along_y(y, 0), DIAGRAM_RIGHT);
+  fprintf(w->out, "M%d %dV%dH%d\"/>\n", DIAGRAM_LEFT, DIAGRAM_TOP, DIAGRAM_BOTTOM, DIAGRAM_RIGHT);
+  for (long k = 0; k <= nx; k++) {
+    const double shown = x->low + (double)k * x->step;
+    if (nx <= 8 || k % 2 == 0)
+      put_number(w, x, shown, axis_along_x(x, shown / x->factor), DIAGRAM_BOTTOM + 34, "middle");
+  }
+  for (long k = 0; k <= ny; k++) {
+    const double shown = y->low + (double)k * y->step;
+    if (ny <= 8 || k % 2 == 0)
+      put_number(w, y, shown, DIAGRAM_LEFT - 14, axis_along_y(y, shown / y->factor) + 9, "end");
+  }
+}
+
+static void put_name(const drawing *w, const axis *a) {
+  html_text(w->out, a->name);
+  if (unit_is_pure(a->unit_text)) return;
+  fputs(" [", w->out);
+  html_unit(w->out, a->unit_text);
+  fputc(']', w->out);
+}
+
+static void put_names(const drawing *w) {
+  const double middle = (DIAGRAM_TOP + DIAGRAM_BOTTOM) / 2.0;
+  fprintf(w->out, "<text class=\"name\" x=\"%d\" y=\"%d\" text-anchor=\"end\">", DIAGRAM_RIGHT,
+          DIAGRAM_HEIGHT - 22);
+  put_name(w, &w->x);
+  fprintf(w->out,
+          "</text>\n<text class=\"name\" x=\"30\" y=\"%.0f\" text-anchor=\"middle\" "
+          "transform=\"rotate(-90 30 %.0f)\">",
+          middle, middle);
+  put_name(w, &w->y);
+  fputs("</text>\n", w->out);
+}
+
+/* --- curves ----------------------------------------------------------------------------------- */
+
+/* Points nearer than this to the one before, in the picture's units, are not seen. */
+#define NEAR 0.7
+
+/* From `first` on in steps of 1 or -1; what is no number is left out, and a curve begins anew. */
+static void put_points(const drawing *w, const double *xs, const double *ys, long count,
+                       bool backwards, bool joined) {
+  double last[2] = {NAN, NAN};
+  bool pen = joined;
+  for (long k = 0; k < count; k++) {
+    const long n = backwards ? count - 1 - k : k;
+    if (!isfinite(xs[n]) || !isfinite(ys[n])) {
+      pen = pen && joined;
+      continue;
+    }
+    const double x = axis_along_x(&w->x, xs[n]), y = axis_along_y(&w->y, ys[n]);
+    if (pen && fabs(x - last[0]) + fabs(y - last[1]) < NEAR && k + 1 < count) continue;
+    fprintf(w->out, "%c%.1f %.1f", pen ? 'L' : 'M', x, y);
+    last[0] = x;
+    last[1] = y;
+    pen = true;
+  }
+}
+
+static void put_curve(const drawing *w, const diagram_curve *c) {
+  fprintf(w->out, "<path class=\"curve ink%d dash%d\" d=\"", c->ink % 8, c->ink / 8 % 4);
+  put_points(w, c->x, c->y, c->count, false, false);
+  fputs("\"/>\n", w->out);
+}
+
+/* Between the curve and the one below it, or zero. */
+static void put_area(const drawing *w, const diagram_curve *c, const diagram_curve *below) {
+  fprintf(w->out, "<path class=\"area ink%d\" d=\"", c->ink % 8);
+  put_points(w, c->x, c->y, c->count, false, false);
+  if (below)
+    put_points(w, below->x, below->y, below->count, true, true);
+  else if (c->count > 0)
+    fprintf(w->out, "L%.1f %.1fL%.1f %.1f", axis_along_x(&w->x, c->x[c->count - 1]),
+            axis_along_y(&w->y, 0), axis_along_x(&w->x, c->x[0]), axis_along_y(&w->y, 0));
+  fputs("Z\"/>\n", w->out);
+}
+
+/* Of each curve with data its ink, its result and the name of its series; what they are drawn
+   over. */
+static void put_series(const drawing *w) {
+  if (!w->d->over) return;
+  fputs(" data-over=\"", w->out);
+  html_text(w->out, w->d->over);
+  fputs("\" data-series=\"", w->out);
+  for (int k = 0; k < w->d->count; k++) {
+    const diagram_curve *c = &w->d->curves[k];
+    if (!c->series) continue;
+    fprintf(w->out, "%d:%s:", c->ink % 8, c->of);
+    html_text(w->out, c->series);
+    fputc(';', w->out);
+  }
+  fputc('"', w->out);
+}
+
+/* Where shown values stand: the script moves its dot and reads the pointer by them. */
+static void put_head(const drawing *w) {
+  const axis *x = &w->x, *y = &w->y;
+  fprintf(w->out,
+          "<svg class=\"diagram%s\" viewBox=\"0 %d %d %d\" role=\"img\" "
+          "data-x=\"%.17g %.17g %.17g\" data-y=\"%.17g %.17g %.17g\" data-x-unit=\"",
+          w->d->large ? " large" : "", DIAGRAM_TOP - 20, DIAGRAM_WIDTH,
+          DIAGRAM_HEIGHT - DIAGRAM_TOP + 20, x->low, x->high, x->factor, y->low, y->high,
+          y->factor);
+  html_text(w->out, x->unit_text);
+  fputs("\" data-y-unit=\"", w->out);
+  html_text(w->out, y->unit_text);
+  fputc('"', w->out);
+  put_series(w);
+  fputs(" aria-label=\"", w->out);
+  html_text(w->out, w->d->title);
+  fputs("\">\n", w->out);
+}
+
+bool diagram_svg(FILE *out, const diagram *d) {
+  drawing w = {.d = d, .out = out};
+  if (!choose_axes(&w)) return false;
+  put_head(&w);
+  put_grid(&w);
+  put_names(&w);
+  for (int k = 0; k < d->count; k++)
+    if (d->stacked)
+      put_area(&w, &d->curves[k], k ? &d->curves[k - 1] : NULL);
+    else
+      put_curve(&w, &d->curves[k]);
+  fputs("</svg>\n", out);
+  return true;
+}
