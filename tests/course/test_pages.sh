@@ -58,6 +58,16 @@ for exercise in "$course"/*/exercise.nml; do
     fault "TEACHING.md: $folder does not have $minutes minutes and $wrong wrong laws"
 done
 
+# What students get: nothing that is the teacher's, and it says of an answer what can be said without that.
+for folder in 01_one_bond 07_time_step; do
+  "$program" grade "$course/$folder" --publish "$work/$folder" >"$work/said" 2>&1 || fault "$folder is not published: $(cat "$work/said")"
+  [ ! -e "$work/$folder/teacher" ] || fault "$folder: the teacher's folder is published"
+  for right in "$course/$folder"/teacher/solution.*; do
+    "$program" grade "$work/$folder" "$right" >"$work/said" 2>&1 || fault "$folder: the solution is not right in what students have: $(cat "$work/said")"
+    grep -q 'judged by the teacher' "$work/said" || fault "$folder: nothing is hidden"
+  done
+done
+
 # The numbers of 07_time_step are those that perilat finds. $1: name in solution.txt; $2: of the law; then options of info
 solution=$course/07_time_step/teacher/solution.txt
 value_of() { sed -n "s/^$1 *= *\([0-9.e+-]*\).*/\1/p" "$solution"; }
