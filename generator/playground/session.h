@@ -7,4 +7,11 @@
    the standard output and error stream. Returns its exit status. */
 int play_command(const char *line);
 
+/* The words of the language, for colours: a line for each kind, its name and then the words. Until
+   the next call. */
+const char *play_words(void);
+
+/* A formula of `perilat explain`, between its dollars, as MathML. Until the next call. */
+const char *play_formula(const char *latex);
+
 #endif

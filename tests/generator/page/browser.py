@@ -1,93 +1,24 @@
 """A page of `perilat report` in a browser, as a person has it: no error on the console, nothing asked of any network,
 the slider moves the frame and the dots on the curves, the pointer reads what `export` tells; without script all is
-there. Arguments: chromium, perilat, the source folder. Speaks the protocol of Chrome's developer tools over pipes."""
+there. Arguments: chromium, perilat, the source folder."""
 
 import csv
-import json
 import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+from chromium import Browser  # noqa: E402
+
 CHROMIUM, PERILAT, SOURCE = sys.argv[1:4]
 
 
-class Browser:
-    def __init__(self, folder):
-        to_read, self.to = os.pipe()
-        self.back, to_write = os.pipe()
-        command = [
-            "sh", "-c", 'exec "$@" 3<&%d 4>&%d' % (to_read, to_write), "sh", CHROMIUM, "--headless=new", "--no-sandbox",
-            "--disable-gpu", "--remote-debugging-pipe", "--no-first-run", "--disable-background-networking",
-            "--user-data-dir=%s" % folder, "about:blank",
-        ]
-        self.process = subprocess.Popen(command, pass_fds=(to_read, to_write), stderr=subprocess.DEVNULL)
-        os.close(to_read)
-        os.close(to_write)
-        self.rest, self.number, self.events, self.session = b"", 0, [], None
-
-    def receive(self):
-        while b"\0" not in self.rest:
-            part = os.read(self.back, 1 << 16)
-            if not part:
-                sys.exit("the browser has gone")
-            self.rest += part
-        text, self.rest = self.rest.split(b"\0", 1)
-        return json.loads(text)
-
-    def ask(self, method, **parameters):
-        self.number += 1
-        message = {"id": self.number, "method": method, "params": parameters}
-        if self.session:
-            message["sessionId"] = self.session
-        os.write(self.to, json.dumps(message).encode() + b"\0")
-        while True:
-            answer = self.receive()
-            if answer.get("id") == self.number:
-                if "error" in answer:
-                    sys.exit("%s: %s" % (method, answer["error"]))
-                return answer["result"]
-            self.events.append(answer)
-
-    def wait_for(self, method):
-        while True:
-            for k, event in enumerate(self.events):
-                if event.get("method") == method:
-                    del self.events[k]
-                    return
-            self.events.append(self.receive())
-
-    def open(self, path, script=True):
-        self.session = None
-        target = self.ask("Target.createTarget", url="about:blank")["targetId"]
-        self.session = self.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
-        self.events = []
-        for domain in ("Page", "Runtime", "Network", "Log"):
-            self.ask(domain + ".enable")
-        self.ask("Emulation.setDeviceMetricsOverride", width=1200, height=900, deviceScaleFactor=1, mobile=False)
-        self.ask("Emulation.setScriptExecutionDisabled", value=not script)
-        self.ask("Page.navigate", url=path.as_uri())
-        self.wait_for("Page.loadEventFired")
-
-    def value(self, expression):
-        answer = self.ask("Runtime.evaluate", expression=expression, returnByValue=True)
-        if "exceptionDetails" in answer:
-            sys.exit("%s: %s" % (expression, answer["exceptionDetails"]))
-        return answer["result"].get("value")
-
-    def complaints(self):
-        """What went wrong in the page, and what it asked for."""
-        found = []
-        for event in self.events:
-            method, values = event.get("method", ""), event.get("params", {})
-            if method in ("Runtime.exceptionThrown", "Log.entryAdded", "Runtime.consoleAPICalled"):
-                found.append("%s: %s" % (method, json.dumps(values)[:400]))
-            if method == "Network.requestWillBeSent":
-                url = values["request"]["url"]
-                if not url.startswith(("file:", "data:")):
-                    found.append("asked for " + url)
-        return found
+def wrong(browser):
+    """What went wrong in the page, and what it asked for."""
+    asked = [url for url in browser.requests() if not url.startswith(("file:", "data:"))]
+    return browser.complaints() + ["asked for " + url for url in asked]
 
 
 def check(good, what):
@@ -109,7 +40,7 @@ def picture_sum(browser):
 
 def try_page(browser, folder, result):
     page = folder / "page.html"
-    browser.open(page)
+    browser.open(page.as_uri())
     frames = browser.value("document.querySelector('input[type=range]').max")
     check(int(frames) >= 3, "there are frames to choose from")
     dot = "document.querySelector('svg.diagram .dot:not(.read)').getAttribute('cx')"
@@ -124,7 +55,7 @@ def try_page(browser, folder, result):
     for field in range(int(browser.value("document.querySelector('.movie select').options.length"))):
         browser.value("{ const c = document.querySelector('.movie select'); c.selectedIndex = %d;"
                       "  c.dispatchEvent(new Event('change')); }" % field)
-    check(browser.complaints() == [], "no error and no request: %s" % browser.complaints())
+    check(wrong(browser) == [], "no error and no request: %s" % wrong(browser))
 
     table = list(csv.reader(subprocess.run([PERILAT, "export", result, "--history", "load"], cwd=folder,
                                            capture_output=True, text=True, check=True).stdout.splitlines()))
@@ -141,8 +72,8 @@ def try_page(browser, folder, result):
     nearest = min(range(len(times)), key=lambda k: abs(times[k] * x_factor - time))
     check("%.6g" % (loads[nearest] * y_factor) == "%.6g" % load, "the pointer reads what export tells: " + words)
 
-    browser.open(page, script=False)
-    check(browser.complaints() == [], "without script no error and no request")
+    browser.open(page.as_uri(), script=False)
+    check(wrong(browser) == [], "without script no error and no request")
     wide = browser.ask("Page.getLayoutMetrics")["cssContentSize"]["width"]
     check(wide <= 1200, "the page is no wider than the window")
 
@@ -156,7 +87,7 @@ def main():
                         "simulation.end_time=6 ms"], cwd=folder, env=environment, check=True,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         subprocess.run([PERILAT, "report", "beam.h5", "-o", "page.html"], cwd=folder, check=True)
-        browser = Browser(folder / "profile")
+        browser = Browser(CHROMIUM, folder / "profile")
         try:
             try_page(browser, folder, "beam.h5")
         finally:
