@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # What the pages of the course say is so: the first fifteen minutes, word by word; what starters still ask for; minutes, and how many
-# wrong laws there are; the numbers of 07_time_step beside perilat's own; names that all answers share. Arguments: source folder, program.
+# wrong laws there are; the commands of the tasks, in the folders that students get; the numbers of 07_time_step beside perilat's own.
+# Arguments: source folder, program.
 set -euo pipefail
 course=$1/examples/course program=$2
 
@@ -58,14 +59,23 @@ for exercise in "$course"/*/exercise.nml; do
     fault "TEACHING.md: $folder does not have $minutes minutes and $wrong wrong laws"
 done
 
-# What students get: nothing that is the teacher's, and it says of an answer what can be said without that.
-for folder in 01_one_bond 07_time_step; do
+# What students get: nothing that is the teacher's. With the solution as their answer all that the task tells them to do works there.
+for folder in 01_one_bond 02_patch_test 03_moments 04_fracture_energy 05_memory 06_damping 07_time_step; do
   "$program" grade "$course/$folder" --publish "$work/$folder" >"$work/said" 2>&1 || fault "$folder is not published: $(cat "$work/said")"
   [ ! -e "$work/$folder/teacher" ] || fault "$folder: the teacher's folder is published"
-  for right in "$course/$folder"/teacher/solution.*; do
-    "$program" grade "$work/$folder" "$right" >"$work/said" 2>&1 || fault "$folder: the solution is not right in what students have: $(cat "$work/said")"
-    grep -q 'judged by the teacher' "$work/said" || fault "$folder: nothing is hidden"
-  done
+  cd "$work/$folder"
+  cp "$course/$folder"/teacher/solution.plm answer.plm 2>/dev/null || cp "$course/$folder/teacher/solution.txt" answers.txt
+  commands=$(sed -n 's/^    \(perilat .*\)/\1/p' task.md | sed 's/   *[^ ].*//')
+  [ "$(wc -l <<<"$commands")" -ge 3 ] || fault "$folder: its task tells of less than three commands"
+  while IFS= read -r line; do
+    expected=0
+    [[ $line == *"step='2.1 us'"* ]] && expected=1 # the task says that it is refused
+    status=0
+    eval "${line/#perilat/\"\$program\"}" >"$work/said" 2>&1 || status=$?
+    [ $status = $expected ] || fault "$folder: $line ends with $status: $(tail -3 "$work/said")"
+    case $line in "perilat grade"*) grep -q 'judged by the teacher' "$work/said" || fault "$folder: nothing is hidden" ;; esac
+  done <<<"$commands"
+  cd "$work"
 done
 
 # The numbers of 07_time_step are those that perilat finds. $1: name in solution.txt; $2: of the law; then options of info
