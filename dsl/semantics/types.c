@@ -403,7 +403,7 @@ value check_family(checker *ck, expr *e) {
   e->dim = v.dim;
   e->shape = v.shape;
   e->place = v.place;
-  e->open = v.unknown && !v.broken;
+  e->open = v.unknown || v.broken;
   return v;
 }
 

@@ -527,7 +527,7 @@ static void put_drive(const driving *r, json *j) {
 static int drive_as_asked(const drive_options *o, json *j) {
   driving r = {.options = o, .memory = arena_new()};
   diag_begin(&r.said, &r.sources);
-  if (o->confined) model_confine(o->path);
+  if (o->confined) model_confine(o->path, NULL);
   int status = drive(&r);
   if (!status && o->check_only && !o->report) print_checked(&r);
   fflush(stdout);

@@ -137,10 +137,10 @@ static void choose_title(const reader *r, exercise_item *item) {
 
 static void add_file(const reader *r, exercise_item *item, const char *name, bool hidden) {
   const exercise *e = r->e;
-  const char *folder = hidden ? path_in(r->memory, e->folder, teacher) : e->folder;
+  const char *in = hidden ? path_in(r->memory, teacher, name) : name;
   item->found = arena_room(r->memory, item->found, item->found_count, sizeof *item->found);
-  item->found[item->found_count++] =
-      (exercise_file){path_in(r->memory, folder, name), name, hidden};
+  item->found[item->found_count++] = (exercise_file){
+      path_in(r->memory, e->folder, in), path_in(r->memory, e->given, in), name, hidden};
 }
 
 /* In the exercise's folder, else in the teacher's. */
@@ -332,7 +332,7 @@ exercise *exercise_read(arena *a, source_set *sources, const char *folder, diagn
   char error[4096];
   size_t length;
   char *whole = realpath(folder, NULL);
-  *e = (exercise){.folder = whole ? arena_text(a, whole, strlen(whole)) : folder};
+  *e = (exercise){.folder = whole ? arena_text(a, whole, strlen(whole)) : folder, .given = folder};
   free(whole);
   e->name = name_of(a, e->folder);
   e->file = path_in(a, folder, file_name);

@@ -28,9 +28,10 @@ typedef enum item_show { SHOW_NOTHING, SHOW_WORDS, SHOW_STATE, SHOW_CURVE } item
 
 /* A file that an item names. */
 typedef struct exercise_file {
-  const char *path; /* from the root */
-  const char *name; /* as in the exercise: "hidden/1.nml" */
-  bool hidden;      /* it stands in the teacher's folder */
+  const char *path;  /* from the root */
+  const char *shown; /* from the working folder: "05_memory/teacher/hidden/1.nml" */
+  const char *name;  /* as in the exercise: "hidden/1.nml" */
+  bool hidden;       /* it stands in the teacher's folder */
 } exercise_file;
 
 /* One group &item. What its kind does not use is 0. */
@@ -72,7 +73,8 @@ typedef struct exercise {
   const char *title;
   int minutes, points;
   const char *folder; /* from the root: processes that judge work elsewhere */
-  const char *file;   /* as it was given: "05_memory/exercise.nml" */
+  const char *given;  /* the same as it was given: "course/05_memory" */
+  const char *file;   /* "course/05_memory/exercise.nml" */
   const char *name;   /* "05_memory" */
   exercise_item *items;
   int item_count;

@@ -180,7 +180,7 @@ static const char *value_words(const deck_key_info *key) {
 
 void exercise_reference(FILE *out) {
   for (int g = 0; g < EXERCISE_GROUP_COUNT; g++) {
-    fprintf(out, "#### &%s\n\n%s\n\n| key | value | default | meaning |\n|---|---|---|---|\n",
+    fprintf(out, "### &%s\n\n%s\n\n| key | value | default | meaning |\n|---|---|---|---|\n",
             groups[g].name, groups[g].doc);
     for (int k = 0; k < groups[g].key_count; k++) {
       const deck_key_info *key = &groups[g].keys[k];

@@ -22,22 +22,23 @@
 
 /* --- limits ----------------------------------------------------------------------------------- */
 
-static void limit(int what, rlim_t most) {
+/* `most`, and `grace` more until it is ended whatever it does. */
+static void limit(int what, rlim_t most, rlim_t grace) {
   struct rlimit r;
   if (getrlimit((__rlimit_resource_t)what, &r) != 0) return;
-  if (r.rlim_max != RLIM_INFINITY && most > r.rlim_max) most = r.rlim_max;
-  r.rlim_cur = r.rlim_max = most;
+  if (r.rlim_max == RLIM_INFINITY || most + grace < r.rlim_max) r.rlim_max = most + grace;
+  r.rlim_cur = most < r.rlim_max ? most : r.rlim_max;
   setrlimit((__rlimit_resource_t)what, &r);
 }
 
 static void limit_all(const confinement *to) {
   const rlim_t seconds = (rlim_t)ceil(to->seconds);
-  limit(RLIMIT_CPU, seconds > 0 ? seconds : 1);
-  limit(RLIMIT_FSIZE, to->file);
-  limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_NOFILE, 64);
+  limit(RLIMIT_CPU, seconds > 0 ? seconds : 1, 2);
+  limit(RLIMIT_FSIZE, to->file, 0);
+  limit(RLIMIT_CORE, 0, 0);
+  limit(RLIMIT_NOFILE, 64, 0);
 #ifndef PERILAT_ADDRESS_SANITIZER /* it maps terabytes */
-  limit(RLIMIT_AS, to->memory);
+  limit(RLIMIT_AS, to->memory, 0);
 #endif
 }
 
@@ -115,7 +116,7 @@ static void fence_calls(void) {
 }
 #else
 static void fence_calls(void) {
-  limit(RLIMIT_NPROC, 64);
+  limit(RLIMIT_NPROC, 64, 0);
 }
 #endif
 #endif

@@ -103,6 +103,12 @@ static const char *put_name(const char *text, int x, int y, FILE *out) {
 static void put_axes(const frame *f, FILE *out) {
   fprintf(out, "<path stroke=\"#999\" d=\"M%d,%.1fH%dM%.1f,%dV%d\"/>", MARGIN, along_y(f, 0),
           WIDTH - MARGIN, along_x(f, 0), MARGIN, HEIGHT - MARGIN);
+  fprintf(out,
+          "<g font-size=\"10\" fill=\"#555\"><text x=\"4\" y=\"%d\">%.3g</text><text x=\"4\" "
+          "y=\"%d\">%.3g</text><text x=\"%d\" y=\"%d\">%.3g</text><text x=\"%d\" "
+          "y=\"%d\">%.3g</text></g>",
+          MARGIN, f->high[1], HEIGHT - MARGIN, f->low[1], MARGIN, HEIGHT - MARGIN + 14, f->low[0],
+          WIDTH - 2 * MARGIN, HEIGHT - MARGIN + 14, f->high[0]);
 }
 
 void curve_svg(const char *text, FILE *out) {

@@ -10,20 +10,32 @@
 #include "generator/grade/publish.h"
 #include "generator/grade/self_test.h"
 #include "generator/kernel/document.h"
+#include "runtime/base/processors.h"
 
 enum { FULL = 0, WRONG = 1, LESS = 2 };
 
-/* As they are judged, so that a class is seen to go on; NULL where the grader fails. */
+static void show(const grading *g, const marks *m, int number) {
+  if (g->o->json) return;
+  if (number) putchar('\n');
+  marks_print(g->e, m, stdout);
+  fflush(stdout);
+}
+
+/* As many at a time as there are processors, shown in their order as they are done, so that a class
+   is seen to go on; NULL where the grader fails. */
 static marks *judge_all(grading *g, const handed_in *answers, int count) {
   marks *all = arena_alloc(g->memory, ((size_t)count + 1) * sizeof *all);
-  for (int k = 0; k < count; k++) {
-    if (!grading_judge(g, &answers[k], &all[k])) return NULL;
-    if (g->o->json) continue;
-    if (k) putchar('\n');
-    marks_print(g->e, &all[k], stdout);
-    fflush(stdout);
+  judging_child *children = arena_alloc(g->memory, ((size_t)count + 1) * sizeof *children);
+  const int beside = usable_processors();
+  bool good = true;
+  int begun = 0;
+  for (int k = 0; k < begun || (good && begun < count); k++) {
+    for (; good && begun < count && begun < k + beside; begun++)
+      good = grading_begin(g, &answers[begun], &all[begun], &children[begun]);
+    grading_end(g, &children[k]);
+    if (good) show(g, &all[k], k);
   }
-  return all;
+  return good ? all : NULL;
 }
 
 static bool write_files(const grading *g, const marks *all, int count) {

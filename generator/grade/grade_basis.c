@@ -34,7 +34,7 @@ static bool read_paths(grade_basis *b, bool only_public) {
     for (int f = 0; f < item->found_count; f++) {
       path_case *c = &b->cases[b->case_count];
       *c = (path_case){.item = item, .number = f + 1, .varied = ""};
-      c->in = path_input(b->memory, &b->sources, item->found[f].path,
+      c->in = path_input(b->memory, &b->sources, item->found[f].shown,
                          b->has_solution ? &b->solution : NULL, &c->own_count, &b->said);
       good = good && c->in;
       b->case_count += c->in != NULL;

@@ -81,7 +81,7 @@ static bool make_folder(char *folder, size_t size) {
 
 static void be_child(const judge_request *q, const char *folder, const confinement *to, int pipe) {
   FILE *out = fdopen(pipe, "w");
-  if (!out || !confine(folder, to)) _exit(3);
+  if (!out || !confine(folder, to) || !model_confine(q->answer, q->basis->of->folder)) _exit(3);
   if (q->basis->of->of_answers)
     judge_table(q, out);
   else
@@ -90,9 +90,8 @@ static void be_child(const judge_request *q, const char *folder, const confineme
   _exit(0);
 }
 
-/* All that it says until it ends, or `seconds` of the clock have passed; killed then. */
-static char *listen(int from, pid_t child, double seconds, size_t *size, bool *late) {
-  const double end = monotonic_seconds() + seconds;
+/* All that it says until it ends, or the clock comes to `end`; killed then. */
+static char *listen(int from, pid_t child, double end, size_t *size, bool *late) {
   char *said = NULL;
   size_t room = 0;
   *size = 0;
@@ -124,49 +123,59 @@ static const char *what_ended(arena *a, int status, bool late, const confinement
                    : "the program that reads it failed";
 }
 
-/* Runs the child in the folder. False where there is no process to be had. */
-static bool run_child(marks *m, const judge_request *q, const char *folder, const confinement *to) {
-  int ends[2], status = 0;
-  bool late;
-  size_t size;
+/* False where there is no process to be had. */
+static bool start(judging_child *c, const judge_request *q, const confinement *to) {
+  int ends[2];
   fflush(NULL);
   if (pipe2(ends, O_CLOEXEC) != 0) return false;
-  const pid_t child = fork();
-  if (child == 0) {
+  c->process = fork();
+  if (c->process == 0) {
     close(ends[0]);
-    be_child(q, folder, to, ends[1]);
+    be_child(q, c->folder, to, ends[1]);
   }
   close(ends[1]);
-  if (child < 0) {
+  if (c->process < 0)
     close(ends[0]);
-    return false;
-  }
-  char *said = listen(ends[0], child, SPARE * to->seconds + A_WHILE, &size, &late);
-  close(ends[0]);
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR)
-    continue;
-  records_read(m, said, size);
-  if (!m->ended) m->trouble = what_ended(m->memory, status, late, to);
-  free(said);
-  return true;
+  else
+    c->from = ends[0];
+  return c->process > 0;
 }
 
-bool grade_in_child(marks *m, const judge_request *q, const handed_in *answer,
-                    const confinement *to) {
-  char folder[4096];
-  const double begun = monotonic_seconds();
+bool grade_child_begin(judging_child *c, marks *m, const judge_request *q, const handed_in *answer,
+                       const confinement *to) {
   judge_request here = *q;
+  *c = (judging_child){.m = m, .from = -1, .begun = monotonic_seconds()};
   if (!answer->file) {
     m->trouble = "there is no answer";
     return true;
   }
-  if (!make_folder(folder, sizeof folder)) return false;
+  if (!make_folder(c->folder, sizeof c->folder)) {
+    c->folder[0] = 0;
+    return false;
+  }
   here.answer = q->basis->of->of_answers ? "answers.txt" : "answer.plm";
-  m->trouble = copy_law(answer->file, folder, here.answer);
-  if (!m->trouble) copy_others(answer, folder);
-  const bool good = m->trouble || run_child(m, &here, folder, to);
-  if (!good) say_error("no process can be started: %s", strerror(errno));
-  nftw(folder, remove_entry, MOST_ENTRIES, FTW_DEPTH | FTW_PHYS);
-  m->seconds = monotonic_seconds() - begun;
-  return good;
+  m->trouble = copy_law(answer->file, c->folder, here.answer);
+  if (m->trouble) return true;
+  copy_others(answer, c->folder);
+  if (start(c, &here, to)) return true;
+  say_error("no process can be started: %s", strerror(errno));
+  return false;
+}
+
+void grade_child_end(judging_child *c, const confinement *to) {
+  int status = 0;
+  bool late;
+  size_t size;
+  if (c->from >= 0) {
+    const double end = c->begun + SPARE * to->seconds + A_WHILE;
+    char *said = listen(c->from, c->process, end, &size, &late);
+    close(c->from);
+    while (waitpid(c->process, &status, 0) < 0 && errno == EINTR)
+      continue;
+    records_read(c->m, said, size);
+    if (!c->m->ended) c->m->trouble = what_ended(c->m->memory, status, late, to);
+    free(said);
+  }
+  if (c->folder[0]) nftw(c->folder, remove_entry, MOST_ENTRIES, FTW_DEPTH | FTW_PHYS);
+  c->m->seconds = monotonic_seconds() - c->begun;
 }

@@ -12,10 +12,21 @@ typedef struct handed_in {
   const char *folder; /* its further laws may be included; NULL: none may */
 } handed_in;
 
-/* Fills `m`, which is open. What can not be judged to the end is told in m->trouble; it is never an
-   error of the grader. q->answer is set here. False only where no process can be started, after a
-   sentence. */
-bool grade_in_child(marks *m, const judge_request *q, const handed_in *answer,
-                    const confinement *to);
+/* A process that judges. */
+typedef struct judging_child {
+  marks *m;
+  char folder[4096]; /* "": none was made */
+  int process, from; /* from: what it says; -1: there is no process */
+  double begun;
+} judging_child;
+
+/* Begins to judge; several may run at the same time. q->answer is set here; the request may go once
+   this returns. False only where no process can be started, after a sentence. To be ended in any
+   case. */
+bool grade_child_begin(judging_child *c, marks *m, const judge_request *q, const handed_in *answer,
+                       const confinement *to);
+/* Waits for its end and fills the marks. What could not be judged to the end is told in m->trouble;
+   it is never an error of the grader. */
+void grade_child_end(judging_child *c, const confinement *to);
 
 #endif

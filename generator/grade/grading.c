@@ -38,15 +38,27 @@ static bool draw_samples(grading *g, arena *a, const char *name, judge_request *
   return true;
 }
 
-bool grading_judge(grading *g, const handed_in *answer, marks *m) {
+bool grading_begin(grading *g, const handed_in *answer, marks *m, judging_child *c) {
   arena *a = arena_new();
   judge_request q = {.basis = &g->basis, .only_public = g->o->only_public};
   marks_open(m, answer->name, g->e->item_count);
+  *c = (judging_child){.m = m, .from = -1};
   const bool good =
-      draw_samples(g, a, answer->name, &q) && grade_in_child(m, &q, answer, &g->o->limits);
+      draw_samples(g, a, answer->name, &q) && grade_child_begin(c, m, &q, answer, &g->o->limits);
   for (int k = 0; k < q.sample_count; k++)
-    path_case_close(&q.samples[k]);
+    path_case_close(&q.samples[k]); /* the process has them */
   arena_free(a);
+  return good;
+}
+
+void grading_end(grading *g, judging_child *c) {
+  grade_child_end(c, &g->o->limits);
+}
+
+bool grading_judge(grading *g, const handed_in *answer, marks *m) {
+  judging_child c;
+  const bool good = grading_begin(g, answer, m, &c);
+  grading_end(g, &c);
   return good;
 }
 
@@ -66,7 +78,7 @@ static bool measure_solution(grading *g) {
   for (int k = 0; k < e->item_count; k++)
     g->basis.measured[k] = m.items[k].value;
   if (m.trouble) {
-    say_error("the solution of `%s` can not be judged: %s", e->folder, m.trouble);
+    say_error("the solution of `%s` can not be judged: %s", e->given, m.trouble);
     good = false;
   }
   marks_close(&m);

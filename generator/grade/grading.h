@@ -20,8 +20,11 @@ typedef struct grading {
 bool grading_open(grading *g, const grade_options *o);
 /* Prints what is wrong with the exercise. */
 void grading_close(grading *g);
-/* Judges one answer; m is opened here. False where the grader fails, after a sentence or with a
-   message kept. */
+/* Begins to judge an answer; m is opened here. False where the grader fails, after a sentence or
+   with a message kept; grading_end is to follow in any case, and fills the marks. */
+bool grading_begin(grading *g, const handed_in *answer, marks *m, judging_child *c);
+void grading_end(grading *g, judging_child *c);
+/* Both. */
 bool grading_judge(grading *g, const handed_in *answer, marks *m);
 
 #endif

@@ -91,6 +91,10 @@ static void put_outcome(const judging *j, int k, const path_case *c, int of,
       of > 1 ? arena_printf(j->memory, "path %d of %d: %s", c->number, of, o->words) : o->words;
   record_write(j->out, RECORD_WORDS, k, NULL, words);
   if (item->show >= SHOW_STATE && o->state) record_write(j->out, RECORD_STATE, k, NULL, o->state);
+  if (item->show < SHOW_CURVE || !c->referenced || !o->table.memory) return;
+  char *curve = curve_text(&o->table, &c->right.table);
+  record_write(j->out, RECORD_CURVE, k, NULL, curve);
+  free(curve);
 }
 
 /* The item's paths, from case `first` on. Words are about the first that is wrong. */
@@ -145,16 +149,20 @@ static double expected_value(const judging *j, int k) {
   return good ? quantity.value : NAN;
 }
 
+static bool is_right(const exercise_item *item, double value, double expected) {
+  return fabs(value - expected) <= item->tolerance * fabs(expected);
+}
+
 static void put_number(judging *j, int k, double value, double expected, const char *why) {
   const exercise_item *item = &j->b->of->items[k];
-  const bool right = fabs(value - expected) <= item->tolerance * fabs(expected);
+  const bool right = is_right(item, value, expected);
   const char *what = item->kind != ITEM_RUN                ? item->quantity
                      : strcmp(item->of, "dissipated") == 0 ? "the dissipated energy"
                                                            : item->monitor;
   const char *ratio = expected != 0 ? ratio_words(fabs(value / expected)) : NULL;
   put_mark(j, k, right, right, 1, value);
   j->all_right = j->all_right && right;
-  if (right || item->show == SHOW_NOTHING) return;
+  if (right || item->show == SHOW_NOTHING || !j->reads) return;
   if (isnan(value))
     record_write(j->out, RECORD_WORDS, k, NULL, why);
   else if (ratio)
@@ -168,9 +176,14 @@ static void put_number(judging *j, int k, double value, double expected, const c
 
 static void judge_implied(judging *j, int k) {
   const exercise_item *item = &j->b->of->items[k];
-  const char *why = "";
-  const double value = j->reads ? measure_implied(j->memory, item, j->q->answer, &why) : NAN;
-  put_number(j, k, value, expected_value(j, k), why);
+  const char *why = "", *unheard;
+  const double expected = expected_value(j, k);
+  double value = j->reads ? measure_implied(j->memory, item, j->q->answer, false, &why) : NAN;
+  if (j->reads && !is_right(item, value, expected)) {
+    const double other = measure_implied(j->memory, item, j->q->answer, true, &unheard);
+    value = is_right(item, other, expected) ? other : value;
+  }
+  put_number(j, k, value, expected, why);
 }
 
 /* The energies must balance. */

@@ -74,7 +74,7 @@ static void csv_text(FILE *out, const char *text) {
   if (*text && strchr("=+-@\t\r", *text)) fputc('\'', out);
   for (; *text; text++) {
     if (*text == '"') fputc('"', out);
-    fputc(*text == '\n' || *text == '\r' ? ' ' : *text, out);
+    fputc((unsigned char)*text < ' ' ? ' ' : *text, out); /* one line, no control characters */
   }
   fputc('"', out);
 }

@@ -24,7 +24,7 @@ static const char head[] =
     "1b6e3a}"
     "\n.say{border-left:4px solid #d98200;padding:.3rem .8rem;background:#fff7e8}\n"
     "pre{background:#f4f4f4;padding:.5rem;overflow-x:auto}section{margin-top:2.5rem}\n"
-    "svg{max-width:30rem;display:block}\n</style>\n<title>";
+    "svg{width:30rem;max-width:100%;display:block}td pre{max-width:44rem}\n</style>\n<title>";
 
 /* "<TAG>text</TAG>", the text written out. */
 static void put(FILE *out, const char *tag, const char *rest, const char *text) {

@@ -92,7 +92,12 @@ const char *marks_in_short(const exercise *e, const marks *m) {
   if (m->holes) return "holes are still to be written";
   if (m->sentence) return m->sentence;
   if (m->errors) return "the law has errors";
-  for (int k = 0; k < e->item_count; k++)
-    if (m->items[k].words) return m->items[k].words;
-  return "";
+  bool is_compared = false;
+  const char *words = "";
+  for (int k = e->item_count - 1; k >= 0; k--) {
+    const bool compared = e->items[k].kind == ITEM_PATH && m->items[k].state;
+    if (m->items[k].words && (compared || !*words || !is_compared)) words = m->items[k].words;
+    is_compared = is_compared || (m->items[k].words && compared);
+  }
+  return arena_text(m->memory, words, strcspn(words, "\n"));
 }

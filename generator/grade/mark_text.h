@@ -18,7 +18,8 @@ mark_sums marks_add_up(const exercise *e, const marks *m);
 /* All points that could be had here. */
 bool marks_are_full(const exercise *e, const marks *m);
 void marks_print(const exercise *e, const marks *m, FILE *out);
-/* The most important sentence of it, on one line, or "". */
+/* The most important sentence of it, on one line, or ""; what was compared with the solution says
+   more than what was expected. Of the marks' memory. */
 const char *marks_in_short(const exercise *e, const marks *m);
 /* A number of points: "13.3", "20". Good until the thread's fourth next call. */
 const char *points_shown(double points);

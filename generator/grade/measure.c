@@ -22,6 +22,7 @@ static const char result_name[] = "run.h5";
 
 typedef struct implying {
   arena *memory;
+  bool beside;
   const exercise_item *item;
   source_set sources;
   diagnostics said;
@@ -84,8 +85,41 @@ static double choose(const char *quantity, const pl_law *kernel, const double *v
                                        : elastic.G;
 }
 
+static _Thread_local pl_states_function tangent_at; /* of the law at hand */
+
+/* The mean of the tangents a little to both sides of the deformations. */
+static void tangent_beside(const pl_law *kernel, const double *uniforms, const pl_states *states) {
+  const double little = 1e-9;
+  const double *in[PL_STATE_INPUTS];
+  const size_t count = (size_t)states->count;
+  double *moved = must_calloc(PL_STATE_INPUTS * count, sizeof *moved),
+         *sum = must_calloc(PL_TANGENTS * count, sizeof *sum);
+  for (int side = -1; side <= 1; side += 2) {
+    pl_states at = *states;
+    for (int i = 0; i < kernel->state_input_count; i++) {
+      const char *name = kernel->state_inputs[i].name;
+      const bool moves = strcmp(name, "stretch") == 0 || strncmp(name, "theta_", 6) == 0;
+      for (size_t k = 0; k < count; k++)
+        moved[(size_t)i * count + k] = states->in[i][k] + (moves ? side * little : 0);
+      in[i] = moved + (size_t)i * count;
+    }
+    at.in = in;
+    tangent_at(kernel, uniforms, &at);
+    for (size_t k = 0; k < PL_TANGENTS * count; k++)
+      sum[k] += states->out[k / count][k % count] / 2;
+  }
+  for (size_t k = 0; k < PL_TANGENTS * count; k++)
+    states->out[k / count][k % count] = sum[k];
+  free(moved);
+  free(sum);
+}
+
 static double imply(implying *m) {
   pl_law *kernel = plan_interpreted(m->model.plan);
+  if (m->beside && kernel->tangent) {
+    tangent_at = kernel->tangent;
+    kernel->tangent = tangent_beside;
+  }
   double *values = arena_alloc(m->memory, ((size_t)kernel->parameter_count + 1) * sizeof *values);
   double value = NAN;
   if (material_parameters(&m->model.values, kernel, values, &m->said)) {
@@ -97,8 +131,9 @@ static double imply(implying *m) {
   return value;
 }
 
-double measure_implied(arena *a, const exercise_item *item, const char *answer, const char **why) {
-  implying m = {.memory = a, .item = item, .material = {.model = answer}};
+double measure_implied(arena *a, const exercise_item *item, const char *answer, bool beside,
+                       const char **why) {
+  implying m = {.memory = a, .beside = beside, .item = item, .material = {.model = answer}};
   model first;
   double value = NAN;
   diag_begin(&m.said, &m.sources);

@@ -5,8 +5,10 @@
 #include "generator/exercise/exercise.h"
 
 /* In SI; NaN with a sentence in *why (of the arena) where there is none. The law's file `answer` is
-   in the working folder; `set` is the item's, or what it is compared with. */
-double measure_implied(arena *a, const exercise_item *item, const char *answer, const char **why);
+   in the working folder. `beside`: of a law of bonds with the mean stiffness just beside rest, on
+   both sides: at rest itself some ways to write a force have none (norm, positive_part). */
+double measure_implied(arena *a, const exercise_item *item, const char *answer, bool beside,
+                       const char **why);
 /* Runs the item's deck on the interpreter, in the working folder, with `more` set, too. */
 double measure_run(arena *a, const exercise_item *item, const char *answer, const char *const *more,
                    int more_count, const char **why);

@@ -143,7 +143,9 @@ void case_witness_end(case_witness *w, cases_seen *seen) {
   plan_interpreted_watch(w->kernel, NULL, NULL);
   for (ir_node n = 0; n < w->count; n++) {
     if (!(w->marks[n] & IS_CASE)) continue;
-    case_seen *one = seen_of(seen, n, place_of(w, n));
+    const span where = place_of(w, n);
+    if (where.end == 0) continue; /* of a sum over neighbours, say: not the law's */
+    case_seen *one = seen_of(seen, n, where);
     one->was_true = one->was_true || w->marks[n] & SEEN_TRUE;
     one->was_false = one->was_false || w->marks[n] & SEEN_FALSE;
   }

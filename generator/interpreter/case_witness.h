@@ -11,7 +11,7 @@
 /* A condition of a law. */
 typedef struct case_seen {
   int choice; /* its number in the law's graph */
-  span where; /* of what it decides; end == 0: not known */
+  span where; /* of what it decides */
   bool was_true, was_false;
 } case_seen;
 

@@ -190,15 +190,16 @@ static char *try_program_tree(const char *name) {
   return found;
 }
 
-bool model_confine(const char *file) {
+bool model_confine(const char *file, const char *further) {
   char folder[PATH_LIMIT], models[PROGRAM_FOLDERS][PATH_LIMIT + 32];
-  const char *readable[PROGRAM_FOLDERS + 1];
+  const char *readable[PROGRAM_FOLDERS + 2];
   int count = 0;
   folder_of(file, folder, sizeof folder);
   if (program_folders(models))
     for (int k = 0; k < PROGRAM_FOLDERS; k++)
       readable[count++] = models[k];
   if (getenv("PERILAT_MODELS")) readable[count++] = getenv("PERILAT_MODELS");
+  if (further) readable[count++] = further;
   return files_confine(folder, readable, count);
 }
 

@@ -58,8 +58,9 @@ bool same_file(const char *a, const char *b);
 char *model_find(const char *name, const char *beside);
 /* From here on the process reads files in the folder of `file` and those of the models that come
    along, and writes in the first alone, whatever a law or a path names; what a law includes is
-   named neither by an absolute path nor by one with `..`. */
-bool model_confine(const char *file);
+   named neither by an absolute path nor by one with `..`. `further` (NULL: none) is one more folder
+   in which it reads. */
+bool model_confine(const char *file, const char *further);
 /* Of a name that was not found: the hint "did you mean `x`?", x among the models where `elastic`
    is. */
 void model_suggest(const char *name, const char *beside, diagnostics *said);

@@ -22,3 +22,19 @@ void terminal_control(FILE *out, const char *sequence) {
 void terminal_paint_with(FILE *out, terminal_paint paint) {
   (void)out, (void)paint;
 }
+
+void terminal_record_begin(terminal_record *t) {
+  (void)t;
+}
+
+void terminal_record_end(terminal_record *t) {
+  (void)t;
+}
+
+void terminal_record_show(terminal_record *t) {
+  (void)t;
+}
+
+void terminal_record_drop(terminal_record *t) {
+  (void)t;
+}

@@ -76,7 +76,7 @@ function beginnings() {
     if (model && files.has(`drives/${model[1]}.nml`))
       list.push({ title: model[1], law: name, path: `drives/${model[1]}.nml` });
   }
-  return list.sort((a, b) => a.title.localeCompare(b.title));
+  return list.sort((a, b) => !a.exercise - !b.exercise || a.title.localeCompare(b.title));
 }
 
 const text_of = name => (files.has(name) ? files.get(name).text : '');
@@ -98,10 +98,11 @@ function choose() {
 
 const pattern = /(!.*$)|("[^"\n]*"?|'[^'\n]*')|(\[[^\]\n]*\])|((?<![A-Za-z0-9_])(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d+)?)|([A-Za-z_]\w*)|(\?)/gm;
 
+// A bracket after a number, a hole or the name of a parameter holds a unit.
 function class_of(line, match) {
   if (match[1]) return 'comment';
   if (match[2]) return 'string';
-  if (match[3]) return 'unit';
+  if (match[3]) return /(^\s*parameter\s+\w+|\d\.?|\?)\s*$/.test(line.slice(0, match.index)) ? 'unit' : '';
   if (match[4]) return 'number';
   if (match[6]) return 'hole';
   const first = line.slice(0, match.index).trim() === '';
@@ -233,7 +234,8 @@ function draw_curve(canvas, xs, ys, x_name, y_name, colour) {
   c.textAlign = 'center';
   for (let s = nice_step(x1 - x0), v = Math.ceil(x0 / s) * s; v <= x1 + s * 1e-9; v += s) {
     c.beginPath(); c.moveTo(X(v), top); c.lineTo(X(v), H - bottom); c.stroke();
-    c.fillText(short_number(Math.abs(v) < s * 1e-9 ? 0 : v), X(v), H - bottom + 15);
+    const text = short_number(Math.abs(v) < s * 1e-9 ? 0 : v), half = c.measureText(text).width / 2;
+    c.fillText(text, Math.min(X(v), W - 2 - half), H - bottom + 15);
   }
   c.textAlign = 'right';
   for (let s = nice_step(y1 - y0), v = Math.ceil(y0 / s) * s; v <= y1 + s * 1e-9; v += s) {
@@ -312,9 +314,13 @@ function forget_marks() {
   $('marked').textContent = '';
 }
 
+// Runs leave result files, which a page has none of.
+const is_judged = item => item.judged && item.kind !== 'run';
+
 function mark_item(item) {
-  const li = one_item(`${item.title}: ${item.judged ? `${item.got} of ${item.points}` : `${item.points}, judged by the teacher`}`,
-    !item.judged ? '' : item.got === item.points ? 'pass' : 'fail');
+  if (!is_judged(item))
+    return one_item(`${item.title}: ${item.points}, judged ${item.judged ? 'by `perilat grade` at a terminal' : 'by the teacher'}`, '');
+  const li = one_item(`${item.title}: ${item.got} of ${item.points}`, item.got === item.points ? 'pass' : 'fail');
   for (const words of [item.words, item.state]) if (typeof words === 'string') li.append(piece(words, 'hint'));
   return li;
 }
@@ -328,7 +334,8 @@ function mark() {
     $('marks').replaceChildren(one_item(said.err || 'it could not be marked', 'fail'));
     return;
   }
-  $('marked').textContent = `${answer.got} of the ${answer.points} points that can be judged here`;
+  const sum = key => answer.items.filter(is_judged).reduce((all, item) => all + item[key], 0);
+  $('marked').textContent = `${sum('got')} of the ${sum('points')} points that can be judged here`;
   const words = [answer.sentence, answer.trouble, answer.notes].filter(w => typeof w === 'string').map(w => one_item(w, 'fail'));
   $('marks').replaceChildren(...words, ...answer.items.map(mark_item));
 }
@@ -376,19 +383,20 @@ function draw_beam() {
     y0 = Math.min(y0, at[2 * p + 1]); y1 = Math.max(y1, at[2 * p + 1]);
     most = Math.max(most, Math.hypot(moved[2 * p], moved[2 * p + 1]));
   }
-  const factor = most > 0 ? Math.min(200, 0.08 * (x1 - x0) / most) : 1;
-  const scale = Math.min((canvas.width - 60) / (x1 - x0), (canvas.height - 60) / (y1 - y0));
+  const factor = most > 0 ? Math.min(200, 0.05 * (x1 - x0) / most) : 1, spare = 0.06 * (x1 - x0);
+  x0 -= spare; x1 += spare; y0 -= spare; y1 += spare;
+  const scale = Math.min((canvas.width - 20) / (x1 - x0), (canvas.height - 40) / (y1 - y0));
   const size = Math.max(2, scale * Math.sqrt((x1 - x0) * (y1 - y0) / n) * 0.45);
   c.clearRect(0, 0, canvas.width, canvas.height);
   for (let p = 0; p < n; p++) {
     c.fillStyle = colour_of(damage[p]);
     c.beginPath();
-    c.arc(30 + (at[2 * p] + factor * moved[2 * p] - x0) * scale, canvas.height - 30 - (at[2 * p + 1] + factor * moved[2 * p + 1] - y0) * scale, size, 0, 2 * Math.PI);
+    c.arc(10 + (at[2 * p] + factor * moved[2 * p] - x0) * scale, canvas.height - 24 - (at[2 * p + 1] + factor * moved[2 * p + 1] - y0) * scale, size, 0, 2 * Math.PI);
     c.fill();
   }
   c.fillStyle = '#4a5360';
   c.font = '12px system-ui, sans-serif';
-  c.fillText(`displacements ${short_number(Number(factor.toPrecision(2)))} times as large; red: damaged`, 30, canvas.height - 6);
+  c.fillText(`displacements ${short_number(Number(factor.toPrecision(2)))} times as large; red: damaged`, 10, canvas.height - 8);
 }
 
 function series(k) {

@@ -263,10 +263,20 @@ static void a_hole_may_say_its_unit(void **state) {
       messages_of(BASE "constant EA = ? [kN]\nforce N = EA*stretch\nend model\n", DIAG_HOLE), 1);
 }
 
+/* What is wrong beside a hole tells nothing of it. */
+static void errors_tell_nothing(void **state) {
+  (void)state;
+  checked c;
+  check_text(&c, BASE "constant EA = ?\nforce N = EA*strech\nend model\n");
+  assert_int_equal(c.said.count, 2);
+  assert_true(hole_of(c.tree)->open);
+  forget(&c);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_hole_anywhere_is_the_only_message),
-                                     cmocka_unit_test(a_law_whose_holes_are_filled_passes),
-                                     cmocka_unit_test(the_rest_is_checked),
-                                     cmocka_unit_test(a_hole_may_say_its_unit)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_hole_anywhere_is_the_only_message),
+      cmocka_unit_test(a_law_whose_holes_are_filled_passes), cmocka_unit_test(the_rest_is_checked),
+      cmocka_unit_test(a_hole_may_say_its_unit), cmocka_unit_test(errors_tell_nothing)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

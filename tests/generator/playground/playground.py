@@ -46,6 +46,10 @@ def until(browser, expression, seconds):
     sys.exit("FAILED: waited %d s for %s" % (seconds, expression))
 
 
+def type_path(browser, text):
+    browser.value("document.getElementById('path').value = %s" % json.dumps(text))
+
+
 def type_law(browser, text):
     judged = int(browser.value("document.body.dataset.judged"))
     browser.value("{ const l = document.getElementById('law'); l.value = %s; l.dispatchEvent(new Event('input')); }"
@@ -68,9 +72,12 @@ def in_page(browser, files, *line):
 
 def try_messages(browser):
     law = "model answer\n  law central bond\n  parameter rho = 2323 [kg/m^3]\n%s\nend model\n"
+    type_path(browser, "&path quantity = 'stretch' value = 1e-4 rise = 1 /\n"
+                       "&expect quantity = 'peak N' formula = 'EA*1e-4' /\n"
+                       "&expect quantity = 'peak N' value = '1 N' /\n")
     type_law(browser, law % "  constant EA = ?\n  force N = EA*strech")
     said = texts(browser, "#messages li")
-    check(len(said) == 2 and "line 4" in said[0] and "[hole]" in said[0] and "line 5" in said[1] and
+    check(len(said) == 2 and "line 4" in said[0] and "still to be written [hole]" in said[0] and "line 5" in said[1] and
           "did you mean `stretch`?" in said[1], "messages name their lines: %s" % said)
     check(texts(browser, "#gutter .error") == ["4", "5"], "and stand at them")
     check(texts(browser, "#shown .wrong") == ["?", "strech"], "what is wrong is underlined")
@@ -79,6 +86,8 @@ def try_messages(browser):
     check(browser.value("document.querySelectorAll('#equations math').length") >= 2, "its equations are shown")
     check(browser.value("[...new Uint8Array(document.getElementById('curve').getContext('2d')"
                         ".getImageData(0, 0, 640, 320).data)].some(v => v)"), "its curve is drawn")
+    check(texts(browser, "#expectations .pass") == ["line 2: peak N = 0.3 N, expected 0.3 N"] and
+          texts(browser, "#expectations .fail") == ["line 3: peak N = 0.3 N, expected 1 N"], "and what is expected is judged")
 
 
 def try_same_bits(browser, folder):
@@ -103,6 +112,27 @@ def try_same_bits(browser, folder):
             sys.exit("FAILED: the table of %s differs" % path.name)
         drives += 1
     check(drives >= 3, "%d laws are judged as by the command, %d tables are the same to the bit" % (len(models), drives))
+
+
+def marks(text):
+    """Of each item that needs no run: points and words."""
+    items = json.loads(text)["answers"][0]["items"]
+    return [(i["title"], i["got"], i["words"], i["state"]) for i in items if i["kind"] != "run"]
+
+
+def try_course(browser):
+    """Published exercises: a right answer and a wrong one, marked as by the command."""
+    solutions = sorted((SOURCE / "examples/course").glob("*/teacher/solution.plm"))
+    for solution in solutions:
+        exercise = PAGE / "course" / solution.parent.parent.name
+        wrong = sorted(solution.parent.glob("wrong/*.plm"))[:1]
+        for answer in [solution, *wrong]:
+            here = perilat(PAGE, "grade", str(exercise), str(answer), "--public", "--json")
+            there = in_page(browser, {"law.plm": answer.read_text()}, "grade", "course/" + exercise.name, "law.plm",
+                            "--public", "--json")
+            if marks(here[1]) != marks(there[1]):
+                sys.exit("FAILED: %s\n%s\n%s" % (answer, marks(here[1]), marks(there[1])))
+    check(True, "%d exercises are marked as by the command" % len(solutions))
 
 
 def try_beam(browser, folder):
@@ -143,6 +173,7 @@ def main():
         print("the first curve is drawn after %.1f s" % (time.time() - begun))
         try_messages(browser)
         try_same_bits(browser, folder)
+        try_course(browser)
         try_beam(browser, folder)
         asked = set(browser.requests())
         check(asked == {address, address.replace(".html", ".wasm")}, "nothing else is asked of a network: %s" % asked)
