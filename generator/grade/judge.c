@@ -20,6 +20,7 @@ typedef struct judging {
   declared_names declared;
   path_outcome *outcomes; /* [case_count], of those that were driven */
   cases_seen seen;
+  runs_made runs;
   bool all_right;
   const char *first_error; /* "code: message" of a law that does not read */
 } judging;
@@ -203,10 +204,12 @@ static void put_imbalance(judging *j, int k, double value, const char *why) {
 static void judge_run(judging *j, int k) {
   const exercise_item *item = &j->b->of->items[k];
   const char *why = "";
-  const double value = j->reads ? measure_run(j->memory, item, j->q->answer, NULL, 0, &why) : NAN;
+  const double value =
+      j->reads ? measure_run(j->memory, item, j->q->answer, NULL, 0, &j->runs, &why) : NAN;
   double expected = expected_value(j, k);
   if (j->reads && item->like_count && !isnan(value))
-    expected = measure_run(j->memory, item, j->q->answer, item->like, item->like_count, &why);
+    expected =
+        measure_run(j->memory, item, j->q->answer, item->like, item->like_count, &j->runs, &why);
   if (strcmp(item->of, "imbalance") == 0)
     put_imbalance(j, k, value, why);
   else

@@ -16,7 +16,8 @@
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/result/result_read.h"
 
-static const char result_name[] = "run.h5";
+/* Of the n-th run. */
+static const char result_names[] = "run_%d.h5";
 
 /* --- implied ---------------------------------------------------------------------------------- */
 
@@ -218,9 +219,9 @@ static double of_monitor(result_file *f, const exercise_item *item, char *error,
   return value;
 }
 
-static double read_result(arena *a, const exercise_item *item, const char **why) {
+static double read_result(arena *a, const exercise_item *item, int run, const char **why) {
   char error[1024] = "the deck has no such monitor";
-  result_file *f = result_read(result_name, error, sizeof error);
+  result_file *f = result_read(arena_printf(a, result_names, run), error, sizeof error);
   if (!f) {
     *why = "the run left no result";
     return NAN;
@@ -234,45 +235,42 @@ static double read_result(arena *a, const exercise_item *item, const char **why)
   return value;
 }
 
-double measure_run(arena *a, const exercise_item *item, const char *answer, const char *const *more,
-                   int more_count, const char **why) {
-  const int most = item->set_count + more_count + 2;
-  deck_override *all = arena_alloc(a, (size_t)most * sizeof *all);
-  int count = 0;
-  const char *of = item->material ? arena_printf(a, "[%s]", item->material) : "";
-  all[count++].text = arena_printf(a, "material%s.model=%s", of, answer);
-  all[count++].text = arena_printf(a, "output.result=%s", result_name);
-  for (int k = 0; k < item->set_count; k++)
-    all[count++].text = item->set[k];
-  for (int k = 0; k < more_count; k++)
-    all[count++].text = more[k];
+/* The run of that deck with these settings, made unless it was before. Its number. */
+static int run_of(arena *a, const char *path, deck_override *all, int count, runs_made *made) {
+  const char *key = path;
+  for (int k = 0; k < count; k++)
+    key = arena_printf(a, "%s\n%s", key, all[k].text);
+  for (int k = 0; k < made->count; k++)
+    if (strcmp(made->keys[k], key) == 0) return k;
+  made->keys = arena_room(a, made->keys, made->count, sizeof *made->keys);
+  made->status = arena_room(a, made->status, made->count, sizeof *made->status);
+  all[count++].text =
+      arena_printf(a, "output.result=%s", arena_printf(a, result_names, made->count));
   const run_options o = {.program = "perilat run",
-                         .deck_path = item->found[0].path,
+                         .deck_path = path,
                          .overrides = all,
                          .override_count = count,
                          .threads = 1,
                          .interpret = true,
                          .no_physics = true};
-  const int status = run_deck(&o);
-  if (status == 0) return read_result(a, item, why);
-  *why = status == INPUT_WRONG ? "the deck refuses your law" : "the run with your law failed";
-  return NAN;
+  made->keys[made->count] = key;
+  made->status[made->count] = run_deck(&o);
+  return made->count++;
 }
 
-/* --- units ------------------------------------------------------------------------------------ */
-
-const char *measure_unit(const exercise_item *item) {
-  static const struct {
-    const char *quantity, *unit;
-  } units[] = {{"E", "Pa"},
-               {"G", "Pa"},
-               {"nu", "1"},
-               {"stable_step", "s"},
-               {"omega_max", "1/s"},
-               {"peak_stress", "Pa"},
-               {"crack_energy", "N/m"},
-               {"work_of_fracture", "N/m"}};
-  for (size_t k = 0; item->quantity && k < sizeof units / sizeof *units; k++)
-    if (strcmp(units[k].quantity, item->quantity) == 0) return units[k].unit;
-  return NULL;
+double measure_run(arena *a, const exercise_item *item, const char *answer, const char *const *more,
+                   int more_count, runs_made *made, const char **why) {
+  const int most = item->set_count + more_count + 2;
+  deck_override *all = arena_alloc(a, (size_t)most * sizeof *all);
+  int count = 0;
+  const char *of = item->material ? arena_printf(a, "[%s]", item->material) : "";
+  all[count++].text = arena_printf(a, "material%s.model=%s", of, answer);
+  for (int k = 0; k < item->set_count; k++)
+    all[count++].text = item->set[k];
+  for (int k = 0; k < more_count; k++)
+    all[count++].text = more[k];
+  const int run = run_of(a, item->found[0].path, all, count, made), status = made->status[run];
+  if (status == 0) return read_result(a, item, run, why);
+  *why = status == INPUT_WRONG ? "the deck refuses your law" : "the run with your law failed";
+  return NAN;
 }

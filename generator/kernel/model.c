@@ -129,9 +129,10 @@ bool same_file(const char *a, const char *b) {
 
 /* --- finding ---------------------------------------------------------------------------------- */
 
+/* That the process may read. */
 static bool is_file(const char *path) {
   struct stat about;
-  return stat(path, &about) == 0 && S_ISREG(about.st_mode);
+  return stat(path, &about) == 0 && S_ISREG(about.st_mode) && file_may_be_read(path);
 }
 
 /* folder/name[.plm], when there is such a file. */

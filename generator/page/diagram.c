@@ -1,6 +1,7 @@
 #include "generator/page/diagram.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "dsl/base/elementary.h"
 #include "dsl/base/units.h"
@@ -91,27 +92,62 @@ static void put_names(const drawing *w) {
 
 /* --- curves ----------------------------------------------------------------------------------- */
 
-/* Points nearer than this to the one before, in the picture's units, are not seen. */
-#define NEAR 0.7
+/* Samples one after the other that stand in the same column of the picture, a unit wide: of many the
+   first, the least, the largest and the last are seen. */
+typedef struct column {
+  long first, least, most, last; /* first negative: empty */
+  double number;
+} column;
 
-/* From `first` on in steps of 1 or -1; what is no number is left out, and a curve begins anew. */
-static void put_points(const drawing *w, const double *xs, const double *ys, long count,
+typedef struct line {
+  const drawing *w;
+  const double *x, *y; /* SI */
+  bool pen;            /* the curve goes on from a point */
+  column here;
+} line;
+
+static void put_point(line *l, long k) {
+  fprintf(l->w->out, "%c%.1f %.1f", l->pen ? 'L' : 'M', axis_along_x(&l->w->x, l->x[k]),
+          axis_along_y(&l->w->y, l->y[k]));
+  l->pen = true;
+}
+
+/* In the order in which they were taken, which may run backwards. */
+static void flush(line *l) {
+  const column c = l->here;
+  if (c.first < 0) return;
+  const bool ahead = labs(c.least - c.first) < labs(c.most - c.first);
+  const long order[] = {c.first, ahead ? c.least : c.most, ahead ? c.most : c.least, c.last};
+  for (int n = 0; n < 4; n++)
+    if (n == 0 || order[n] != order[n - 1]) put_point(l, order[n]);
+  l->here.first = -1;
+}
+
+static void take(line *l, long k) {
+  const double number = floor(axis_along_x(&l->w->x, l->x[k]));
+  if (l->here.first >= 0 && number != l->here.number) flush(l);
+  column *c = &l->here;
+  if (c->first < 0) *c = (column){k, k, k, k, number};
+  if (l->y[k] < l->y[c->least]) c->least = k;
+  if (l->y[k] > l->y[c->most]) c->most = k;
+  c->last = k;
+}
+
+/* What is no number is left out, and a curve begins anew behind it, unless it is `joined`, as the
+   edge of an area is. */
+static void put_points(const drawing *w, const double *x, const double *y, long count,
                        bool backwards, bool joined) {
-  double last[2] = {NAN, NAN};
-  bool pen = joined;
-  for (long k = 0; k < count; k++) {
-    const long n = backwards ? count - 1 - k : k;
-    if (!isfinite(xs[n]) || !isfinite(ys[n])) {
-      pen = pen && joined;
+  line l = {.w = w, .x = x, .y = y, .pen = joined && backwards, .here = {.first = -1}};
+  for (long n = 0; n < count; n++) {
+    const long k = backwards ? count - 1 - n : n;
+    if (isfinite(x[k]) && isfinite(y[k])) {
+      take(&l, k);
       continue;
     }
-    const double x = axis_along_x(&w->x, xs[n]), y = axis_along_y(&w->y, ys[n]);
-    if (pen && fabs(x - last[0]) + fabs(y - last[1]) < NEAR && k + 1 < count) continue;
-    fprintf(w->out, "%c%.1f %.1f", pen ? 'L' : 'M', x, y);
-    last[0] = x;
-    last[1] = y;
-    pen = true;
+    flush(&l);
+    l.pen = l.pen && joined;
   }
+  flush(&l);
 }
 
 static void put_curve(const drawing *w, const diagram_curve *c) {
@@ -123,7 +159,7 @@ static void put_curve(const drawing *w, const diagram_curve *c) {
 /* Between the curve and the one below it, or zero. */
 static void put_area(const drawing *w, const diagram_curve *c, const diagram_curve *below) {
   fprintf(w->out, "<path class=\"area ink%d\" d=\"", c->ink % 8);
-  put_points(w, c->x, c->y, c->count, false, false);
+  put_points(w, c->x, c->y, c->count, false, true);
   if (below)
     put_points(w, below->x, below->y, below->count, true, true);
   else if (c->count > 0)

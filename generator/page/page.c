@@ -55,15 +55,35 @@ static char *data_of(const page_result *results, const movie *movies, int count)
 
 typedef void section(FILE *out, const page_result *p);
 
+/* What stands in a page, in its order: X(name of the link, its words) */
+#define PARTS(X)                                                                                   \
+  X("body", "The body")                                                                            \
+  X("law", "The law")                                                                              \
+  X("sentences", "In sentences")                                                                   \
+  X("asked", "What was asked")                                                                     \
+  X("monitors", "Monitors")                                                                        \
+  X("frames", "What is seen")                                                                      \
+  X("energies", "Energies")                                                                        \
+  X("origin", "Where this comes from")
+
+static void put_links(FILE *out) {
+  fputs("<nav aria-label=\"parts of the page\">", out);
+#define X(name, words) fputs("<a href=\"#" name "\">" words "</a> ", out);
+  PARTS(X)
+#undef X
+  fputs("</nav>\n", out);
+}
+
 /* Of two results side by side. */
-static void put_beside(FILE *out, const page_result *results, int count, section *put) {
-  if (count > 1) fputs("<div class=\"pair\">\n", out);
+static void put_beside(FILE *out, const page_result *results, int count, const char *name,
+                       section *put) {
+  fprintf(out, "<div id=\"%s\"%s>\n", name, count > 1 ? " class=\"pair\"" : "");
   for (int k = 0; k < count; k++) {
     if (count > 1) fputs("<div>", out);
     put(out, &results[k]);
     if (count > 1) fputs("</div>\n", out);
   }
-  if (count > 1) fputs("</div>\n", out);
+  fputs("</div>\n", out);
 }
 
 static void put_frames(FILE *out, const page_result *results, const movie *movies, int count) {
@@ -81,17 +101,18 @@ static void put_frames(FILE *out, const page_result *results, const movie *movie
 
 static void put_sections(FILE *out, const page_result *results, const movie *movies, int count) {
   put_header(out, results, count);
-  put_beside(out, results, count, page_verdict);
+  put_links(out);
+  put_beside(out, results, count, "verdict", page_verdict);
   page_main_curve(out, results, count, true);
-  put_beside(out, results, count, page_body);
-  put_beside(out, results, count, page_laws);
-  put_beside(out, results, count, page_sentences);
-  put_beside(out, results, count, page_inputs);
+  put_beside(out, results, count, "body", page_body);
+  put_beside(out, results, count, "law", page_laws);
+  put_beside(out, results, count, "sentences", page_sentences);
+  put_beside(out, results, count, "asked", page_inputs);
   page_monitors(out, results, count);
   put_frames(out, results, movies, count);
-  put_beside(out, results, count, page_energies);
-  put_beside(out, results, count, page_warnings);
-  put_beside(out, results, count, page_provenance);
+  put_beside(out, results, count, "energies", page_energies);
+  put_beside(out, results, count, "warnings", page_warnings);
+  put_beside(out, results, count, "origin", page_provenance);
 }
 
 static void put_page(FILE *out, const page_result *results, int count) {

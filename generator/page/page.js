@@ -263,8 +263,21 @@
         }
         return sum / 4;
       };
-      for (let c = 0; c < frames.cellCount; c++)
-        if (alive[c] === 1) add(steps ? mean(c) : 0, [0, 1, 2, 3].map((i) => at(body.corners[4 * c + i])));
+      /* Few cells are shown in parts, between whose corners values go on bilinearly. */
+      const fine = !steps ? 1 : frames.cellCount <= 2500 ? 3 : frames.cellCount <= 8000 ? 2 : 1;
+      const between = (p, x, y, c) => (1 - y) * ((1 - x) * p[0][c] + x * p[1][c]) + y * ((1 - x) * p[3][c] + x * p[2][c]);
+      for (let c = 0; c < frames.cellCount; c++) {
+        if (alive[c] !== 1) continue;
+        const corners = [0, 1, 2, 3].map((i) => at(body.corners[4 * c + i]));
+        const own = [0, 1, 2, 3].map((i) => (steps ? [steps[body.corners[4 * c + i]]] : [0]));
+        const whole = fine === 1 || own.some((s) => !s[0]);
+        if (whole) add(steps ? mean(c) : 0, corners);
+        for (let n = 0; n < (whole ? 0 : fine * fine); n++) {
+          const x = (n % fine) / fine, y = Math.floor(n / fine) / fine, d = 1 / fine;
+          add(between(own, x + d / 2, y + d / 2, 0), [[x, y], [x + d, y], [x + d, y + d], [x, y + d]]
+            .map((q) => [between(corners, q[0], q[1], 0), between(corners, q[0], q[1], 1)]));
+        }
+      }
       const parts = reader(frames.parts[k]), low = frames.ranges[2 * k], range = (frames.ranges[2 * k + 1] - low) || 1;
       while (parts.more()) {
         const node = parts.whole(), points = [];

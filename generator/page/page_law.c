@@ -32,8 +32,10 @@ static const char *short_name(arena *a, const char *model_name) {
 static char *text_of(const page_result *p, const char *model_name) {
   char path[1024];
   result_names names = result_list(p->file, "/input/models");
-  const int found = result_names_find(&names, short_name(p->memory, model_name));
-  const char *name = found >= 0 ? names.items[found] : names.count == 1 ? names.items[0] : NULL;
+  const char *wanted = short_name(p->memory, model_name),
+             *name = names.count == 1 ? names.items[0] : NULL;
+  for (int k = 0; k < names.count; k++)
+    if (strcmp(names.items[k], wanted) == 0) name = names.items[k];
   if (name) snprintf(path, sizeof path, "/input/models/%s", name);
   char *text = name ? result_read_text(p->file, path) : NULL;
   result_names_free(&names);

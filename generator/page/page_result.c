@@ -139,6 +139,8 @@ static int monitor_of(const page_result *p, monitor_kind kind) {
 /* A monitor stands in no folder. */
 static void choose_main(page_result *p) {
   p->main = page_series_find(p, "load");
+  for (int k = 0; p->main < 0 && p->deck && k < p->deck->monitor_count; k++)
+    p->main = page_series_find(p, p->deck->monitors[k].name);
   for (int k = 0; p->main < 0 && k < p->series_count; k++)
     if (!strchr(p->series[k].name, '/')) p->main = k;
   p->over = monitor_of(p, MONITOR_OPENING);

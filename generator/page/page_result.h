@@ -25,9 +25,9 @@ typedef struct page_result {
   bool quasi_static;
   const page_series *series; /* [series_count] in alphabetical order */
   int series_count;
-  int main;                  /* the monitor whose peak is told: load, or else the first; -1: none */
-  int over;                  /* what it is drawn over: an opening or a displacement; -1: time */
-  long peak;                 /* sample of its largest size; -1 */
+  int main;  /* the monitor whose peak is told: load, or else the first of the deck; -1: none */
+  int over;  /* what it is drawn over: an opening or a displacement; -1: time */
+  long peak; /* sample of its largest size; -1 */
   const double *frame_times; /* [frames] */
   long frames;
   source_set sources; /* the deck's */

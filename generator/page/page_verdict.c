@@ -106,7 +106,8 @@ static void put_size(FILE *out, const page_result *p) {
 static const char *sentence(const page_result *p, judgement how) {
   if (p->status != 0 && !isnan(p->status)) return "This run did not come to its end.";
   if (how == WRONG) return "The energies of this run do not add up.";
-  return how == DOUBTFUL ? "Done, with warnings." : "Done; nothing was found wrong.";
+  return how == DOUBTFUL ? "Done, with <a href=\"#warnings\">warnings</a>."
+                         : "Done; nothing was found wrong.";
 }
 
 void page_verdict(FILE *out, const page_result *p) {

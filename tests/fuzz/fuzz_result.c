@@ -7,6 +7,7 @@
 #include <hdf5.h>
 #include <string.h>
 
+#include "generator/page/page.h"
 #include "runtime/plot/plot_curve.h"
 #include "runtime/plot/plot_map.h"
 #include "runtime/result/hdf5_tools.h"
@@ -411,6 +412,19 @@ static void draw(void) {
   unlink(path);
 }
 
+/* A page tells why there is none, or is whole. */
+static void make_page(void) {
+  const char *const results[] = {file.path};
+  char *text = NULL;
+  size_t length = 0;
+  FILE *out = open_memstream(&text, &length);
+  MUST(out);
+  const int status = page_of_results(out, "fuzz", results, 1);
+  fclose(out);
+  MUST(status == 1 || (length > 10 && strcmp(text + length - 8, "</html>\n") == 0));
+  free(text);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   if (!right_bytes) begin();
   if (size == 0 || size > LONGEST) return 0;
@@ -436,6 +450,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     read_all(f);
     result_read_close(f);
     if ((how & PICTURES) && fuzz_one_in(choice, 23)) draw();
+    if ((how & PICTURES) && fuzz_one_in(choice, 7)) make_page();
   }
   MUST(H5Fget_obj_count((hid_t)H5F_OBJ_ALL, H5F_OBJ_ALL) == 0); /* nothing was left open */
   return 0;

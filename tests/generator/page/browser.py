@@ -78,8 +78,18 @@ def try_page(browser, folder, result):
     check(wide <= 1200, "the page is no wider than the window")
 
 
+def try_pair(browser, folder):
+    browser.open((folder / "pair.html").as_uri())
+    both = "[...document.querySelectorAll('.movie')].map((m) => m.dataset.frame).join()"
+    move_slider(browser, 0)
+    first = browser.value(both)
+    move_slider(browser, 5)
+    check(first == "0,0" and browser.value(both) == "5,5", "two results go together")
+    check(wrong(browser) == [], "no error and no request: %s" % wrong(browser))
+
+
 def main():
-    with tempfile.TemporaryDirectory(prefix="perilat_browser_") as name:
+    with tempfile.TemporaryDirectory(prefix="perilat_browser_", ignore_cleanup_errors=True) as name:
         folder = pathlib.Path(name)
         environment = dict(os.environ, PERILAT_MODELS=SOURCE + "/models")
         deck = SOURCE + "/examples/notched_beam/d3_s6.35.nml"
@@ -87,9 +97,11 @@ def main():
                         "simulation.end_time=6 ms"], cwd=folder, env=environment, check=True,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         subprocess.run([PERILAT, "report", "beam.h5", "-o", "page.html"], cwd=folder, check=True)
+        subprocess.run([PERILAT, "report", "beam.h5", "beam.h5", "-o", "pair.html"], cwd=folder, check=True)
         browser = Browser(CHROMIUM, folder / "profile")
         try:
             try_page(browser, folder, "beam.h5")
+            try_pair(browser, folder)
         finally:
             browser.process.kill()
             browser.process.wait()

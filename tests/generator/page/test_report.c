@@ -287,6 +287,63 @@ static void wrong_runs_stand_out(void **state) {
   free(page);
 }
 
+/* What a run has said stands in its page; one that warned, or failed, does not look good. */
+static void runs_speak(void **state) {
+  workplace *w = *state;
+  static const struct {
+    int status;
+    const char *ended, *verdict;
+  } rows[] = {{0, "end of the run", "verdict doubtful"},
+              {2, "failed at t = 1 ms: a force is not a number", "verdict wrong"}};
+  const result_text said[] = {{"begin", "  lattice  <of> 3 particles\n"},
+                              {"end", "  load  largest 3 N\n"},
+                              {"warnings", "perilat: warning: not to be trusted\n"}};
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+    char path[400], error[500] = "";
+    snprintf(path, sizeof path, "%s", in_workplace(w, "small.h5"));
+    result_header h = small_header(path);
+    h.deck_name = "it's a deck.nml";
+    result *r = small_begin(&h, error, sizeof error);
+    assert_non_null(r);
+    const double time[2] = {0, 1}, load[2] = {0, 3};
+    const result_series series = {"load", "N", NULL, load, false, NULL};
+    const result_ending e = {.ended = rows[k].ended,
+                             .said = said,
+                             .said_count = 3,
+                             .status = rows[k].status,
+                             .dt = 1,
+                             .steps = 1,
+                             .time = time,
+                             .history_count = 2,
+                             .series = &series,
+                             .series_count = 1};
+    assert_true(result_finish(r, &e, error, sizeof error));
+    result_close(r);
+    expect(w, "report small.h5 -o small.html", 0, "");
+    is_well_formed(w, "small.html");
+    char *page = page_of(w, "small.html");
+    assert_non_null(strstr(page, rows[k].verdict));
+    assert_non_null(strstr(page, "lattice  &lt;of&gt; 3 particles"));
+    assert_non_null(strstr(page, "load  largest 3 N"));
+    assert_non_null(strstr(page, "warning: not to be trusted"));
+    assert_non_null(strstr(page, "perilat run &#39;it&#39;\\&#39;&#39;s a deck.nml&#39;"));
+    if (k == 1) assert_non_null(strstr(page, "exit status 2"));
+    free(page);
+  }
+}
+
+/* A mesh, solved for at rest. */
+static void shows_meshes(void **state) {
+  workplace *w = *state;
+  expect(w, "run " SOURCE_DIR "/examples/cook/cook.nml --set output.result=cook.h5", 0, "written");
+  expect(w, "report cook.h5", 0, "written cook.html");
+  is_well_formed(w, "cook.html");
+  char *page = page_of(w, "cook.html");
+  assert_non_null(strstr(page, "\"cellCount\": 1024"));
+  assert_non_null(strstr(page, "hooke"));
+  free(page);
+}
+
 static void without_frames(void **state) {
   workplace *w = *state;
   char path[400], error[500] = "";
@@ -444,6 +501,8 @@ int main(void) {
       cmocka_unit_test(says_what_a_text_would_command),
       IN_WORKPLACE(leaves_what_is_there),
       IN_WORKPLACE(wrong_runs_stand_out),
+      IN_WORKPLACE(runs_speak),
+      IN_WORKPLACE(shows_meshes),
       IN_WORKPLACE(without_frames),
       IN_WORKPLACE(shows_studies),
       IN_WORKPLACE(pages_stay_small),
