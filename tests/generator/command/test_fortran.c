@@ -15,6 +15,7 @@
 #include <strings.h>
 
 #include "generator/drive/drive_grammar.h"
+#include "generator/exercise/exercise_grammar.h"
 #include "generator/kernel/model.h"
 #include "runtime/base/namelist.h"
 #include "runtime/deck/deck_groups.h"
@@ -352,11 +353,22 @@ static void fortran_reads_every_path(void **state) {
   let_go(&c);
 }
 
+static void fortran_reads_every_exercise(void **state) {
+  workplace *w = *state;
+  skip_without_compiler(w);
+  collection c = {.grammar = &exercise_grammar, .memory = arena_new()};
+  add_of_course(&c, "\n&exercise");
+  assert_true(c.count > 6);
+  expect_decks(w, &c);
+  let_go(&c);
+}
+
 /* A namelist and a variable in it cannot share a name. */
 static void no_key_is_named_like_its_group(void **state) {
   (void)state;
-  const deck_grammar *const grammars[] = {&deck_grammar_of_decks, &drive_grammar};
-  for (size_t f = 0; f < 2; f++)
+  const deck_grammar *const grammars[] = {&deck_grammar_of_decks, &drive_grammar,
+                                          &exercise_grammar};
+  for (size_t f = 0; f < sizeof grammars / sizeof *grammars; f++)
     for (int g = 0; g < grammars[f]->group_count; g++) {
       const deck_group_info *info = grammars[f]->groups[g];
       for (int k = 0; k < info->key_count; k++)
@@ -369,6 +381,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       T(fortran_reads_every_deck),
       T(fortran_reads_every_path),
+      T(fortran_reads_every_exercise),
       cmocka_unit_test(no_key_is_named_like_its_group),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
