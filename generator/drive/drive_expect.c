@@ -195,8 +195,10 @@ static void pass_on(const judge *j, const closed_forms *f, const diagnostic *m) 
       if (where.end > e->formula_where.end) where.end = e->formula_where.end;
       if (where.begin >= where.end) where = e->formula_where;
     }
-    diag_report(j->d, m->code, where, "%s", m->message);
-    if (m->hint) diag_hint(j->d, "%s", m->hint);
+    const bool hole = m->code == DIAG_HOLE; /* the output's name is nobody's */
+    diag_report(j->d, m->code, where, "%s",
+                hole ? "this formula is still to be written" : m->message);
+    if (m->hint && !hole) diag_hint(j->d, "%s", m->hint);
     return;
   }
   diag_report(j->d, m->code, quantity_where(&j->in->expects[0]),

@@ -92,8 +92,8 @@ static void put_names(const drawing *w) {
 
 /* --- curves ----------------------------------------------------------------------------------- */
 
-/* Samples one after the other that stand in the same column of the picture, a unit wide: of many the
-   first, the least, the largest and the last are seen. */
+/* Samples one after the other that stand in the same column of the picture, a unit wide: of many
+   the first, the least, the largest and the last are seen. */
 typedef struct column {
   long first, least, most, last; /* first negative: empty */
   double number;

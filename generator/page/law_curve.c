@@ -118,7 +118,8 @@ static answer answer_of(const drive_table *t) {
   return s;
 }
 
-/* 1: drawn; -1: pressed. Far enough to see it soften, or bend; a thousandth where it does neither. */
+/* `way` is 1 (drawn) or -1 (pressed). Far enough to see it soften, or bend; a thousandth where it
+   does neither. */
 static double choose_most(const driver *r, double way) {
   enum { LEAST = 1, MOST = 13 };
   double bend = INFINITY, softens = INFINITY, most = 1e-5;

@@ -139,7 +139,7 @@ void page_put_colours(json *w) {
 
 /* --- pictures --------------------------------------------------------------------------------- */
 
-enum { STILLS = 4 };
+enum { STILLS = 4, MANY = 20000 };
 #define PICTURE_LIMIT ((size_t)16 << 20) /* B */
 
 /* The one nearest to the peak, the last, and two between; all, where there are no more. */
@@ -196,7 +196,8 @@ static char *draw_stills(const page_result *p, const movie *m, size_t *length, c
   }
   close(handle);
   const int all = choose_stills(p, m, frames);
-  for (int count = all; count > 0; count /= 2) {
+  const bool many = m->particles > MANY && all > STILLS / 2; /* each takes a second, and room */
+  for (int count = many ? STILLS / 2 : all; count > 0; count /= 2) {
     free(picture);
     picture = draw_frames(p, m, path, frames + all - count, count, length, error, size);
     if (!picture || *length <= picture_room(m)) break;

@@ -6,9 +6,7 @@
 
 #include "dsl/base/arena.h"
 #include "generator/page/html.h"
-
-/* Of the largest energy: what the run warns of, too (report_trust.c). */
-#define MUCH 0.05
+#include "generator/report/report_trust.h"
 
 typedef enum judgement { GOOD, DOUBTFUL, WRONG } judgement;
 static const char *const judgement_names[] = {"good", "doubtful", "wrong"};
@@ -24,11 +22,17 @@ static double imbalance_of(const page_result *p, const char **why) {
   return largest > 0 ? fabs(p->series[found].values[p->samples - 1]) / largest : NAN;
 }
 
-static judgement judge(const page_result *p) {
+/* As the run has judged; of a result that does not say what its run said, by the number. */
+static bool is_unbalanced(const page_result *p) {
   const char *why;
   const double imbalance = imbalance_of(p, &why);
+  if (*p->said_end) return strstr(p->said_warnings, IMBALANCE_WARNED) != NULL;
+  return !why && imbalance > MUCH_IMBALANCE;
+}
+
+static judgement judge(const page_result *p) {
   if (p->status != 0 && !isnan(p->status)) return WRONG;
-  if (!why && imbalance > MUCH) return WRONG;
+  if (is_unbalanced(p)) return WRONG;
   return *p->said_warnings ? DOUBTFUL : GOOD;
 }
 
@@ -77,7 +81,7 @@ static void put_imbalance(FILE *out, const page_result *p) {
   const char *why;
   const double part = imbalance_of(p, &why);
   if (isnan(part) && !why) return;
-  open_card(out, "energy imbalance", !why && part > MUCH ? WRONG : GOOD);
+  open_card(out, "energy imbalance", is_unbalanced(p) ? WRONG : GOOD);
   if (why)
     html_print(out, "not checked");
   else

@@ -84,14 +84,13 @@ static bool keeps_energy(const run *r) {
 }
 
 static void warn_of_imbalance(const run *r) {
-  static const double MUCH = 0.05; /* of the largest energy */
   const char *unchecked;
   simulation_imbalance(r->simulation, &unchecked);
   const double left =
       fabs(last_value(r, "energy/imbalance")) / simulation_largest_energy(r->simulation);
-  if (unchecked || !isfinite(left) || left <= MUCH || !keeps_energy(r)) return;
+  if (unchecked || !isfinite(left) || left <= MUCH_IMBALANCE || !keeps_energy(r)) return;
   fprintf(stderr,
-          "perilat: warning: the energies do not add up: in the end %.2g %% of the largest energy "
+          "perilat: warning: " IMBALANCE_WARNED ": in the end %.2g %% of the largest energy "
           "is missing or too much\n"
           "  either `energy W` is not that of the law's stress or forces (`perilat check` looks), "
           "or the step is too large:\n  run it with a smaller `step_safety`%s and compare\n",

@@ -5,6 +5,11 @@
 
 #include "generator/report/run_state.h"
 
+/* Of the largest energy: more than this missing or too much is warned of, with these words, where
+   the law says that it keeps energy. */
+#define MUCH_IMBALANCE   0.05
+#define IMBALANCE_WARNED "the energies do not add up"
+
 /* Steps that have become too long for a mesh, as its points became stiffer or its cracks grew: why
    the run may have failed, or a warning. */
 void tell_of_steps(const run *r, bool failed);

@@ -5,12 +5,13 @@
 #include "generator/grade/judge_table.h"
 #include "generator/kernel/document.h"
 
-bool grade_in_child(marks *m, const judge_request *q, const handed_in *answer,
-                    const confinement *to) {
+bool grade_child_begin(judging_child *c, marks *m, const judge_request *q, const handed_in *answer,
+                       const confinement *to) {
   judge_request here = *q;
   char *said;
   size_t size;
   (void)to;
+  *c = (judging_child){.m = m, .from = -1};
   if (!answer->file) {
     m->trouble = "there is no answer";
     return true;
@@ -26,4 +27,8 @@ bool grade_in_child(marks *m, const judge_request *q, const handed_in *answer,
   if (!m->ended) m->trouble = "it could not be judged to the end";
   free(said);
   return true;
+}
+
+void grade_child_end(judging_child *c, const confinement *to) {
+  (void)c, (void)to;
 }

@@ -555,6 +555,13 @@ static void a_rejected_law_is_named(void **state) {
   assert_null(strstr(text, "rejects"));
 }
 
+static void a_formula_with_holes_is_named(void **state) {
+  (void)state;
+  write_file("accepted.plm", ANSWER "  force N = 3 [kN]*stretch\nend model\n");
+  drive("&material model = 'accepted' /\n" PULLED "&expect quantity = 'N' formula = '?' /\n", "", 1,
+        "drive_test.nml:3:35: error: this formula is still to be written [hole]");
+}
+
 static void a_law_with_holes_is_not_driven(void **state) {
   (void)state;
   write_file("holes.plm", ANSWER "  constant EA = ?\n  force N = EA*stretch\nend model\n");
@@ -615,6 +622,7 @@ int main(void) {
       cmocka_unit_test(the_reference_is_true),
       cmocka_unit_test(info_says_what_a_law_implies),
       cmocka_unit_test(a_rejected_law_is_named),
+      cmocka_unit_test(a_formula_with_holes_is_named),
       cmocka_unit_test(a_law_with_holes_is_not_driven),
       cmocka_unit_test(confined_drives_keep_to_their_folder),
       cmocka_unit_test(info_refuses),
