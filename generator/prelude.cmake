@@ -1,6 +1,6 @@
-# Writes the texts of kernel.h and elementary.h as C string constants: emitted kernels are self-contained.
-file(WRITE ${OUT} "/* Generated from runtime/kernel.h and dsl/base/elementary.h. */\n#include \"generator/target/prelude.h\"\n")
-foreach(pair "kernel_h;runtime/kernel.h" "elementary_h;dsl/base/elementary.h")
+# Writes the texts of kernel.h, elementary.h and rectangle.h as C string constants: emitted kernels are self-contained.
+file(WRITE ${OUT} "/* Generated from runtime/kernel.h, dsl/base/elementary.h and runtime/rectangle.h. */\n#include \"generator/target/prelude.h\"\n")
+foreach(pair "kernel_h;runtime/kernel.h" "elementary_h;dsl/base/elementary.h" "rectangle_h;runtime/rectangle.h")
   list(GET pair 0 name)
   list(GET pair 1 path)
   file(READ ${SOURCE_DIR}/${path} hex HEX)

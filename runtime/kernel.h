@@ -330,6 +330,25 @@ typedef struct pl_points {
 typedef void (*pl_point_function)(const struct pl_law *law, const double *uniforms,
                                   const pl_points *points);
 
+/* Rectangles of 2 x 2 points side by side along x, all alike (rectangle.h): from displacements of
+   their nodes to forces on them in one loop. `points` are theirs, [count/PL_LANES][4][PL_LANES];
+   its strains and stress are neither read nor written, nor are new fields that always have their
+   initial value. */
+typedef struct pl_rectangles {
+  uint32_t size;
+  long count;                        /* of rectangles, a multiple of PL_LANES */
+  long stride;                       /* doubles from a row of nodes to the next */
+  const double *const *displacement; /* [2] m, from the lower left node of the first */
+  const double *const *velocity;     /* [2] m/s; laws that do not read rates need none */
+  const struct pl_rectangle *slopes; /* of strains, 1/m */
+  const struct pl_rectangle *push;   /* of forces: times the volume of a point, m^2 */
+  double *const *force;              /* [8][count] N, written: along x at each node, along y */
+  const pl_points *points;
+} pl_rectangles;
+
+typedef void (*pl_rectangle_function)(const struct pl_law *law, const double *uniforms,
+                                      const pl_rectangles *cells);
+
 /* Tips of cracks. */
 enum pl_tip_input {
   PL_TIP_K_I,
@@ -479,6 +498,11 @@ typedef struct pl_law {
   void (*size_bounds)(const struct pl_law *law, const double *parameters, double *lower,
                       double *upper, unsigned char *low_open, unsigned char *high_open);
   const char *size_reason;
+
+  /* Of laws of a continuum in the plane that cost little: point_step and point_ledger for whole
+     rectangles, to the bit the same. NULL: the host asks point by point. */
+  pl_rectangle_function rectangle_step;
+  pl_rectangle_function rectangle_ledger;
 } pl_law;
 
 /* The one symbol that a compiled kernel exports. */

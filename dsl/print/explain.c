@@ -250,7 +250,10 @@ static void put_fields(const page *p) {
     put_dimension_cell(p, s->dim);
     fputs(placement_name(s->place), p->out);
     next_cell(p);
-    fprintf(p->out, s->shape == SHAPE_TENSOR ? "tensor %g" : "%g",
+    fprintf(p->out,
+            s->deviator                ? "deviator %g"
+            : s->shape == SHAPE_TENSOR ? "tensor %g"
+                                       : "%g",
             s->kind == SYMBOL_DAMAGE ? 0.0 : s->initial);
     next_cell(p);
     if (s->doc) put_text(p, s->doc);

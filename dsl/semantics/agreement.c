@@ -97,6 +97,7 @@ value agree(checker *ck, span where, expr *a, value va, expr *b, value vb, const
     hint_unit(ck, a, b, va, vb);
     return BROKEN;
   }
+  va.deviator &= vb.deviator;
   return joined(ck, va, vb);
 }
 

@@ -157,7 +157,7 @@ enum { MOVES, FIXED };
     "x = principal(fit(stretch), 1)", "principal value 1, 2 or 3 of a tensor, largest first")      \
   X(TRACE, "trace", 1, 1, tensor_to_scalar, NO_VALUE, "\\operatorname{tr}",                        \
     "x = trace(fit(stretch))", "trace of a tensor")                                                \
-  X(DEV, "dev", 1, 1, tensor_argument, NO_VALUE, "\\operatorname{dev}",                            \
+  X(DEV, "dev", 1, 1, deviator_of_tensor, NO_VALUE, "\\operatorname{dev}",                            \
     "x = norm(dev(fit(stretch)))", "deviator of a tensor")                                         \
   X(J2, "J2", 1, 1, tensor_to_scalar, NO_VALUE, "J_{2}", "x = J2(virtual_work(F))",                \
     "second invariant of a stress deviator")                                                       \

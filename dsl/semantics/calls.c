@@ -24,7 +24,7 @@ static value bad_shape(checker *ck, const expr *e, value v, const char *hint) {
 static value with_shape(value v, dimension dim, shape s) {
   v.dim = dim;
   v.shape = s;
-  v.zero = v.whole = false;
+  v.zero = v.whole = v.deviator = false;
   return v;
 }
 
@@ -225,6 +225,7 @@ static value derivative(checker *ck, expr *e) {
   /* A moment by a rotation: a number in two dimensions. */
   bool both = f.shape == SHAPE_BENDING && x.shape == SHAPE_BENDING;
   v.shape = both ? SHAPE_SCALAR : f.shape != SHAPE_SCALAR ? f.shape : x.shape;
+  v.deviator = f.deviator || x.deviator;
   return v;
 }
 
@@ -329,6 +330,12 @@ static value tensor_argument(checker *ck, expr *e) {
   return bad_shape(ck, e, v, "it takes a stress or strain");
 }
 
+static value deviator_of_tensor(checker *ck, expr *e) {
+  value v = tensor_argument(ck, e);
+  v.deviator = !v.broken && !v.unknown;
+  return v;
+}
+
 static value tensor_to_scalar(checker *ck, expr *e) {
   value v = tensor_argument(ck, e);
   if (v.broken || v.unknown) return v;
@@ -387,9 +394,12 @@ static value tensor_of_components(checker *ck, expr *e) {
     diag_hint(ck->d, "they are xx, yy, zz, xy, and out of the plane yz, xz");
     return BROKEN;
   }
+  const bool zero = all.zero;
   all.zero = false;
   all.unknown &= ck->holes;
-  return with_shape(all, all.dim, SHAPE_TENSOR);
+  all = with_shape(all, all.dim, SHAPE_TENSOR);
+  all.deviator = zero;
+  return all;
 }
 
 static value (*const calls[FUNCTION_COUNT])(checker *ck, expr *e) = {

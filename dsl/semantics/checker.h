@@ -9,10 +9,11 @@ typedef struct value {
   dimension dim;
   shape shape;
   placement place;
-  bool zero;    /* the literal 0, which agrees with any unit and any shape */
-  bool unknown; /* unit and shape are not known (yet): agrees with everything */
-  bool broken;  /* an error was reported: say nothing more */
-  bool whole;   /* a family's values taken together: x without [j] */
+  bool zero;     /* the literal 0, which agrees with any unit and any shape */
+  bool unknown;  /* unit and shape are not known (yet): agrees with everything */
+  bool broken;   /* an error was reported: say nothing more */
+  bool deviator; /* a tensor whose trace is 0 by what it is made of */
+  bool whole;    /* a family's values taken together: x without [j] */
 } value;
 
 typedef enum name_space { SPACE_QUANTITIES, SPACE_FUNCTIONS, SPACE_CHOICES, SPACE_DECK } name_space;

@@ -19,6 +19,11 @@ law_setting law_first_setting(const law *l) {
   return SETTING_PLANE_STRESS;
 }
 
+int law_field_of(const symbol *tensor, int k) {
+  if (!tensor->deviator) return tensor->index + k;
+  return k == TENSOR_TRACED ? -1 : tensor->index + k - (k > TENSOR_TRACED);
+}
+
 const stmt *law_force_state(const law *l) {
   for (int k = 0; k < l->rule_count; k++)
     if (l->rules[k]->kind == STMT_FORCE_STATE) return l->rules[k];

@@ -43,6 +43,7 @@ typedef struct symbol {
   struct symbol *option;             /* CHOICE: its option (NULL for settings) */
   const struct symbol *component_of; /* STATE: the tensor that it is a component of, or NULL */
   int component;
+  bool deviator;    /* STATE: a tensor of trace 0, which is kept without its component zz */
   bool old_is_read; /* STATE, DAMAGE: some rule reads the value of the last step */
   bool used;        /* a force or an output depends on it */
 } symbol;
@@ -109,6 +110,9 @@ typedef struct law {
 const char *law_setting_name(law_setting setting);
 /* The first that the law names in its line `for`; plane stress without one. */
 law_setting law_first_setting(const law *l);
+/* Of a state that is a tensor, the field that keeps component k; -1 of zz of a deviator, which is
+   -(xx + yy). */
+int law_field_of(const symbol *tensor, int k);
 /* The line `force state` of a law of families; NULL without one. */
 const stmt *law_force_state(const law *l);
 

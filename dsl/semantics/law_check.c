@@ -98,6 +98,30 @@ static bool refuse_tensor(checker *ck, const stmt *s, const entry *field) {
   return true;
 }
 
+/* Where a tensor gets its trace from: the first part of it that is no deviator. */
+static expr *traced_part(expr *e) {
+  if (e->kind == EXPR_CASES)
+    for (int k = 0; k < e->case_count; k++)
+      if (!e->cases[k].value->deviator) return traced_part(e->cases[k].value);
+  if (e->kind == EXPR_UNARY && e->left->shape == SHAPE_TENSOR) return traced_part(e->left);
+  if (e->kind != EXPR_BINARY) return e;
+  if (e->left->shape == SHAPE_TENSOR && !e->left->deviator) return traced_part(e->left);
+  if (e->right->shape == SHAPE_TENSOR && !e->right->deviator) return traced_part(e->right);
+  return e;
+}
+
+/* What is kept without its component zz needs a trace of 0. */
+static bool refuse_trace(checker *ck, const stmt *s, const entry *field, value v) {
+  if (!field->symbol.declared->deviator || v.deviator || v.zero || v.unknown) return false;
+  expr *part = traced_part(s->value);
+  const char *text = written(ck, part, NULL);
+  complain(ck, DIAG_SHAPE, part->where, "the state `%s` is a deviator, but %s may have a trace",
+           s->name, text ? quoted(ck, part, "") : "this");
+  diag_note(ck->d, field->symbol.declared->name_where, "it is declared here");
+  diag_hint(ck->d, "take `dev(%s)`, or declare the state `tensor 0`", text ? text : "...");
+  return true;
+}
+
 static void check_field_rule(checker *ck, stmt *s, entry *field, value v) {
   const char *what = arena_printf(ck->memory, "the %s `%s`",
                                   field->symbol.kind == SYMBOL_STATE ? "state" : "damage", s->name);
@@ -114,13 +138,17 @@ static void check_field_rule(checker *ck, stmt *s, entry *field, value v) {
   }
   if (!field->known) {
     if (v.unknown) return; /* perhaps in the next pass */
-    v.zero = false;
-    if (field->symbol.declared->tensor) v.shape = SHAPE_TENSOR; /* a rule that is not is refused */
-    v.place = field->symbol.place;
-    field->type = v;
+    value as = v;
+    as.zero = false;
+    if (field->symbol.declared->tensor) as.shape = SHAPE_TENSOR; /* a rule that is not is refused */
+    as.deviator = field->symbol.declared->deviator;
+    as.place = field->symbol.place;
+    field->type = as;
     field->known = true;
   }
-  if (field->type.broken || field->type.unknown || s->kind == STMT_FLOW) return;
+  if (field->type.broken || field->type.unknown) return;
+  if (v.shape == SHAPE_TENSOR && refuse_trace(ck, s, field, v)) return;
+  if (s->kind == STMT_FLOW) return;
   if (v.shape == SHAPE_TENSOR && !v.zero && refuse_tensor(ck, s, field)) return;
   if (!expect(ck, s->value, v, field->type.dim, field->type.shape, what)) return;
 }
@@ -382,6 +410,8 @@ static void infer_states(checker *ck) {
     entry *e = entry_of(ck->law->fields.items[i]);
     if (e->known) continue;
     e->type = scalar_of(DIMENSIONLESS, e->symbol.place);
+    if (e->symbol.declared->tensor) e->type.shape = SHAPE_TENSOR;
+    e->type.deviator = e->symbol.declared->deviator;
     e->type.unknown = ck->holes;
     e->known = true;
   }
@@ -554,11 +584,15 @@ static symbol *component_of(checker *ck, const symbol *whole, int k) {
   return s;
 }
 
+static int kept_components(const symbol *s) {
+  return s->shape == SHAPE_TENSOR ? TENSOR_COMPONENT_COUNT - s->deviator : 1;
+}
+
 static void split_tensors(checker *ck) {
   const symbol_list whole = ck->law->fields;
   int count = 0;
   for (int i = 0; i < whole.count; i++)
-    count += whole.items[i]->shape == SHAPE_TENSOR ? TENSOR_COMPONENT_COUNT : 1;
+    count += kept_components(whole.items[i]);
   if (count == whole.count) return;
   symbol **items = arena_alloc(ck->memory, (size_t)count * sizeof *items);
   count = 0;
@@ -566,6 +600,7 @@ static void split_tensors(checker *ck) {
     symbol *s = whole.items[i];
     s->index = count;
     for (int k = 0; s->shape == SHAPE_TENSOR && k < TENSOR_COMPONENT_COUNT; k++) {
+      if (law_field_of(s, k) < 0) continue;
       items[count] = component_of(ck, s, k);
       items[count]->index = count;
       count++;
@@ -593,6 +628,7 @@ static void publish_types(checker *ck) {
     e->symbol.dim = e->type.dim;
     e->symbol.shape = e->type.shape;
     e->symbol.place = e->type.place;
+    e->symbol.deviator = e->symbol.kind == SYMBOL_STATE && e->type.deviator;
   }
   for (int i = 0; i < RESULT_COUNT; i++) {
     if (!ck->law->results[i]) continue;

@@ -74,6 +74,7 @@ void check_initial_value(checker *ck, stmt *s) {
   if (!v.broken && !v.unknown && s->value && !read_finite(ck, s->value, &e->symbol.initial))
     v = BROKEN;
   if (s->tensor && !v.broken) v.shape = SHAPE_TENSOR;
+  v.deviator = s->deviator;
   if (v.zero || v.unknown) {
     e->infer = !e->known;
     return;

@@ -104,6 +104,7 @@ static value check_component(checker *ck, expr *e) {
   if (v.broken || v.unknown) return v;
   if (v.shape == SHAPE_TENSOR) {
     v.shape = SHAPE_SCALAR;
+    v.deviator = false;
     return v;
   }
   complain(ck, DIAG_SHAPE, e->where, "`%s` is %s and has no component `%c,%c`", e->left->name,
@@ -195,6 +196,7 @@ static value check_product(checker *ck, expr *e, value a, value b) {
     return v;
   }
   v.shape = a.shape != SHAPE_SCALAR ? a.shape : b.shape;
+  v.deviator = a.deviator || b.deviator;
   if (divide && b.shape != SHAPE_SCALAR) {
     complain(ck, DIAG_SHAPE, e->right->where, "%s cannot be divided by", shape_words(b.shape));
     diag_hint(ck->d, "divide by its magnitude: `norm(%s)`", written(ck, e->right, "..."));
@@ -403,6 +405,7 @@ value check_family(checker *ck, expr *e) {
   e->dim = v.dim;
   e->shape = v.shape;
   e->place = v.place;
+  e->deviator = v.deviator || v.zero;
   e->open = v.unknown || v.broken;
   return v;
 }

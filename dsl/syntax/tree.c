@@ -297,7 +297,7 @@ static void dump_stmt(const stmt *s, FILE *out) {
     fprintf(out, "text \"%s\"\n", s->text);
   }
   dump_bounds(&s->in, 2, out);
-  dump_labelled(s->tensor ? "tensor" : "value", s->value, 2, out);
+  dump_labelled(s->deviator ? "deviator" : s->tensor ? "tensor" : "value", s->value, 2, out);
   dump_labelled("when", s->when, 2, out);
 }
 

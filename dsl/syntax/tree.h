@@ -85,6 +85,8 @@ typedef enum placement {
 #define TENSOR_COMPONENTS(X)                                                                       \
   X(XX, 'x', 'x') X(YY, 'y', 'y') X(ZZ, 'z', 'z') X(XY, 'x', 'y') X(YZ, 'y', 'z') X(XZ, 'x', 'z')
 enum { TENSOR_COMPONENT_COUNT = 6 };
+/* The component that follows from the others where the trace is 0: zz = -(xx + yy). */
+enum { TENSOR_TRACED = 2 };
 
 struct symbol; /* law.h */
 struct function_builtin;
@@ -139,6 +141,7 @@ struct expr {
   bool open;             /* unit and shape are not known, because of a hole or an error */
   dimension dim;
   enum shape shape;
+  bool deviator; /* a tensor whose trace is 0 by what it is made of */
   placement place;
 };
 
@@ -146,12 +149,12 @@ typedef enum stmt_kind {
 #define TREE_STATEMENTS(X)                                                                         \
   X(PARAMETER, "parameter")                                                                        \
   X(CONSTANT, "constant")                                                                          \
-  X(OPTION, "option") X(DEFINITION, "definition") X(STATE, "state") X(DAMAGE, "damage")            \
-      X(FUNCTION, "function") X(FORCE, "force") X(FORCE_STATE, "force state") X(MOMENT, "moment")  \
-          X(ENERGY, "energy") X(STRESS, "stress") X(STRAIN, "strain") X(YIELD, "yield")            \
-              X(FLOW, "flow") X(OUTPUT, "output") X(NONCONSERVATIVE, "nonconservative")            \
-                  X(INCLUDE, "include") X(GROW, "grow") X(TOWARD, "toward") X(SPEED, "speed")      \
-                      X(REQUIRE, "require")
+  X(OPTION, "option")                                                                              \
+  X(DEFINITION, "definition") X(STATE, "state") X(DAMAGE, "damage") X(FUNCTION, "function")        \
+      X(FORCE, "force") X(FORCE_STATE, "force state") X(MOMENT, "moment") X(ENERGY, "energy")      \
+          X(STRESS, "stress") X(STRAIN, "strain") X(YIELD, "yield") X(FLOW, "flow")                \
+              X(OUTPUT, "output") X(NONCONSERVATIVE, "nonconservative") X(INCLUDE, "include")      \
+                  X(GROW, "grow") X(TOWARD, "toward") X(SPEED, "speed") X(REQUIRE, "require")
 #define X(code, text) STMT_##code,
   TREE_STATEMENTS(X)
 #undef X
@@ -183,7 +186,8 @@ struct stmt {
   int word_count;
   expr *when;       /* FLOW: guard */
   bool returned;    /* FLOW along ... returned */
-  bool tensor;      /* STATE: begins at `tensor 0` */
+  bool tensor;      /* STATE: begins at `tensor 0` or `deviator 0` */
+  bool deviator;    /* STATE: begins at `deviator 0` */
   bool failure;     /* DAMAGE: written `failed when ...` */
   const char *text; /* quoted text: description, reason, or included file */
   span text_where;

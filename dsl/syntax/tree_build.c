@@ -233,13 +233,15 @@ void build_placement(parsing *p, stmt *s, word on) {
 
 void build_tensor_state(parsing *p, stmt *s, word tensor) {
   s->tensor = true;
-  if (strcmp(tensor.text, "tensor") != 0) {
+  s->deviator = strcmp(tensor.text, "deviator") == 0;
+  if (!s->deviator && strcmp(tensor.text, "tensor") != 0) {
     if (!first_complaint(p)) return;
     diag_report(p->messages, DIAG_SYNTAX, tensor.where, "`%s` is not understood here", tensor.text);
-    diag_hint(p->messages, "a state that is a tensor begins with `= tensor 0`");
+    diag_hint(p->messages, "a state that is a tensor begins with `= tensor 0`, one of trace 0 with "
+                           "`= deviator 0`");
   } else if (s->value->number != 0 && first_complaint(p)) {
-    diag_report(p->messages, DIAG_SYNTAX, s->value->where, "a tensor begins at 0");
-    diag_hint(p->messages, "write `tensor 0`");
+    diag_report(p->messages, DIAG_SYNTAX, s->value->where, "a %s begins at 0", tensor.text);
+    diag_hint(p->messages, "write `%s 0`", tensor.text);
   }
 }
 

@@ -19,8 +19,8 @@ static const double TANGENT_TOLERANCE = 1e-5; /* of its largest entry, against d
 static const double NO_STIFFNESS = 1e-3;      /* of that at rest: as a point at the tip of a cone */
 static const double SYMMETRY_TOLERANCE = 1e-9; /* of its largest entry */
 static const double PATH_TOLERANCE = 1e-6;     /* of the work of the absolute stresses */
-static const double ROUNDING = 1e-12; /* of an energy */
-static const double TIME_STEP = 1e-6; /* s */
+static const double ROUNDING = 1e-12;          /* of an energy */
+static const double TIME_STEP = 1e-6;          /* s */
 
 static const char MEND_ENERGY[] =
     "give an `energy W` instead, of which the stress is the derivative, or write "
@@ -34,6 +34,14 @@ static const char MEND_ROOT[] =
     "a root of a strain that is 0 has no slope: write `strain : strain` for `norm(strain)**2`, or "
     "keep roots off 0";
 
+static const char MEND_JUMP[] = "let the values of the cases meet where one ends, or write `jump` "
+                                "at the end of the line if the jump is meant";
+static const char MEND_FOLD[] =
+    "let the values of the cases meet where one ends, or write `jump` at the end of the line if "
+    "the "
+    "jump is meant; without cases the strain along z that leaves no stress ends here, as the "
+    "stress "
+    "along z falls with it: let the law be `for plane_strain, space`, or bound what lets it fall";
 static const char MEND_NOT_DEFINED[] = "keep roots, logarithms and divisors off what they are not "
                                        "defined for, by cases or by `max`";
 
@@ -183,7 +191,8 @@ static void check_tangent(point_bench *b) {
                     "the stress or its slope is not finite at a finite strain");
   else if (finite && !b->failed[DIAG_CONTINUITY] && !b->failed[DIAG_NOT_FINITE] &&
            !(difference <= TANGENT_TOLERANCE * scale))
-    point_bench_say(b, DIAG_TANGENT, strain, NULL,
+    point_bench_say(b, DIAG_TANGENT, strain,
+                    b->setting.setting == SETTING_PLANE_STRESS ? MEND_FOLD : NULL,
                     "the tangent is off the stress's differences by %.3g of its largest entry",
                     difference / scale);
 }
@@ -375,11 +384,9 @@ static void check_continuity(point_bench *b, bool meant) {
     memcpy(second ? low : high, next, sizeof next);
   }
   if (isfinite(scale) && change_of(b, low, high) > 1e-4 * scale)
-    point_bench_say(
-        b, DIAG_CONTINUITY, here,
-        "let the values of the cases meet where one ends, or write `jump` at the end of "
-        "the line if the jump is meant",
-        "the stress jumps by %.6g Pa", change_of(b, low, high));
+    point_bench_say(b, DIAG_CONTINUITY, here,
+                    b->setting.setting == SETTING_PLANE_STRESS ? MEND_FOLD : MEND_JUMP,
+                    "the stress jumps by %.6g Pa", change_of(b, low, high));
 }
 
 /* --- closed paths ----------------------------------------------------------------------------- */

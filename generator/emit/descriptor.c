@@ -1,6 +1,7 @@
 #include "generator/emit/descriptor.h"
 
 #include "generator/lower/law_inputs.h"
+#include "generator/plan/plan_points.h"
 #include "generator/plan/program_facts.h"
 #include <string.h>
 
@@ -157,6 +158,9 @@ void descriptor_entry(const kernel_plan *p, c_text *out) {
   if (p->form == FORM_POINTS) {
 #define X(task, member) c_text_add(out, "    .%s = %s,\n", #member, #member);
     POINT_PROGRAMS(X)
+    if (plan_has_rectangles(p)) {
+      RECTANGLE_PROGRAMS(X)
+    }
 #undef X
     c_text_add(out, "    .linear = %d,\n    .reads_size = %d,\n", p->linear, p->reads_size);
     write_sizes(out, p->law->sized);

@@ -12,6 +12,7 @@ static void write_prelude(emitter *e) {
                : of_points                  ? SAY_POINT_OPTIONS
                                             : SAY_STRIP_OPTIONS));
   c_text_add(e->out, "%s\n%s\n", prelude_kernel_h, prelude_elementary_h);
+  if (of_points) c_text_add(e->out, "%s\n", prelude_rectangle_h);
   say(e, SAY_PRELUDE_END);
 }
 

@@ -4,17 +4,25 @@
 #include <string.h>
 
 #include "generator/lower/point_inputs.h"
+#include "generator/plan/plan_points.h"
 
 /* --- inputs ----------------------------------------------------------------------------------- */
 
-static const char *array_of_point(emitter *e, int input) {
-  const int dimensions = e->plan->dimensions;
-  if (input == POINT_CELL_SIZE) return spell(e, SAY_POINT_SIZE);
-  const bool rate = input >= POINT_STRAIN_RATE;
+static bool is_rate(int input) {
+  return input >= POINT_STRAIN_RATE;
+}
+
+/* Of a strain or its rate, among those that the kernel has. */
+static const char *component(emitter *e, int input) {
   int at = 0;
-  while (point_component(dimensions, at) != input % POINT_STRAINS)
+  while (point_component(e->plan->dimensions, at) != input % POINT_STRAINS)
     at++;
-  return spell(e, rate ? SAY_POINT_RATE : SAY_POINT_STRAIN, numeral(e, at));
+  return numeral(e, at);
+}
+
+static const char *array_of_point(emitter *e, int input) {
+  if (input == POINT_CELL_SIZE) return spell(e, SAY_POINT_SIZE);
+  return spell(e, is_rate(input) ? SAY_POINT_RATE : SAY_POINT_STRAIN, component(e, input));
 }
 
 static const char *array_of_input(emitter *e, ir_node n) {
@@ -230,6 +238,91 @@ static void write_program(emitter *e, const segment *a, const char *name) {
   searches_free(&s);
 }
 
+/* --- rectangles ------------------------------------------------------------------------------- */
+
+static bool is_strain(const emitter *e, ir_node n) {
+  return ir_operation(e->graph, n) == IR_INPUT && ir_input_source(e->graph, n) == IR_FROM_POINT &&
+         ir_input_index(e->graph, n) != POINT_CELL_SIZE;
+}
+
+static void declare_beside_strains(emitter *e, ir_node n) {
+  if (!is_strain(e, n)) declare(e, n);
+}
+
+static const char *input_of_rectangle(emitter *e, ir_node n) {
+  const int index = is_strain(e, n) ? ir_input_index(e->graph, n) : 0;
+  return is_strain(e, n) ? spell(e, SAY_RECTANGLE_VALUE,
+                                 is_rate(index) ? "cell_rate" : "cell_strain", component(e, index))
+                         : input(e, n);
+}
+
+static const scope of_rectangles = {.before = "  ",
+                                    .indent = "    ",
+                                    .uniform = SAY_UNIFORM,
+                                    .declare = declare_beside_strains,
+                                    .input = input_of_rectangle};
+
+/* Stress along z pushes no node, and a field that is the same at all times is there already. */
+static bool counts_in_rectangle(const emitter *e, const segment_root *r) {
+  if (r->target == TO_FORCE) return r->index < 3;
+  return r->target != TO_FIELD ||
+         !ir_is_number(e->graph, r->node, e->plan->law->fields.items[r->index]->initial);
+}
+
+static segment of_rectangle(const emitter *e, const segment *a) {
+  segment out = *a;
+  out.root_count = 0;
+  out.roots = arena_alloc(e->memory, ((size_t)a->root_count + 1) * sizeof *out.roots);
+  for (int k = 0; k < a->root_count; k++)
+    if (counts_in_rectangle(e, &a->roots[k])) out.roots[out.root_count++] = a->roots[k];
+  return out;
+}
+
+static void write_results_of_rectangle(emitter *e, const segment *a) {
+  for (int k = 0; k < a->root_count; k++) {
+    const segment_root *r = &a->roots[k];
+    say(e, segment_is_loss(r) ? SAY_ADD : SAY_STORE, "    ",
+        r->target == TO_FORCE ? spell(e, SAY_RECTANGLE_VALUE, "cell_stress", numeral(e, r->index))
+                              : spell(e, SAY_HERE, spell(e, SAY_RESULT_ARRAY, numeral(e, k))),
+        expression_whole(e, r->node));
+  }
+}
+
+enum { CORNERS = 4, AXES = 2 };
+
+static void write_rectangles(emitter *e, const segment *of, const char *name) {
+  const segment a = of_rectangle(e, of);
+  expression_open_segment(e, &of_rectangles, &a);
+  bool rates = false;
+  for (ir_node n = 0; n < e->node_count; n++)
+    rates = rates || (e->needed[n] && is_strain(e, n) && is_rate(ir_input_index(e->graph, n)));
+  kernel_function_begin(&e->parts, e->out, "PL_PASS", name, spell(e, SAY_OVER_RECTANGLES));
+  say(e, SAY_RECTANGLES_HEAD);
+  say(e, SAY_RECTANGLE_FIELD, "cell_strain", "displacement");
+  if (rates) say(e, SAY_RECTANGLE_FIELD, "cell_rate", "velocity");
+  expression_declare(e);
+  for (int k = 0; k < a.root_count; k++)
+    if (a.roots[k].target != TO_FORCE)
+      say(e, SAY_DECLARE, "  ", spell(e, SAY_WRITTEN), spell(e, SAY_RESULT_ARRAY, numeral(e, k)),
+          array_of_root(e, &a.roots[k]));
+  for (int k = 0; k < AXES * CORNERS; k++)
+    say(e, SAY_RECTANGLE_FORCE, numeral(e, k));
+  say(e, SAY_RECTANGLE_LOOP);
+  say(e, SAY_RECTANGLE_STRAINS, "cell_strain");
+  if (rates) say(e, SAY_RECTANGLE_STRAINS, "cell_rate");
+  say(e, SAY_RECTANGLE_POINTS);
+  expression_lines(e);
+  write_results_of_rectangle(e, &a);
+  say(e, SAY_END, "    ");
+  say(e, SAY_RECTANGLE_PUSH);
+  for (int k = 0; k < AXES * CORNERS; k++)
+    say(e, SAY_RECTANGLE_STORE, numeral(e, k), numeral(e, k / CORNERS), numeral(e, k % CORNERS));
+  say(e, SAY_END, "  ");
+  say(e, SAY_END, "  ");
+  kernel_function_end(&e->parts, e->out);
+  expression_close(e);
+}
+
 void point_loops(emitter *e) {
   if (e->plan->form == FORM_TIPS) {
 #define X(task, member) write_program(e, plan_segment(e->plan, task), #member);
@@ -239,5 +332,9 @@ void point_loops(emitter *e) {
   }
 #define X(task, member) write_program(e, plan_segment(e->plan, task), #member);
   POINT_PROGRAMS(X)
+#undef X
+  if (!plan_has_rectangles(e->plan)) return;
+#define X(task, member) write_rectangles(e, plan_segment(e->plan, task), #member);
+  RECTANGLE_PROGRAMS(X)
 #undef X
 }

@@ -1,6 +1,7 @@
 #include "generator/kernel/kernel_check_points.h"
 
 #include "generator/ir/random_values.h"
+#include "runtime/mesh/rectangle_cells.h"
 
 enum { BATCH = 512 };
 
@@ -126,6 +127,96 @@ static void compare_step(const point_arrays *a, const pl_law *reader, const doub
   compare(a, "field of a step", a->new_field[0], a->new_field[1], reader->field_count, c);
 }
 
+/* --- whole rectangles ------------------------------------------------------------------------- */
+
+enum { CELLS = BATCH / 4, STRIDE = CELLS + PL_LANES, AXES = 2 };
+
+/* A row of rectangles, and how its nodes move. */
+typedef struct rectangle_row {
+  pl_rectangle slopes, push;
+  double **displacement, **velocity; /* [AXES][2 STRIDE] */
+  double **force[2];                 /* [RECTANGLE_PUSHES][CELLS] by points, by rectangles */
+} rectangle_row;
+
+static void draw_row(rectangle_row *r, uint64_t *seed) {
+  for (int a = 0; a < 2; a++)
+    for (int b = 0; b < 2; b++) {
+      r->slopes.x[a][b] = draw_uniform(seed, 1, 1e3);
+      r->slopes.y[a][b] = draw_uniform(seed, 1, 1e3);
+    }
+  r->push = rectangle_slopes_times(&r->slopes, draw_uniform(seed, 1e-9, 1));
+  for (int d = 0; d < AXES; d++)
+    for (int n = 0; n < 2 * STRIDE; n++) {
+      r->displacement[d][n] = draw_size(seed, -12, -3);
+      r->velocity[d][n] = draw_size(seed, -6, 3);
+    }
+}
+
+static void strains_of_row(const rectangle_row *r, double *const *nodes, double *const *strain) {
+  for (int first = 0; first < CELLS; first += PL_LANES)
+    rectangle_cells_strain(
+        &r->slopes, (const double *const[]){nodes[0] + first, nodes[1] + first}, STRIDE,
+        (double *const[]){strain[0] + 4 * first, strain[1] + 4 * first, strain[2] + 4 * first});
+}
+
+/* Points of rectangles one by one, and all in one loop. */
+static void ask_row(const point_arrays *a, const rectangle_row *r, const pl_law *reader,
+                    const double *uniforms, bool ledger) {
+  pl_points p = {.size = sizeof p,
+                 .count = BATCH,
+                 .strain = (const double *const *)a->in,
+                 .strain_rate = (const double *const *)a->rate,
+                 .cell_size = a->size[0],
+                 .old_field = (const double *const *)a->field,
+                 .new_field = a->new_field[0],
+                 .stress = a->stress[0],
+                 .lost = a->lost[0],
+                 .time_step = 1e-6};
+  const pl_rectangles cells = {.size = sizeof cells,
+                               .count = CELLS,
+                               .stride = STRIDE,
+                               .displacement = (const double *const *)r->displacement,
+                               .velocity = (const double *const *)r->velocity,
+                               .slopes = &r->slopes,
+                               .push = &r->push,
+                               .force = r->force[1],
+                               .points = &p};
+  strains_of_row(r, r->displacement, a->in);
+  strains_of_row(r, r->velocity, a->rate);
+  (ledger ? reader->point_ledger : reader->point_step)(reader, uniforms, &p);
+  rectangle_cells_push(&r->push, CELLS / PL_LANES, (const double *const *)a->stress[0],
+                       r->force[0]);
+  for (int f = 0; f < reader->field_count; f++)
+    for (int q = 0; q < BATCH; q++)
+      a->new_field[1][f][q] = reader->fields[f].initial;
+  planes_poison(r->force[1], RECTANGLE_PUSHES, CELLS);
+  p.new_field = a->new_field[1];
+  p.lost = a->lost[1];
+  (ledger ? reader->rectangle_ledger : reader->rectangle_step)(reader, uniforms, &cells);
+}
+
+static void compare_rectangles(const point_arrays *a, const pl_law *reader, const double *uniforms,
+                               uint64_t *seed, comparison *c) {
+  if (!PL_HAS(reader, rectangle_ledger) || !reader->rectangle_ledger) return;
+  rectangle_row r = {.displacement = planes_new(AXES, 2 * STRIDE),
+                     .velocity = planes_new(AXES, 2 * STRIDE)};
+  for (int side = 0; side < 2; side++)
+    r.force[side] = planes_new(RECTANGLE_PUSHES, CELLS);
+  for (int ledger = 0; ledger < 2; ledger++) {
+    draw(a, seed);
+    draw_row(&r, seed);
+    ask_row(a, &r, reader, uniforms, ledger);
+    for (int k = 0; k < RECTANGLE_PUSHES; k++)
+      comparison_add(c, "points", "force of a rectangle", k, r.force[0][k], r.force[1][k], CELLS);
+    compare(a, "field of a rectangle", a->new_field[0], a->new_field[1], reader->field_count, c);
+    compare(a, "lost in a rectangle", a->lost[0], a->lost[1], PL_LOSSES, c);
+  }
+  planes_free(r.displacement, AXES);
+  planes_free(r.velocity, AXES);
+  for (int side = 0; side < 2; side++)
+    planes_free(r.force[side], RECTANGLE_PUSHES);
+}
+
 void kernel_check_points(const pl_law *const readers[2], const double *const uniforms[2],
                          long states, uint64_t *seed, comparison *c) {
   const bool tip = readers[0]->kind == PL_CRACK;
@@ -142,5 +233,6 @@ void kernel_check_points(const pl_law *const readers[2], const double *const uni
     compare(&a, "lost", a.lost[0], a.lost[1], PL_LOSSES, c);
     compare_step(&a, readers[0], uniforms[0], c);
   }
+  if (!tip) compare_rectangles(&a, readers[0], uniforms[0], seed, c);
   arrays_free(&a);
 }

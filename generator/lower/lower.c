@@ -11,6 +11,7 @@
 #include "generator/lower/lower_family.h"
 #include "generator/lower/lower_inputs.h"
 #include "generator/lower/lower_slip.h"
+#include "generator/lower/lower_tensor.h"
 #include "generator/lower/lower_value.h"
 #include "generator/lower/point_inputs.h"
 
@@ -92,13 +93,13 @@ static bool moves_a_sum(const ir *g, ir_node over, ir_node lambda) {
 static components along(ir *g, components old, ir_node lambda, components direction) {
   for (int k = 0; k < old.count; k++)
     old.of[k] = ir_add(g, old.of[k], ir_mul(g, lambda, direction.of[k]));
-  return old;
+  return tensor_settled(g, old);
 }
 
 static components chosen(ir *g, ir_node when, components a, components b) {
   for (int k = 0; k < a.count; k++)
     a.of[k] = ir_select(g, when, a.of[k], b.of[k]);
-  return a;
+  return tensor_settled(g, a);
 }
 
 /* 0 where it has returned, else not a number: so that what is made of it is found, and told
@@ -205,10 +206,10 @@ static ir_node of_both_ends(lowering *c, ir_node value) {
 
 /* The inputs at hand, what leaves the plane among them. */
 static components old_of(const lowering *c, const symbol *s) {
-  components old = {s->shape == SHAPE_TENSOR ? TENSOR_COUNT : 1, {0}};
+  components old = {.count = s->shape == SHAPE_TENSOR ? TENSOR_COUNT : 1};
   for (int k = 0; k < old.count; k++)
-    old.of[k] = lower_field(c->graph, c->law, s->index + k);
-  return old;
+    if (law_field_of(s, k) >= 0) old.of[k] = lower_field(c->graph, c->law, law_field_of(s, k));
+  return s->deviator ? tensor_as_deviator(c->graph, old) : old;
 }
 
 static void set_rule(lowering *c, const stmt *rule, int field, ir_node old, ir_node value) {
@@ -243,7 +244,7 @@ static void lower_field_rule(lowering *c, const stmt *rule) {
     value.of[value.count] = value.of[0];
   if (rule->kind == STMT_FLOW) value = flow_once(c, rule, old, value);
   for (int k = 0; k < old.count && !c->failed; k++)
-    set_rule(c, rule, s->index + k, old.of[k], value.of[k]);
+    if (law_field_of(s, k) >= 0) set_rule(c, rule, law_field_of(s, k), old.of[k], value.of[k]);
 }
 
 static void lower_rule(lowering *c, const stmt *rule) {

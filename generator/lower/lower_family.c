@@ -21,7 +21,7 @@ static ir_node neighbour_of(ir *g, ir_node n) {
 components lower_neighbour(ir *g, components value) {
   for (int k = 0; k < value.count; k++)
     value.of[k] = neighbour_of(g, value.of[k]);
-  return value;
+  return tensor_settled(g, value);
 }
 
 ir_node lower_family_size(ir *g) {
@@ -33,7 +33,7 @@ ir_node lower_family_size(ir *g) {
 components lower_direction(ir *g, const law *l) {
   static const ends_input chord[] = {ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y, ENDS_CLASS_CHORD_Z};
   ir_node s = lower_quantity(g, QUANTITY_S);
-  components v = {3, {0}};
+  components v = {.count = 3};
   for (int k = 0; k < 3; k++)
     v.of[k] =
         k == 2 && is_plane(l) ? ir_constant(g, 0) : ir_div(g, kinematics_input(g, chord[k]), s);
@@ -47,7 +47,7 @@ static ir_node family_sum(ir *g, ir_node n) {
 static components sum_of(ir *g, components v) {
   for (int k = 0; k < v.count; k++)
     v.of[k] = family_sum(g, v.of[k]);
-  return v;
+  return tensor_settled(g, v);
 }
 
 /* Sums over a divisor, which is 1 where it would be 0: a particle without bonds has mean 0. */
@@ -56,7 +56,7 @@ static components over(ir *g, components sums, ir_node divisor) {
   ir_node safe = ir_select(g, none, ir_constant(g, 1), divisor);
   for (int k = 0; k < sums.count; k++)
     sums.of[k] = ir_div(g, sums.of[k], safe);
-  return sums;
+  return tensor_settled(g, sums);
 }
 
 static components mean_of(ir *g, components v) {
@@ -66,6 +66,7 @@ static components mean_of(ir *g, components v) {
 static components weighted_mean(ir *g, components v, ir_node weight) {
   for (int k = 0; k < v.count; k++)
     v.of[k] = ir_mul(g, weight, v.of[k]);
+  v = tensor_settled(g, v);
   return over(g, sum_of(g, v), family_sum(g, weight));
 }
 
@@ -78,7 +79,7 @@ static ir_node family_extreme(ir *g, ir_node n, ir_op op) {
 
 /* Products n n^T of the reference direction; what leaves the plane is 0. */
 static components dyad(ir *g, const law *l) {
-  components n = lower_direction(g, l), v = {TENSOR_COUNT, {0}};
+  components n = lower_direction(g, l), v = {.count = TENSOR_COUNT};
   static const int first[] = {0, 1, 2, 0, 1, 0}, second[] = {0, 1, 2, 1, 2, 2};
   for (int k = 0; k < TENSOR_COUNT; k++) {
     bool outside = is_plane(l) && (first[k] == 2 || second[k] == 2);
@@ -119,7 +120,7 @@ ir_node lower_force_of_density(ir *g, const law *l, ir_node density) {
 
 static components virtual_work(lowering *c, const expr *e, ir_node force) {
   ir *g = c->graph;
-  components n = dyad(g, c->law), v = {TENSOR_COUNT, {0}};
+  components n = dyad(g, c->law), v = {.count = TENSOR_COUNT};
   ir_node V = lower_volume(g, c->law);
   if (lower_is_per_volumes(e->arguments[0].value->dim))
     force = lower_force_of_density(g, c->law, force);
@@ -139,7 +140,7 @@ static components virtual_work(lowering *c, const expr *e, ir_node force) {
 static components fit(lowering *c, const expr *e, ir_node stretch) {
   ir *g = c->graph;
   int size = strain_count(c->law);
-  components n = dyad(g, c->law), v = {TENSOR_COUNT, {0}};
+  components n = dyad(g, c->law), v = {.count = TENSOR_COUNT};
   ir_node sums[TENSOR_COUNT];
   if (c->law->irregular) stretch = ir_mul(g, lower_quantity(g, QUANTITY_S), stretch);
   for (int k = 0; k < size; k++)
@@ -240,10 +241,13 @@ components lower_family_call(lowering *c, const expr *e, const components *a) {
   case FUNCTION_VON_MISES:
     return scalar(ir_unary(g, IR_SQRT, ir_mul(g, ir_constant(g, 3), tensor_J2(g, a[0]))));
   case FUNCTION_TENSOR: {
-    components v = {TENSOR_COUNT, {0}};
-    for (int k = 0; k < TENSOR_COUNT; k++)
+    components v = {.count = TENSOR_COUNT};
+    bool zero = true;
+    for (int k = 0; k < TENSOR_COUNT; k++) {
       v.of[k] = k < e->argument_count ? a[k].of[0] : ir_constant(g, 0);
-    return v;
+      zero &= ir_is_number(g, v.of[k], 0);
+    }
+    return zero ? tensor_as_deviator(g, v) : v;
   }
   default:
     return lower_failed_value(c, e->where, "this function cannot be compiled here");

@@ -11,7 +11,7 @@ typedef struct half_turn {
 } half_turn;
 
 static components half_angle(const lowering *c) {
-  components h = {lower_bending_axes(c->law), {0}};
+  components h = {.count = lower_bending_axes(c->law)};
   for (int k = 0; k < h.count; k++) {
     const ir_node i = lower_bending(c->graph, c->law, QUANTITY_THETA_I, k),
                   j = lower_bending(c->graph, c->law, QUANTITY_THETA_J, k);
@@ -74,7 +74,7 @@ static ir_node slip_of(const lowering *c) {
 static components gap_of(const lowering *c) {
   ir *g = c->graph;
   const half_turn t = half_turn_of(c);
-  components gap = {t.sine.count, {0}};
+  components gap = {.count = t.sine.count};
   const ir_node scale = ir_neg(g, ir_mul(g, twice_length(g), t.cosine));
   for (int k = 0; k < gap.count; k++)
     gap.of[k] = ir_mul(g, scale, t.sine.of[k]);

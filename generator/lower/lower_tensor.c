@@ -1,14 +1,39 @@
 #include "generator/lower/lower_tensor.h"
 
+#include <string.h>
+
 static bool is_shear(int k) {
   return k >= TENSOR_XY;
+}
+
+bool tensor_is_deviator(const ir *g, const components *a) {
+  return a->traced && ir_is_number(g, a->trace, 0);
+}
+
+components tensor_as_deviator(ir *g, components a) {
+  a.of[TENSOR_ZZ] = ir_neg(g, ir_add(g, a.of[TENSOR_XX], a.of[TENSOR_YY]));
+  a.traced = true;
+  a.trace = ir_constant(g, 0);
+  return a;
+}
+
+components tensor_settled(ir *g, components a) {
+  if (tensor_is_deviator(g, &a)) return tensor_as_deviator(g, a);
+  a.traced = false;
+  return a;
 }
 
 ir_node tensor_scaled(ir *g, ir_node factor, ir_node component) {
   return ir_is_number(g, component, 0) ? component : ir_mul(g, factor, component);
 }
 
+static bool are_same(const components *a, const components *b) {
+  return memcmp(a->of, b->of, sizeof a->of) == 0;
+}
+
 ir_node tensor_contract(ir *g, components a, components b) {
+  if (tensor_is_deviator(g, &a) && are_same(&a, &b))
+    return ir_mul(g, ir_constant(g, 2), tensor_J2(g, a));
   ir_node sum = ir_constant(g, 0);
   for (int k = 0; k < a.count; k++) {
     ir_node term = ir_mul(g, a.of[k], b.of[k]);
@@ -19,24 +44,31 @@ ir_node tensor_contract(ir *g, components a, components b) {
 }
 
 ir_node tensor_trace(ir *g, components a) {
+  if (a.traced) return a.trace;
   ir_node plane = ir_add(g, a.of[TENSOR_XX], a.of[TENSOR_YY]);
   return ir_add(g, plane, a.of[TENSOR_ZZ]);
 }
 
 components tensor_deviator(ir *g, components a) {
+  if (tensor_is_deviator(g, &a)) return a;
   ir_node third = ir_div(g, tensor_trace(g, a), ir_constant(g, 3));
-  for (int k = 0; k < TENSOR_XY; k++)
+  for (int k = 0; k < TENSOR_ZZ; k++)
     a.of[k] = ir_sub(g, a.of[k], third);
-  return a;
+  return tensor_as_deviator(g, a);
 }
 
 static ir_node root(ir *g, ir_node n) {
   return ir_unary(g, IR_SQRT, n);
 }
 
+/* Half of the deviator's square: xx (xx + yy) + yy^2 and the squares of the shears. */
 ir_node tensor_J2(ir *g, components a) {
-  components s = tensor_deviator(g, a);
-  return half(g, tensor_contract(g, s, s));
+  const components s = tensor_deviator(g, a);
+  const ir_node xx = s.of[TENSOR_XX], yy = s.of[TENSOR_YY];
+  ir_node sum = ir_add(g, ir_mul(g, xx, ir_add(g, xx, yy)), ir_mul(g, yy, yy));
+  for (int k = TENSOR_XY; k < TENSOR_COUNT; k++)
+    sum = ir_add(g, sum, ir_mul(g, s.of[k], s.of[k]));
+  return sum;
 }
 
 /* The pair in the plane, and the third direction among them. */
@@ -106,12 +138,42 @@ components tensor_hooke(ir *g, law_setting setting, components eps, ir_node E, i
     sum = tensor_trace(g, eps);
   }
   ir_node pressure = ir_mul(g, lambda, sum);
+  components sigma = {.count = TENSOR_COUNT};
   for (int k = 0; k < TENSOR_COUNT; k++) {
-    eps.of[k] = tensor_scaled(g, twice_mu, eps.of[k]);
-    if (k < TENSOR_XY) eps.of[k] = ir_add(g, pressure, eps.of[k]);
+    sigma.of[k] = tensor_scaled(g, twice_mu, eps.of[k]);
+    if (k < TENSOR_XY) sigma.of[k] = ir_add(g, pressure, sigma.of[k]);
   }
-  if (setting == SETTING_PLANE_STRESS) eps.of[TENSOR_ZZ] = ir_constant(g, 0);
-  return eps;
+  if (setting == SETTING_PLANE_STRESS) sigma.of[TENSOR_ZZ] = ir_constant(g, 0);
+  return sigma;
+}
+
+/* `a op b` of one component, or of the trace; a product of a number and a component. */
+static ir_node linear(ir *g, binary_op op, ir_node a, ir_node b, bool number_first) {
+  switch (op) {
+  case OP_ADD:
+    return ir_add(g, a, b);
+  case OP_SUB:
+    return ir_sub(g, a, b);
+  case OP_MUL:
+    return number_first ? tensor_scaled(g, a, b) : tensor_scaled(g, b, a);
+  default:
+    return ir_is_number(g, a, 0) ? a : ir_div(g, a, b);
+  }
+}
+
+/* The trace of `v`, which is a op b: known where that of one operand is and the other is a number,
+   a deviator or known as well. */
+static components with_trace(ir *g, binary_op op, const components *a, const components *b,
+                             components v) {
+  const bool scaled = a->count == 1 || b->count == 1;
+  v.traced = scaled
+                 ? a->traced || b->traced
+                 : (a->traced && b->traced) || tensor_is_deviator(g, a) || tensor_is_deviator(g, b);
+  if (!v.traced) return v;
+  const ir_node left = a->count == TENSOR_COUNT ? tensor_trace(g, *a) : a->of[0],
+                right = b->count == TENSOR_COUNT ? tensor_trace(g, *b) : b->of[0];
+  v.trace = linear(g, op, left, right, a->count == 1);
+  return tensor_is_deviator(g, &v) ? tensor_as_deviator(g, v) : v;
 }
 
 components tensor_binary(lowering *c, const expr *e, components a, components b) {
@@ -122,22 +184,9 @@ components tensor_binary(lowering *c, const expr *e, components a, components b)
     return lower_failed_value(c, e->where, "this cannot be done with tensors and vectors");
   if (scaled != (e->binary == OP_MUL || e->binary == OP_DIV))
     return lower_failed_value(c, e->where, "this cannot be done with tensors and vectors");
-  components v = {a.count > b.count ? a.count : b.count, {0}};
-  for (int k = 0; k < v.count; k++) {
-    ir_node left = a.of[a.count == 1 ? 0 : k], right = b.of[b.count == 1 ? 0 : k];
-    switch (e->binary) {
-    case OP_ADD:
-      v.of[k] = ir_add(g, left, right);
-      break;
-    case OP_SUB:
-      v.of[k] = ir_sub(g, left, right);
-      break;
-    case OP_MUL:
-      v.of[k] = a.count == 1 ? tensor_scaled(g, left, right) : tensor_scaled(g, right, left);
-      break;
-    default:
-      v.of[k] = ir_is_number(g, left, 0) ? left : ir_div(g, left, right);
-    }
-  }
-  return v;
+  components v = {.count = a.count > b.count ? a.count : b.count};
+  for (int k = 0; k < v.count; k++)
+    v.of[k] =
+        linear(g, e->binary, a.of[a.count == 1 ? 0 : k], b.of[b.count == 1 ? 0 : k], a.count == 1);
+  return with_trace(g, e->binary, &a, &b, v);
 }

@@ -4,11 +4,18 @@
 
 #include "generator/lower/lowering.h"
 
+bool tensor_is_deviator(const ir *g, const components *a);
+/* `a`, whose trace is 0. */
+components tensor_as_deviator(ir *g, components a);
+/* After something linear has been done to each component, the same to all: a deviator stays one; of
+   another tensor the trace is no longer known. */
+components tensor_settled(ir *g, components a);
 /* What is 0 stays so, whatever the factor: in the plane nothing leaves it. */
 ir_node tensor_scaled(ir *g, ir_node factor, ir_node component);
 /* a : b, of vectors a . b. */
 ir_node tensor_contract(ir *g, components a, components b);
 ir_node tensor_trace(ir *g, components a);
+/* A deviator is its own. */
 components tensor_deviator(ir *g, components a);
 /* Half of the deviator's square. */
 ir_node tensor_J2(ir *g, components a);

@@ -14,14 +14,14 @@
 /* --- names ------------------------------------------------------------------------------------ */
 
 static components lower_bending_quantity(const lowering *c, builtin_quantity q) {
-  components v = {lower_bending_axes(c->law), {0}};
+  components v = {.count = lower_bending_axes(c->law)};
   for (int k = 0; k < v.count; k++)
     v.of[k] = lower_bending(c->graph, c->law, q, k);
   return v;
 }
 
 static components lower_tensor_of_point(const lowering *c, bool rate) {
-  components v = {TENSOR_COUNT, {0}};
+  components v = {.count = TENSOR_COUNT};
   for (int k = 0; k < TENSOR_COUNT; k++)
     v.of[k] = lower_point_strain(c->graph, c->law, k, rate);
   return v;
@@ -65,11 +65,13 @@ static ir_node lower_one_field(const lowering *c, int k, bool old) {
 /* Of a tensor in the plane what leaves it is 0. */
 static components lower_field_value(const lowering *c, const symbol *s, bool old) {
   if (s->shape != SHAPE_TENSOR) return scalar(lower_one_field(c, s->index, old));
-  components v = {TENSOR_COUNT, {0}};
-  for (int k = 0; k < TENSOR_COUNT; k++)
-    v.of[k] =
-        lower_is_none(c->law, k) ? ir_constant(c->graph, 0) : lower_one_field(c, s->index + k, old);
-  return v;
+  components v = {.count = TENSOR_COUNT};
+  for (int k = 0; k < TENSOR_COUNT; k++) {
+    const int field = law_field_of(s, k);
+    v.of[k] = field < 0 || lower_is_none(c->law, k) ? ir_constant(c->graph, 0)
+                                                    : lower_one_field(c, field, old);
+  }
+  return s->deviator ? tensor_as_deviator(c->graph, v) : v;
 }
 
 static ir_node lower_choice_name(lowering *c, const expr *e) {
@@ -169,7 +171,7 @@ static components lower_unary(lowering *c, const expr *e) {
   if (e->unary == OP_NOT) return scalar(ir_unary(c->graph, IR_NOT, a.of[0]));
   for (int k = 0; k < a.count && e->unary == OP_NEG; k++)
     a.of[k] = ir_neg(c->graph, a.of[k]);
-  return a;
+  return e->unary == OP_NEG ? tensor_settled(c->graph, a) : a;
 }
 
 /* A comparison with NaN is false, so that a NaN would fall through to `otherwise` unseen: where an
@@ -190,7 +192,16 @@ static ir_node keep_nan(lowering *c, ir_node guard, ir_node value) {
   return value;
 }
 
-/* 0 stands for a vector or a tensor of zeros. */
+/* A value of cases is a deviator where each line is; 0 stands for a vector or a tensor of zeros. */
+static bool all_deviators(const ir *g, const components *a, const components *b) {
+  const components *both[] = {a, b};
+  for (int k = 0; k < 2; k++)
+    if (!tensor_is_deviator(g, both[k]) &&
+        (both[k]->count != 1 || !ir_is_number(g, both[k]->of[0], 0)))
+      return false;
+  return a->count > 1 || b->count > 1;
+}
+
 static components widened(components v, int count) {
   for (; v.count < count; v.count++)
     v.of[v.count] = v.of[0];
@@ -210,16 +221,20 @@ static components lower_cases(lowering *c, const expr *e) {
     if (value.count == 0)
       return lower_failed_value(c, line->where, "the last line of cases must be `otherwise`");
     ir_node guard = lower_expr(c, line->guard);
+    const bool deviators = all_deviators(c->graph, &here, &value);
     value = widened(value, here.count);
     here = widened(here, value.count);
     for (int q = 0; q < value.count; q++)
       value.of[q] = ir_select(c->graph, guard, here.of[q], value.of[q]);
+    value.traced = false;
+    if (deviators) value = tensor_as_deviator(c->graph, value);
   }
   for (int k = 0; k < e->case_count && value.count; k++) {
     if (!e->cases[k].guard) continue;
     ir_node guard = lower_expr(c, e->cases[k].guard);
     for (int q = 0; q < value.count; q++)
       value.of[q] = keep_nan(c, guard, value.of[q]);
+    value = tensor_settled(c->graph, value);
     lower_note_line(c, e, k, guard);
   }
   c->group_count++;
@@ -286,8 +301,8 @@ static components lower_previous(lowering *c, const expr *e) {
   components old = lower_field_value(c, s, true);
   for (int k = 0; k < old.count && c->mode != LOWER_FROZEN && lower_is_returned(s); k++)
     if (ir_operation(c->graph, old.of[k]) == IR_INPUT)
-      old.of[k] = lower_kept_field(c->graph, c->law, s->index + k);
-  return of_whom(c, name, old);
+      old.of[k] = lower_kept_field(c->graph, c->law, law_field_of(s, k));
+  return of_whom(c, name, tensor_settled(c->graph, old));
 }
 
 /* diff(f, x): x is a parameter, a quantity, a state or a damage, all of them inputs here. */
@@ -305,6 +320,16 @@ static ir_node lower_slope(lowering *c, const expr *e, ir_node f, ir_node x) {
   return ir_derivative(c->graph, f, x);
 }
 
+/* The deviator whose product with any change of a deviator x is the change of f, out of the
+   derivatives by xx and yy, with which zz = -(xx + yy) moves. */
+static components by_deviator(ir *g, components v) {
+  const ir_node both = ir_add(g, v.of[TENSOR_XX], v.of[TENSOR_YY]),
+                third = ir_div(g, both, ir_constant(g, 3));
+  for (int k = 0; k < TENSOR_ZZ; k++)
+    v.of[k] = ir_sub(g, v.of[k], third);
+  return tensor_as_deviator(g, v);
+}
+
 /* By or of a vector component by component. A shear stands twice in a tensor. */
 static components lower_diff(lowering *c, const expr *e) {
   components f = lower_value(c, e->arguments[0].value), x = lower_value(c, e->arguments[1].value);
@@ -314,14 +339,17 @@ static components lower_diff(lowering *c, const expr *e) {
                                   ? "a tensor has no derivative by a tensor here: take that of a "
                                     "component, such as `sigma[x,y]`"
                                   : "in space a bending quantity has no one derivative by another");
-  components v = {f.count > x.count ? f.count : x.count, {0}};
+  components v = {.count = f.count > x.count ? f.count : x.count};
+  const bool deviator = tensor_is_deviator(c->graph, &x);
   for (int k = 0; k < v.count; k++) {
-    const bool none = x.count == TENSOR_COUNT && lower_is_none(c->law, k);
+    const bool none =
+        x.count == TENSOR_COUNT && (lower_is_none(c->law, k) || (deviator && k == TENSOR_ZZ));
     v.of[k] = none ? ir_constant(c->graph, 0)
                    : lower_slope(c, e, f.of[f.count > 1 ? k : 0], x.of[x.count > 1 ? k : 0]);
     if (x.count == TENSOR_COUNT && k >= TENSOR_XY) v.of[k] = half(c->graph, v.of[k]);
   }
-  return v;
+  if (deviator) return by_deviator(c->graph, v);
+  return tensor_is_deviator(c->graph, &f) ? tensor_as_deviator(c->graph, v) : v;
 }
 
 static ir_node soft_sign(ir *g, ir_node x) {

@@ -11,10 +11,13 @@ enum { MOST_NODES = 150000, MOST_VISITS = 2000000, MOST_CALLS_DEEP = 64, CALL_BU
 enum { TENSOR_XX, TENSOR_YY, TENSOR_ZZ, TENSOR_XY, TENSOR_YZ, TENSOR_XZ, TENSOR_COUNT };
 
 /* A value: one node for a number, a truth value or a bending quantity (which has one component in a
-   plane), three for a vector, six for a symmetric tensor (not engineering shear). */
+   plane), three for a vector, six for a symmetric tensor (not engineering shear). A tensor whose
+   trace is known to be 0 is a deviator: its zz is -(xx + yy) by construction. */
 typedef struct components {
   int count;
   ir_node of[TENSOR_COUNT];
+  bool traced; /* of a tensor: its trace is known without summing up */
+  ir_node trace;
 } components;
 
 typedef struct binding {
@@ -69,7 +72,7 @@ static inline ir_node half(ir *g, ir_node n) {
   return ir_mul(g, ir_constant(g, 0.5), n);
 }
 static inline components scalar(ir_node n) {
-  return (components){1, {n}};
+  return (components){.count = 1, .of = {n}};
 }
 
 /* Parameter k, where it differs in space that of the particle or the bond. */

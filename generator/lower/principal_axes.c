@@ -10,7 +10,8 @@ static const int place_of[3][3] = {{TENSOR_XX, TENSOR_XY, TENSOR_XZ},
 static components number_tensor(ir *g, double xx, double yy, double zz) {
   const ir_node zero = ir_constant(g, 0);
   return (components){
-      TENSOR_COUNT, {ir_constant(g, xx), ir_constant(g, yy), ir_constant(g, zz), zero, zero, zero}};
+      .count = TENSOR_COUNT,
+      .of = {ir_constant(g, xx), ir_constant(g, yy), ir_constant(g, zz), zero, zero, zero}};
 }
 
 static components chosen(ir *g, ir_node when, components a, components b) {
@@ -41,7 +42,7 @@ static ir_node both(ir *g, ir_node a, ir_node b) {
 }
 
 components tensor_product(ir *g, components a, components b) {
-  components v = {TENSOR_COUNT, {0}};
+  components v = {.count = TENSOR_COUNT};
   for (int i = 0; i < 3; i++)
     for (int j = i; j < 3; j++) {
       ir_node sum = ir_constant(g, 0);
@@ -92,7 +93,7 @@ static components plane_direction(ir *g, components a, int which) {
 static components minors(ir *g, components a, ir_node value) {
   for (int k = 0; k < 3; k++)
     a.of[k] = ir_sub(g, a.of[k], value);
-  components v = {TENSOR_COUNT, {0}};
+  components v = {.count = TENSOR_COUNT};
   for (int i = 0; i < 3; i++)
     for (int j = i; j < 3; j++) {
       const int p = (i + 1) % 3, q = (i + 2) % 3, r = (j + 1) % 3, s = (j + 2) % 3;
@@ -112,7 +113,7 @@ static components unit_dyad(ir *g, components m) {
       n[i] = m.of[place_of[i][axis]];
       square = ir_add(g, square, ir_mul(g, n[i], n[i]));
     }
-    components here = {TENSOR_COUNT, {0}};
+    components here = {.count = TENSOR_COUNT};
     const ir_node by = inverse(g, square);
     for (int i = 0; i < 3; i++)
       for (int j = i; j < 3; j++)
@@ -130,7 +131,8 @@ static components unit_dyad(ir *g, components m) {
    others are told as in the plane. */
 static components space_direction(ir *g, components a, int which) {
   const ir_node zero = ir_constant(g, 0);
-  const components whole = tensor_deviator(g, a);
+  components whole = tensor_deviator(g, a);
+  whole.traced = false; /* so that what is done below to components is done to all six */
   /* of size 1, so that squares and products stay numbers */
   ir_node size = ir_constant(g, 0);
   for (int k = 0; k < TENSOR_COUNT; k++)

@@ -56,7 +56,7 @@ static part_list parts_of(const plot_mesh *m, long cell, const mesh_view *v) {
 /* Of each part the corner of the cell that it goes with most. */
 static void find_owners(const plot_mesh *m, long cell, const plot_frame *f, double *marks,
                         int32_t owner[PARTS * PARTS]) {
-  const mesh_view v = {f->reference, f->reference, marks};
+  const mesh_view v = {.reference = f->reference, .moved = f->reference, .values = marks};
   double most[PARTS * PARTS] = {0};
   for (int k = 0; k < CORNERS; k++) {
     const int32_t node = m->cells[CORNERS * cell + k];
@@ -78,7 +78,8 @@ typedef struct bounds {
 static void pack_cut(packing *to, const plot_mesh *m, long cell, const plot_frame *f,
                      const double *moved, double *marks, const bounds *b) {
   int32_t owner[PARTS * PARTS];
-  const mesh_view begun = {f->reference, f->reference, NULL}, now = {f->reference, moved, NULL};
+  const mesh_view begun = {.reference = f->reference, .moved = f->reference},
+                  now = {.reference = f->reference, .moved = moved};
   const part_list at = parts_of(m, cell, &begun), then = parts_of(m, cell, &now);
   find_owners(m, cell, f, marks, owner);
   for (int n = 0; n < at.count; n++) {
@@ -96,7 +97,7 @@ static void pack_cut(packing *to, const plot_mesh *m, long cell, const plot_fram
 static void take_mesh(movie_cells *m, long k, const plot_mesh *mesh, const plot_frame *f,
                       const double *moved, double *marks, const bounds *b, const int32_t *corners,
                       unsigned char *alive) {
-  const mesh_view v = {f->reference, moved, NULL};
+  const mesh_view v = {.reference = f->reference, .moved = moved};
   const size_t size = CORNERS * sizeof *corners;
   for (long c = 0, n = 0; c < mesh->all_count && n < mesh->cell_count; c++) {
     if (memcmp(corners + CORNERS * c, mesh->cells + CORNERS * n, size) != 0) continue;
@@ -125,7 +126,8 @@ static void take_point(void *context, const double moved[2]) {
 
 static void pack_face(packing *to, const plot_mesh *m, const plot_crack *crack, const plot_frame *f,
                       const double *moved, double side) {
-  const mesh_view begun = {f->reference, f->reference, NULL}, now = {f->reference, moved, NULL};
+  const mesh_view begun = {.reference = f->reference, .moved = f->reference},
+                  now = {.reference = f->reference, .moved = moved};
   face_points at = {.count = 0}, then = {.count = 0};
   if (crack->count < 2 || !(m->size > 0)) return;
   plot_mesh_crack_face(m, &begun, crack, 0, crack->count - 1, side, take_point, &at);

@@ -21,6 +21,11 @@
   X(PROGRAM_OBSERVE, point_observe)                                                                \
   X(PROGRAM_TANGENT, point_tangent)
 
+/* Those that there are for whole rectangles, too. */
+#define RECTANGLE_PROGRAMS(X)                                                                      \
+  X(PROGRAM_STEP, rectangle_step)                                                                  \
+  X(PROGRAM_LEDGER, rectangle_ledger)
+
 /* The program over tips. */
 #define TIP_PROGRAMS(X) X(PROGRAM_STEP, tip_look)
 

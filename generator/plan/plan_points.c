@@ -506,6 +506,17 @@ bool plan_points(kernel_plan *plan, diagnostics *d) {
   return true;
 }
 
+bool plan_has_rectangles(const kernel_plan *p) {
+  static const double MOST = 128; /* operations of a point: the loop keeps four in registers */
+  if (p->form != FORM_POINTS || p->dimensions != 2 || p->flops_per_bond > MOST) return false;
+  unsigned char *needed = segment_needed(p->graph, plan_segment(p, PROGRAM_STEP));
+  bool searches = false;
+  for (ir_node n = 0; n < ir_count(p->graph); n++)
+    searches = searches || (needed[n] && ir_operation(p->graph, n) == IR_SEARCH);
+  free(needed);
+  return !searches;
+}
+
 bool plan_tips(kernel_plan *plan, diagnostics *d) {
   planner p = {.plan = plan, .graph = plan->graph, .z = IR_NONE, .z_rate = IR_NONE};
   if (!lower_law(plan->law, plan->graph, LOWER_STEP, plan->memory, &p.step, d)) return false;

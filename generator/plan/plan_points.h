@@ -20,4 +20,8 @@ bool plan_points(kernel_plan *plan, diagnostics *d);
 /* The same of tips of cracks: what they do, new fields, outputs. */
 bool plan_tips(kernel_plan *plan, diagnostics *d);
 
+/* Whether a kernel has RECTANGLE_PROGRAMS: laws of the plane that cost little, so that moving strains
+   and stress through memory counts, and search for nothing. */
+bool plan_has_rectangles(const kernel_plan *p);
+
 #endif

@@ -322,18 +322,12 @@ static void bond_table(run *r, result_header *h) {
   h->bonds = bonds;
 }
 
-/* The nodes of a cell as particles of its mesh, corners counter-clockwise, behind the last -1;
-   false: one is not there. */
-static bool corners_of(const mesh *m, const rows *w, const node_layout *l, int cell, int columns,
-                       int32_t *around) {
+/* The nodes of a cell as particles of its mesh, corners counter-clockwise, behind the last -1. */
+static void corners_of(const cells *c, int cell, int columns, int32_t *around) {
   int node[ELEMENT_MOST_NODES];
-  bool whole = m->cell[cell] != CELL_ABSENT;
-  const int count = mesh_cell_nodes(m, cell, node);
-  for (int k = 0; k < columns; k++) {
-    around[k] = k < count ? w->site_particle[node_layout_at(l, node[k])] : -1;
-    whole = whole && (k >= count || around[k] >= 0);
-  }
-  return whole;
+  const int count = mesh_cell_nodes(&c->mesh, cell, node);
+  for (int k = 0; k < columns; k++)
+    around[k] = k < count ? cells_particle(c, node[k]) : -1;
 }
 
 /* 4, or as many as the cell with the most nodes has. */
@@ -347,17 +341,19 @@ static int columns_of(const mesh *m) {
 }
 
 /* Its cells but those that are not there as a whole. */
-static result_mesh mesh_of(run *r, int number, const mesh *m, long first_particle) {
+static result_mesh mesh_of(run *r, int number, const cells *of_mesh, long first_particle) {
+  const mesh *m = &of_mesh->mesh;
   const size_t most = (size_t)mesh_cell_count(m);
   const rows *w = simulation_rows(r->simulation, number);
-  const node_layout l = node_layout_of(m->nodes, m->support);
   const int columns = columns_of(m);
   int32_t *corners = arena_alloc(r->memory, (size_t)columns * most * sizeof *corners),
           *method = arena_alloc(r->memory, most * sizeof *method);
   long count = 0;
-  for (int c = 0; c < mesh_cell_count(m); c++)
-    if (corners_of(m, w, &l, c, columns, corners + columns * count))
-      method[count++] = (int32_t)m->cell[c];
+  for (int c = 0; c < mesh_cell_count(m); c++) {
+    if (!cells_whole(of_mesh, c)) continue;
+    corners_of(of_mesh, c, columns, corners + columns * count);
+    method[count++] = (int32_t)m->cell[c];
+  }
   const gmsh_mesh *of = r->deck->lattices[number].gmsh;
   return (result_mesh){.name = r->deck->lattices[number].name,
                        .node_numbers = of ? of->tag : NULL,
@@ -377,7 +373,7 @@ static void mesh_table(run *r, result_header *h) {
   long first = 0;
   for (int b = 0; b < bodies; b++) {
     const cells *c = simulation_cells(r->simulation, b);
-    if (c) meshes[h->mesh_count++] = mesh_of(r, b, &c->mesh, first);
+    if (c) meshes[h->mesh_count++] = mesh_of(r, b, c, first);
     first += (long)own_particles(r, b);
   }
   h->meshes = meshes;
@@ -404,7 +400,7 @@ static void frame_table(run *r, result_header *h) {
                                f->on_bonds ? h->bonds[f->interaction].name : NULL,
                                f->components,
                                f->count,
-                               f->kind,
+                               f->on_cells ? "cells" : f->kind,
                                one_line(r, f->long_name)};
     if (f->mesh) cracks[h->crack_count++] = (result_crack){f->name, f->mesh};
   }

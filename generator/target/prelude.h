@@ -4,5 +4,6 @@
 
 extern const char prelude_kernel_h[];
 extern const char prelude_elementary_h[];
+extern const char prelude_rectangle_h[];
 
 #endif

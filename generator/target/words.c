@@ -38,16 +38,18 @@ const char *words_join(arena *memory, const char *list, const char *separator, c
 
 void words_reserve(c_names *names) {
   static const char *const own[] = {
-      "law",         "uniforms",      "strip",        "count",         "q",
-      "flags",       "given",         "bonds",        "present",       "lower",
-      "upper",       "low_open",      "high_open",    "parameters",    "family",
-      "present_bit", "protected_bit", "first",        "lanes",         "k",
-      "to",          "half",          "back",         "last",          "kept",
-      "unusual",     "owned",         "owner",        "sign",          "zeros",
-      "got",         "link_to",       "changed",      "constant",      "above",
-      "large",       "told",          "before",       "group",         "lent",
-      "UNIFORMS",    "are_equal",     "some_marked",  "store_at_ends", "changes",
-      "bits",        "changed_plane", "changed_marks"};
+      "law",         "uniforms",      "strip",         "count",         "q",
+      "flags",       "given",         "bonds",         "present",       "lower",
+      "upper",       "low_open",      "high_open",     "parameters",    "family",
+      "present_bit", "protected_bit", "first",         "lanes",         "k",
+      "to",          "half",          "back",          "last",          "kept",
+      "unusual",     "owned",         "owner",         "sign",          "zeros",
+      "got",         "link_to",       "changed",       "constant",      "above",
+      "large",       "told",          "before",        "group",         "lent",
+      "UNIFORMS",    "are_equal",     "some_marked",   "store_at_ends", "changes",
+      "bits",        "changed_plane", "changed_marks", "cells",         "slopes",
+      "push",        "stride",        "lane",          "low",           "high",
+      "cell_stress", "pushed",        "cell_strain",   "cell_rate"};
   for (size_t k = 0; k < sizeof own / sizeof *own; k++)
     c_names_reserve(names, own[k]);
 #define X(task, member) c_names_reserve(names, #member "_unusual");

@@ -92,6 +92,31 @@
   X(TIP_INPUT, "points->in[$1]")                                                                   \
   X(TIP_OUT, "points->out[$1]")                                                                    \
   X(POINT_LOST, "points->lost[$1]")                                                                \
+  /* rectangles: their four points in one lane of a loop */                                        \
+  X(OVER_RECTANGLES, "const pl_rectangles *cells")                                                 \
+  X(RECTANGLES_HEAD, "  const pl_points *points = cells->points;\n"                                \
+    "  (void)law, (void)uniforms, (void)points;\n"                                                 \
+    "  const pl_rectangle slopes = *cells->slopes, push = *cells->push;\n"                         \
+    "  const long stride = cells->stride;\n")                                                      \
+  X(RECTANGLE_FIELD, "  const double *restrict along_x_$1 = cells->$2[0];\n"                       \
+    "  const double *restrict along_y_$1 = cells->$2[1];\n")                                       \
+  X(RECTANGLE_FORCE, "  double *restrict at_force_$1 = cells->force[$1];\n")                       \
+  X(RECTANGLE_LOOP, "  for (long first = 0; first < cells->count; first += PL_LANES) {\n"          \
+    "  PL_INDEPENDENT\n  for (long lane = 0; lane < PL_LANES; lane++) {\n"                         \
+    "    const long low = first + lane, high = low + stride;\n"                                    \
+    "    double cell_stress[3][4], pushed[2][4];\n")                                               \
+  X(RECTANGLE_STRAINS, "    double $1[3][4];\n"                                                    \
+    "    pl_rectangle_strain(&slopes,\n"                                                           \
+    "      (const double[]){along_x_$1[low], along_x_$1[low + 1],\n"                               \
+    "                       along_x_$1[high], along_x_$1[high + 1]},\n"                            \
+    "      (const double[]){along_y_$1[low], along_y_$1[low + 1],\n"                               \
+    "                       along_y_$1[high], along_y_$1[high + 1]}, $1);\n")                      \
+  X(RECTANGLE_POINTS, "    PL_UNROLL_4\n    for (long k = 0; k < 4; k++) {\n"                      \
+    "    const long q = 4*first + k*PL_LANES + lane;\n    (void)q;\n")                             \
+  X(RECTANGLE_VALUE, "$1[$2][k]")                                                                  \
+  X(RECTANGLE_PUSH, "    pl_rectangle_push(&push, cell_stress[0], cell_stress[2], pushed[0]);\n"   \
+    "    pl_rectangle_push(&push, cell_stress[2], cell_stress[1], pushed[1]);\n")                  \
+  X(RECTANGLE_STORE, "    at_force_$1[low] = pushed[$2][$3];\n")                                   \
   /* searches: block by block, all points of one as long as one goes on */                         \
   X(SEARCH_BLOCKS, "  enum { BLOCK = $1 };\n"                                                      \
     "  for (long begin = 0; begin < count; begin += BLOCK) {\n"                                    \

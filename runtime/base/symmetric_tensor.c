@@ -1,5 +1,7 @@
 #include "runtime/base/symmetric_tensor.h"
 
+#include <stdbool.h>
+#include <string.h>
 #include <strings.h>
 
 static const tensor_component plane[] = {{"xx", 0, 0}, {"yy", 1, 1}, {"xy", 0, 1}},
@@ -17,4 +19,23 @@ int tensor_find(int dimensions, const char *name) {
   for (int c = 0; c < count; c++)
     if (strcasecmp(t[c].name, name) == 0) return c;
   return -1;
+}
+
+static bool is_named(const char *name, int length, const char *component, const char *const *names,
+                     int count) {
+  bool found = false;
+  for (int k = 0; k < count && !found; k++)
+    found = strncmp(names[k], name, (size_t)length) == 0 && names[k][length] == '_' &&
+            strcmp(names[k] + length + 1, component) == 0;
+  return found;
+}
+
+int tensor_traced(const char *name, const char *const *names, int count) {
+  const int length = (int)strlen(name) - 3;
+  if (length < 1 || strcmp(name + length, "_zz") != 0) return 0;
+  for (int c = 0; c < TENSOR_MOST; c++) {
+    const bool traced = strcmp(space[c].name, "zz") == 0;
+    if (is_named(name, length, space[c].name, names, count) == traced) return 0;
+  }
+  return length;
 }

@@ -14,5 +14,8 @@ typedef struct tensor_component {
 int tensor_components(int dimensions, const tensor_component **components);
 /* By its name, without regard to case; -1: there is none. */
 int tensor_find(int dimensions, const char *name);
+/* Whether `name` is "e_zz" where `names` has all other components of e: it is a deviator, which is
+   kept without zz. Then how many characters "e" has, else 0. */
+int tensor_traced(const char *name, const char *const *names, int count);
 
 #endif

@@ -308,6 +308,42 @@ bool cells_mean_stress(const cells *c, int law, int node, double stress[4]) {
   return p != NULL;
 }
 
+bool cells_whole(const cells *c, int cell) {
+  int node[ELEMENT_MOST_NODES];
+  bool whole = c->mesh.cell[cell] != CELL_ABSENT;
+  const int count = mesh_cell_nodes(&c->mesh, cell, node);
+  for (int k = 0; k < count; k++)
+    whole = whole && cells_particle(c, node[k]) >= 0;
+  return whole;
+}
+
+long cells_whole_count(const cells *c) {
+  long count = 0;
+  for (int cell = 0; cell < mesh_cell_count(&c->mesh); cell++)
+    count += cells_whole(c, cell);
+  return count;
+}
+
+/* Of a plane of the law's points. */
+static void mean_in_cells(const cells *c, const point_forces *p, const double *plane,
+                          double *values) {
+  for (int cell = 0; cell < mesh_cell_count(&c->mesh); cell++) {
+    if (!cells_whole(c, cell)) continue;
+    if (point_forces_has(p, cell)) *values = point_forces_cell_mean(p, plane, cell);
+    values++;
+  }
+}
+
+void cells_mean_state(const cells *c, int law, int field, double *values) {
+  const point_forces *p = c->by_points[law];
+  if (p) mean_in_cells(c, p, p->new_field + field * (long)p->strips.count, values);
+}
+
+void cells_mean_output(const cells *c, int law, int output, double *values) {
+  const point_forces *p = c->by_points[law];
+  if (p) mean_in_cells(c, p, p->observed + (1 + output) * (long)p->strips.count, values);
+}
+
 bool cells_can_die(const cells *c) {
   for (int n = 0; n < c->where.count && c->laws; n++)
     if (point_law_failed(c->laws[n].law) >= 0) return true;

@@ -84,6 +84,15 @@ bool cells_mean_stress(const cells *c, int law, int node, double stress[4]);
 bool cells_can_die(const cells *c);
 bool cells_dead(const cells *c, int cell);
 long cells_deaths(const cells *c, double *first);
+/* Whether a cell and all of its nodes are there: results hold those, in their order; how many
+   are. */
+bool cells_whole(const cells *c, int cell);
+long cells_whole_count(const cells *c);
+/* values[whole cells]: of the cells of a law that is not linear the means over their points of a
+   state after the last step, or of an output in the state observed last; others are left as they
+   are. */
+void cells_mean_state(const cells *c, int law, int field, double *values);
+void cells_mean_output(const cells *c, int law, int output, double *values);
 /* The law of a cell. */
 static inline const cells_law *cells_law_at(const cells *c, int cell) {
   return &c->laws[cell_laws_at(&c->where, cell)];

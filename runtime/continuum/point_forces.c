@@ -20,7 +20,7 @@ enum {
 /* What a thread works with: planes of one strip. */
 typedef struct point_scratch {
   double *strain[STRAINS], *rate[STRAINS], *stress[STRESSES], *traction[STRAINS],
-      *tangent[TANGENTS], *bound;
+      *tangent[TANGENTS], *bound, *by_cell[RECTANGLE_PUSHES];
   double **old_field, **new_field, **observed;
 } point_scratch;
 
@@ -48,6 +48,7 @@ static void open_scratch(point_forces *p, point_scratch *s) {
   planes(p, s->traction, STRAINS, size);
   planes(p, s->tangent, TANGENTS, size);
   planes(p, &s->bound, 1, size);
+  planes(p, s->by_cell, RECTANGLE_PUSHES, size);
   s->old_field = must_calloc((size_t)p->law->field_count + 1, sizeof(double *));
   s->new_field = must_calloc((size_t)p->law->field_count + 1, sizeof(double *));
   s->observed = must_calloc((size_t)p->law->output_count + 1, sizeof(double *));
@@ -220,18 +221,36 @@ long point_forces_bytes(const point_forces *p) {
 
 typedef struct strip { /* groups of a row */
   int row, first, last;
-  long at, count; /* its points */
+  long at, count;  /* its points */
+  bool rectangles; /* one beside the other, all alike; groups are full, or there is but one */
 } strip;
+
+static bool is_full(const cell_group *g) {
+  return g->count == PL_LANES;
+}
+
+static bool is_of_rectangles(const point_forces *p, const cell_group *g) {
+  return g->even > 0 && !p->mean;
+}
+
+/* Whether the next group goes on with a strip of these. A strip is the same whoever finds forces
+   of it, so that their sums are. */
+static bool joins(const point_forces *p, const strip *s, const cell_group *first,
+                  const cell_group *next) {
+  const long more = (long)next->points * PL_LANES;
+  if (s->count + more > STRIP || s->rectangles != is_of_rectangles(p, next)) return false;
+  if (!s->rectangles) return true;
+  return next->even == first->even && next->table == first->table && is_full(first) &&
+         is_full(next) && next->first == first->first + (s->last - s->first) * PL_LANES;
+}
 
 static strip next_strip(const point_forces *p, int row, int first) {
   const cell_strips *s = &p->strips;
-  strip out = {row, first, first, s->groups[first].at, 0};
-  while (out.last < s->first_group[row + 1]) {
-    const long more = (long)s->groups[out.last].points * PL_LANES;
-    if (out.count > 0 && out.count + more > STRIP) break;
-    out.count += more;
-    out.last++;
-  }
+  const cell_group *groups = s->groups;
+  strip out = {row, first, first, groups[first].at, 0, is_of_rectangles(p, &groups[first])};
+  do
+    out.count += (long)groups[out.last++].points * PL_LANES;
+  while (out.last < s->first_group[row + 1] && joins(p, &out, &groups[first], &groups[out.last]));
   return out;
 }
 
@@ -313,12 +332,12 @@ static void leave_dead(const point_forces *p, const strip *s, double *const stra
   }
 }
 
-static long count_dead(const point_forces *p, const strip *s) {
+static long count_dead(const point_forces *p, const strip *s, const point_scratch *own) {
   double sum = 0;
   for (int g = s->first; g < s->last; g++) {
     const cell_group *group = &p->strips.groups[g];
     double dead[PL_LANES];
-    find_dead(group, p->new_field + p->failed * (long)p->strips.count + group->at, dead);
+    find_dead(group, own->new_field[p->failed] + (group->at - s->at), dead);
     for (int lane = 0; lane < PL_LANES; lane++)
       sum += dead[lane];
   }
@@ -337,19 +356,6 @@ static pl_points motion_of(const point_forces *p, const strip *s, point_scratch 
   return view_of(p, s, own, at);
 }
 
-/* Groups from g on that are side by side, even and alike; 0: g is not even. */
-static int even_from(const cell_group *groups, int g, int last) {
-  const cell_group *first = &groups[g];
-  int count = 0;
-  for (; g + count < last; count++) {
-    const cell_group *next = &first[count];
-    if (!(next->even > 0) || next->even != first->even || next->table != first->table ||
-        next->first != first->first + count * PL_LANES)
-      break;
-  }
-  return count;
-}
-
 static void push_group(const point_forces *p, int row, const cell_group *g,
                        const point_scratch *own, const double *const stress[STRAINS]) {
   const double *volume = p->strips.volume + g->at;
@@ -364,18 +370,26 @@ static void push_group(const point_forces *p, int row, const cell_group *g,
   cell_strips_push(&p->strips, row, g, (const double *const *)own->traction, p->pushed);
 }
 
-static void push_even(const point_forces *p, const strip *s, const point_scratch *own,
-                      double *const stress[STRAINS]) {
-  const cell_group *groups = p->strips.groups;
-  for (int g = s->first; g < s->last;) {
-    const long to = groups[g].at - s->at;
-    const double *const here[STRAINS] = {stress[0] + to, stress[1] + to, stress[2] + to};
-    const int even = even_from(groups, g, s->last);
-    if (even > 0)
-      cell_strips_push_even(&p->strips, s->row, &groups[g], even, here, p->pushed);
-    else
-      push_group(p, s->row, &groups[g], own, here);
-    g += even > 0 ? even : 1;
+static void gather(const point_forces *p, const strip *s, const point_scratch *own) {
+  cell_strips_gather(&p->strips, s->row, &p->strips.groups[s->first], s->last - s->first,
+                     own->by_cell, p->pushed);
+}
+
+static void push_rectangles(const point_forces *p, const strip *s, const point_scratch *own,
+                            double *const stress[STRAINS]) {
+  const cell_group *first = &p->strips.groups[s->first];
+  const pl_rectangle by = rectangle_slopes_times(&first->table->slopes, first->even);
+  rectangle_cells_push(&by, s->last - s->first,
+                       (const double *const[]){stress[0], stress[1], stress[2]}, own->by_cell);
+  gather(p, s, own);
+}
+
+static void push_groups(const point_forces *p, const strip *s, const point_scratch *own,
+                        double *const stress[STRAINS]) {
+  for (int g = s->first; g < s->last; g++) {
+    const long to = p->strips.groups[g].at - s->at;
+    push_group(p, s->row, &p->strips.groups[g], own,
+               (const double *const[]){stress[0] + to, stress[1] + to, stress[2] + to});
   }
 }
 
@@ -402,15 +416,15 @@ static void push_mean(const point_forces *p, const strip *s, const point_scratch
 
 static void push(const point_forces *p, const strip *s, const point_scratch *own,
                  double *const stress[STRAINS]) {
-  (p->mean ? push_mean : push_even)(p, s, own, stress);
+  (p->mean ? push_mean : s->rectangles ? push_rectangles : push_groups)(p, s, own, stress);
 }
 
-/* alive[PL_LANES] 0 in cells of a group that are dead by these states, else 1. */
-static void find_alive(const point_forces *p, int g, const double *fields, double alive[PL_LANES]) {
+/* alive[PL_LANES] 0 in cells of a group that are dead by these states of its strip, else 1. */
+static void find_alive(const point_forces *p, const strip *s, int g, double *const *fields,
+                       double alive[PL_LANES]) {
   const cell_group *group = &p->strips.groups[g];
   double dead[PL_LANES] = {0};
-  if (p->failed >= 0)
-    find_dead(group, fields + p->failed * (long)p->strips.count + group->at, dead);
+  if (p->failed >= 0) find_dead(group, fields[p->failed] + (group->at - s->at), dead);
   for (int lane = 0; lane < PL_LANES; lane++)
     alive[lane] = 1 - dead[lane];
 }
@@ -418,8 +432,8 @@ static void find_alive(const point_forces *p, int g, const double *fields, doubl
 /* What elements resist their hourglass modes by. Of the point that each of them has, J/m^3:
    `stored` is added to; and what cells that die in this step had stored so is `lost`, with the term
    that is due to forces halfway (ledger.h). Either may be NULL. */
-static void resist_hourglass(const point_forces *p, const strip *s, const point_motion *at,
-                             double *lost, double *stored) {
+static void resist_hourglass(const point_forces *p, const strip *s, const point_scratch *own,
+                             const point_motion *at, double *lost, double *stored) {
   for (int g = s->first; g < s->last && p->hourglass; g++) {
     const cell_group *group = &p->strips.groups[g];
     const double *gamma = p->hourglass + (long)g * HOURGLASS * PL_LANES,
@@ -427,8 +441,8 @@ static void resist_hourglass(const point_forces *p, const strip *s, const point_
     const long point = group->at - s->at;
     double before[PL_LANES], after[PL_LANES];
     if (!cell_strips_single(&p->strips, group)) continue;
-    find_alive(p, g, p->old_field, before);
-    find_alive(p, g, p->new_field, after);
+    find_alive(p, s, g, own->old_field, before);
+    find_alive(p, s, g, own->new_field, after);
     for (int axis = 0; axis < 2; axis++) {
       double q[PL_LANES], rate[PL_LANES] = {0}, by[PL_LANES];
       cell_strips_mode(&p->strips, s->row, group, gamma, at->displacement[axis], q);
@@ -454,8 +468,43 @@ static void aim(const point_forces *p, const strip *s, double *plane, int count,
     at[k] = plane + k * (long)p->strips.count + s->at;
 }
 
-static void step_strip(const point_forces *p, const strip *s, point_scratch *own,
-                       const point_motion *at) {
+/* From nodes to nodes in one loop of the law's. */
+static void step_rectangles(const point_forces *p, const strip *s, point_scratch *own,
+                            const point_motion *at) {
+  const cell_group *first = &p->strips.groups[s->first];
+  const node_layout *l = &p->strips.layout;
+  const long node = l->origin + s->row * l->stride + first->first;
+  const pl_rectangle by = rectangle_slopes_times(&first->table->slopes, first->even);
+  const double *const u[] = {at->displacement[0] + node, at->displacement[1] + node},
+                      *const v[] = {at->velocity[0] + node, at->velocity[1] + node};
+  double *lost[PL_LOSSES];
+  pl_points points = view_of(p, s, own, at);
+  const pl_rectangles cells = {.size = sizeof cells,
+                               .count = (s->last - s->first) * PL_LANES,
+                               .stride = l->stride,
+                               .displacement = u,
+                               .velocity = v,
+                               .slopes = &first->table->slopes,
+                               .push = &by,
+                               .force = own->by_cell,
+                               .points = &points};
+  if (p->loses) {
+    aim(p, s, p->lost, PL_LOSSES, lost);
+    points.lost = lost;
+  }
+  (p->loses ? p->law->rectangle_ledger : p->law->rectangle_step)(p->law, p->uniforms, &cells);
+  gather(p, s, own);
+}
+
+/* Whether the law has that loop for a strip: of whole rectangles whose points are not asked whether
+   they have failed. */
+static bool steps_rectangles(const point_forces *p, const strip *s) {
+  return s->rectangles && is_full(&p->strips.groups[s->first]) && p->failed < 0 &&
+         PL_HAS(p->law, rectangle_ledger) && p->law->rectangle_ledger;
+}
+
+static void step_points(const point_forces *p, const strip *s, point_scratch *own,
+                        const point_motion *at) {
   double *lost[PL_LOSSES];
   pl_points points = motion_of(p, s, own, at);
   if (p->loses) {
@@ -465,9 +514,15 @@ static void step_strip(const point_forces *p, const strip *s, point_scratch *own
   } else {
     p->law->point_step(p->law, p->uniforms, &points);
   }
-  if (p->failed >= 0) p->dead[s->row] += count_dead(p, s);
+  if (p->failed >= 0) p->dead[s->row] += count_dead(p, s, own);
   push(p, s, own, own->stress);
-  resist_hourglass(p, s, at, p->loses && p->failed >= 0 ? lost[PL_LOST_TO_STATES] : NULL, NULL);
+  resist_hourglass(p, s, own, at, p->loses && p->failed >= 0 ? lost[PL_LOST_TO_STATES] : NULL,
+                   NULL);
+}
+
+static void step_strip(const point_forces *p, const strip *s, point_scratch *own,
+                       const point_motion *at) {
+  (steps_rectangles(p, s) ? step_rectangles : step_points)(p, s, own, at);
 }
 
 /* --- looking at a state ----------------------------------------------------------------------- */
@@ -565,7 +620,7 @@ static void see_strip(const point_forces *p, const strip *s, point_scratch *own,
   aim(p, s, p->observed, 1 + p->law->output_count, own->observed);
   points.observed = own->observed;
   p->law->point_observe(p->law, p->uniforms, &points);
-  resist_hourglass(p, s, at, p->loses && p->failed >= 0 ? lost[PL_LOST_TO_STATES] : NULL,
+  resist_hourglass(p, s, own, at, p->loses && p->failed >= 0 ? lost[PL_LOST_TO_STATES] : NULL,
                    own->observed[0]);
   if (p->loses) add_losses(p, s, lost, row);
   row->stored += lane_dot(s->count, NULL, own->observed[0], p->strips.volume + s->at);
@@ -646,6 +701,12 @@ double point_forces_mean(const point_forces *p, const double *plane, int node) {
   return sum / volume;
 }
 
+double point_forces_cell_mean(const point_forces *p, const double *plane, int cell) {
+  double sum = 0, volume = 0;
+  add_cell(p, plane, cell, &volume, &sum);
+  return sum / volume;
+}
+
 static int corners_there(const mesh *m, int cell) {
   int corner[ELEMENT_MOST_NODES], count = 0;
   const int nodes = mesh_cell_nodes(m, cell, corner);
@@ -696,7 +757,7 @@ double point_forces_worst(point_forces *p, int node, const point_motion *at, poi
     if (row < 0 || row >= p->strips.rows) continue;
     for (int g = p->strips.first_group[row]; g < p->strips.first_group[row + 1]; g++) {
       const cell_group *group = &p->strips.groups[g];
-      const strip s = {row, g, g + 1, group->at, (long)group->points * PL_LANES};
+      const strip s = {row, g, g + 1, group->at, (long)group->points * PL_LANES, false};
       const pl_points points = motion_of(p, &s, own, at);
       p->law->point_step(p->law, p->uniforms, &points);
       for (long k = 0; k < s.count && isfinite(most); k++) {

@@ -94,6 +94,8 @@ static inline bool point_forces_has(const point_forces *p, int cell) {
 }
 /* Mean of a plane [strips.count] over the points around a node, by their areas; NaN without. */
 double point_forces_mean(const point_forces *p, const double *plane, int node);
+/* Over the points of a cell; NaN of a cell that is not of the law. */
+double point_forces_cell_mean(const point_forces *p, const double *plane, int cell);
 /* The node's part of what the cells around it hold, a plane [strips.count] per m^3: their corners that
    are there have equal parts. What a cell without any holds is no node's. */
 double point_forces_share(const point_forces *p, const double *plane, int node);

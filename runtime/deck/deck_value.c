@@ -8,6 +8,7 @@
 
 #include "dsl/base/unit_hint.h"
 #include "dsl/base/units.h"
+#include "runtime/base/symmetric_tensor.h"
 
 enum { LONGEST_SHOWN = 60, LONGEST_LIST = 400, MOST_CHOICES = 32 };
 
@@ -30,7 +31,15 @@ const char *deck_shown(arena *a, const char *text) {
 
 void deck_suggest(diagnostics *d, const char *name, const char *const *names, int count,
                   const char *intro) {
+  const int deviator = tensor_traced(name, names, count);
   const char *nearest = nearest_name(name, names, count);
+  if (deviator) {
+    diag_hint(d,
+              "`%.*s` is a deviator, kept without zz = -(xx + yy): let the law give "
+              "`output %s = %.*s[z,z]`",
+              deviator, name, name, deviator, name);
+    return;
+  }
   if (nearest) {
     diag_hint(d, "did you mean `%s`?", nearest);
     return;

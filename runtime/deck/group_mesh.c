@@ -317,6 +317,13 @@ static void refuse_keys_of_quadrilaterals(deck_reader *r, const deck_mesh *item)
     diag_hint(r->d, "leave it out, with triangles of 6 nodes (gmsh -order 2), which do not lock; "
                     "or draw quadrilaterals: `Recombine Surface{:};`");
   }
+  if (item->gauss == 1) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "gauss"),
+                "quadrilaterals alone may have one point in place of 2 x 2, and `%s` has triangles "
+                "only",
+                item->file);
+    diag_hint(r->d, "leave it out: triangles of 3 nodes have one point, those of 6 nodes three");
+  }
   if (!(item->hourglass > 0)) return;
   diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "hourglass"),
               "triangles have no hourglass modes, and `%s` has nothing else", item->file);

@@ -487,12 +487,12 @@ void cell_strips_push_mode(const cell_strips *s, int row, const cell_group *g, c
   }
 }
 
-void cell_strips_push_even(const cell_strips *s, int row, const cell_group *g, int count,
-                           const double *const stress[3], double *const pushed[2]) {
+void cell_strips_gather(const cell_strips *s, int row, const cell_group *g, int count,
+                        double *const by_cell[RECTANGLE_PUSHES], double *const pushed[2]) {
   const long at = row * plane_of(s) - s->low * s->layout.stride + g->first;
   const int cells = (count - 1) * PL_LANES + g[count - 1].count;
-  rectangle_cells_push(&g->table->slopes, cells, stress, g->even,
-                       (double *const[]){pushed[0] + at, pushed[1] + at}, s->layout.stride);
+  rectangle_cells_gather(cells, by_cell, (double *const[]){pushed[0] + at, pushed[1] + at},
+                         s->layout.stride);
 }
 
 long cell_strips_pushed(const cell_strips *s) {
@@ -510,6 +510,16 @@ void cell_strips_clear(const cell_strips *s, int row, double *const pushed[2]) {
   }
 }
 
+static void add_row(long count, const double *in, bool more, double *out) {
+  if (!more) {
+    memcpy(out, in, (size_t)count * sizeof *out);
+    return;
+  }
+  INDEPENDENT
+  for (long k = 0; k < count; k++)
+    out[k] += in[k];
+}
+
 void cell_strips_take(const cell_strips *s, int row, double *const pushed[2], bool more,
                       double *const force[2]) {
   const node_layout *l = &s->layout;
@@ -521,13 +531,10 @@ void cell_strips_take(const cell_strips *s, int row, double *const pushed[2], bo
             to = row - s->low > s->rows - 1 ? s->rows - 1 : row - s->low;
   for (int d = 0; d < 2; d++) {
     double *out = force[d] + l->origin + row * l->stride;
-    if (!more) memset(out, 0, (size_t)l->padded * sizeof *out);
-    for (int c = from; c <= to; c++) {
-      const double *in = pushed[d] + c * plane_of(s) + (row - c - s->low) * l->stride;
-      INDEPENDENT
-      for (long k = 0; k < l->padded; k++)
-        out[k] += in[k];
-    }
+    if (!more && from > to) memset(out, 0, (size_t)l->padded * sizeof *out);
+    for (int c = from; c <= to; c++)
+      add_row(l->padded, pushed[d] + c * plane_of(s) + (row - c - s->low) * l->stride,
+              more || c > from, out);
     for (long k = l->nodes[0]; k < l->padded; k++)
       out[k] = 0;
   }

@@ -27,7 +27,7 @@ typedef struct cell_table {
   int *first_of_node; /* [nodes + 1] of the two below */
   int *entry, *point; /* [entries] node by node */
   bool rectangle;     /* the same in all cells, bilinear rectangles with 2 x 2 points, of these */
-  rectangle_slopes slopes;
+  pl_rectangle slopes;
 } cell_table;
 
 typedef struct cell_group {
@@ -87,10 +87,10 @@ void cell_strips_clear(const cell_strips *s, int row, double *const pushed[2]);
 /* N: the forces of a row of nodes, in planes of the layout; `more`: beside those that are there. */
 void cell_strips_take(const cell_strips *s, int row, double *const pushed[2], bool more,
                       double *const force[2]);
-/* The same of `count` groups side by side that are alike and even, from their stress; all but the
-   last are full. */
-void cell_strips_push_even(const cell_strips *s, int row, const cell_group *g, int count,
-                           const double *const stress[3], double *const pushed[2]);
+/* The same of `count` groups side by side that are alike and even, and full unless they are but one,
+   from what each cell does to its nodes (rectangle_cells_push). */
+void cell_strips_gather(const cell_strips *s, int row, const cell_group *g, int count,
+                        double *const by_cell[RECTANGLE_PUSHES], double *const pushed[2]);
 
 /* Number of a lane's cell; of what fills up the first one's. */
 int cell_strips_cell(const cell_strips *s, const mesh *m, int row, const cell_group *g, int lane);

@@ -2,16 +2,8 @@
 
 #include <math.h>
 
+#include "runtime/base/lane_sum.h"
 #include "runtime/kernel.h"
-
-/* Wider than a register they are taken apart; what has them is inlined, so that no call passes
-   them. */
-#pragma GCC diagnostic ignored "-Wpsabi"
-
-typedef double lanes
-    __attribute__((vector_size(PL_LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
-
-#define INLINE static inline __attribute__((always_inline))
 
 enum { LOW_LEFT, LOW_RIGHT, HIGH_LEFT, HIGH_RIGHT, CORNERS };
 
@@ -21,11 +13,11 @@ static bool alike(double a, double b, double least) {
   return fabs(a - b) <= least;
 }
 
-bool rectangle_slopes_find(rectangle_slopes *r, const double slope[4][4][2], double least) {
-  *r = (rectangle_slopes){.x = {{slope[LOW_LEFT][LOW_RIGHT][0], slope[LOW_LEFT][HIGH_RIGHT][0]},
-                                {slope[HIGH_LEFT][LOW_RIGHT][0], slope[HIGH_LEFT][HIGH_RIGHT][0]}},
-                          .y = {{slope[LOW_LEFT][HIGH_LEFT][1], slope[LOW_LEFT][HIGH_RIGHT][1]},
-                                {slope[LOW_RIGHT][HIGH_LEFT][1], slope[LOW_RIGHT][HIGH_RIGHT][1]}}};
+bool rectangle_slopes_find(pl_rectangle *r, const double slope[4][4][2], double least) {
+  *r = (pl_rectangle){.x = {{slope[LOW_LEFT][LOW_RIGHT][0], slope[LOW_LEFT][HIGH_RIGHT][0]},
+                            {slope[HIGH_LEFT][LOW_RIGHT][0], slope[HIGH_LEFT][HIGH_RIGHT][0]}},
+                      .y = {{slope[LOW_LEFT][HIGH_LEFT][1], slope[LOW_LEFT][HIGH_RIGHT][1]},
+                            {slope[LOW_RIGHT][HIGH_LEFT][1], slope[LOW_RIGHT][HIGH_RIGHT][1]}}};
   for (int point = 0; point < CORNERS; point++)
     for (int node = 0; node < CORNERS; node++) {
       const int right = node % 2, high = node / 2;
@@ -37,117 +29,79 @@ bool rectangle_slopes_find(rectangle_slopes *r, const double slope[4][4][2], dou
   return true;
 }
 
-/* --- strains ---------------------------------------------------------------------------------- */
-
-INLINE lanes load(const double *at) {
-  return *(const lanes *)at;
-}
-
-/* Two edges that face each other, or what is at both of two kinds of points. */
-typedef struct pair {
-  lanes first, second;
-} pair;
-
-INLINE pair blend(const double slope[2][2], pair edge) {
-  return (pair){slope[0][0] * edge.first + slope[0][1] * edge.second,
-                slope[1][0] * edge.first + slope[1][1] * edge.second};
-}
-
-void rectangle_cells_strain(const rectangle_slopes *r, const double *const u[2], long stride,
-                            double *const strain[3]) {
-  pair x[2], y[2];
-  for (int d = 0; d < 2; d++) {
-    const double *low = u[d], *high = u[d] + stride;
-    const lanes left = load(low), right = load(low + 1), up_left = load(high),
-                up_right = load(high + 1);
-    x[d] = blend(r->x, (pair){right - left, up_right - up_left});
-    y[d] = blend(r->y, (pair){up_left - left, up_right - right});
-  }
-  lanes *xx = (lanes *)strain[0], *yy = (lanes *)strain[1], *xy = (lanes *)strain[2];
-  xx[LOW_LEFT] = xx[LOW_RIGHT] = x[0].first;
-  xx[HIGH_LEFT] = xx[HIGH_RIGHT] = x[0].second;
-  yy[LOW_LEFT] = yy[HIGH_LEFT] = y[1].first;
-  yy[LOW_RIGHT] = yy[HIGH_RIGHT] = y[1].second;
-  const pair low = {0.5 * x[1].first, 0.5 * x[1].second},
-             left = {0.5 * y[0].first, 0.5 * y[0].second};
-  xy[LOW_LEFT] = left.first + low.first;
-  xy[LOW_RIGHT] = left.second + low.first;
-  xy[HIGH_LEFT] = left.first + low.second;
-  xy[HIGH_RIGHT] = left.second + low.second;
-}
-
-/* --- forces ----------------------------------------------------------------------------------- */
-
-/* What stresses at the points do to the edges: across the lower and the upper one, and across the
-   left and the right one. `slope` is times the volume. */
-INLINE pair to_edges(const double slope[2][2], lanes first, lanes second) {
-  return (pair){slope[0][0] * first + slope[1][0] * second,
-                slope[0][1] * first + slope[1][1] * second};
-}
-
-INLINE pair across_x(const rectangle_slopes *r, const lanes *s) {
-  return to_edges(r->x, s[LOW_LEFT] + s[LOW_RIGHT], s[HIGH_LEFT] + s[HIGH_RIGHT]);
-}
-INLINE pair across_y(const rectangle_slopes *r, const lanes *s) {
-  return to_edges(r->y, s[LOW_LEFT] + s[HIGH_LEFT], s[LOW_RIGHT] + s[HIGH_RIGHT]);
-}
-
-/* The last lane of `before`, then all but the last of `x`. */
-INLINE lanes shift_in(lanes before, lanes x) {
-#if defined(__clang__)
-  return __builtin_shufflevector(before, x, 7, 8, 9, 10, 11, 12, 13, 14);
-#else
-  typedef long long places __attribute__((vector_size(PL_LANES * sizeof(long long))));
-  return __builtin_shuffle(before, x, (places){7, 8, 9, 10, 11, 12, 13, 14});
-#endif
-}
-_Static_assert(PL_LANES == 8, "places of lanes");
-
-/* What cells do to their left and right nodes, the lower or the upper ones. */
-INLINE pair cut(pair node, int cells) {
-  for (int lane = cells; lane < PL_LANES; lane++)
-    node.first[lane] = node.second[lane] = 0;
-  return node;
-}
-
-/* The right nodes of the cells before are left ones of these. */
-INLINE void add_to_nodes(double *force, pair node, lanes *before) {
-  *(lanes *)force += node.first + shift_in(*before, node.second);
-  *before = node.second;
-}
-
-INLINE void add_to_rows(double *force, long stride, int cells, pair x, pair y, lanes before[2]) {
-  pair low = {-(x.first + y.first), x.first - y.second},
-       high = {y.first - x.second, x.second + y.second};
-  if (cells < PL_LANES) {
-    low = cut(low, cells);
-    high = cut(high, cells);
-  }
-  add_to_nodes(force, low, &before[0]);
-  add_to_nodes(force + stride, high, &before[1]);
-}
-
-void rectangle_cells_push(const rectangle_slopes *r, int cells, const double *const stress[3],
-                          double volume, double *const force[2], long stride) {
-  const lanes none = {0};
-  lanes before[2][2] = {{none, none}, {none, none}};
-  rectangle_slopes scaled;
+pl_rectangle rectangle_slopes_times(const pl_rectangle *r, double volume) {
+  pl_rectangle out;
   for (int a = 0; a < 2; a++)
     for (int b = 0; b < 2; b++) {
-      scaled.x[a][b] = volume * r->x[a][b];
-      scaled.y[a][b] = volume * r->y[a][b];
+      out.x[a][b] = volume * r->x[a][b];
+      out.y[a][b] = volume * r->y[a][b];
     }
-  int first = 0;
-  for (; first < cells; first += PL_LANES) {
-    const long at = (long)first * CORNERS;
-    const lanes *xx = (const lanes *)(stress[0] + at), *yy = (const lanes *)(stress[1] + at),
-                *xy = (const lanes *)(stress[2] + at);
-    const pair a = across_x(&scaled, xx), b = across_y(&scaled, xy), c = across_x(&scaled, xy),
-               d = across_y(&scaled, yy);
-    add_to_rows(force[0] + first, stride, cells - first, a, b, before[0]);
-    add_to_rows(force[1] + first, stride, cells - first, c, d, before[1]);
+  return out;
+}
+
+/* --- cells ------------------------------------------------------------------------------------ */
+
+void rectangle_cells_strain(const pl_rectangle *r, const double *const u[2], long stride,
+                            double *const strain[3]) {
+  const double *x = u[0], *y = u[1];
+  double *xx = strain[0], *yy = strain[1], *xy = strain[2];
+  const pl_rectangle slopes = *r;
+  INDEPENDENT
+  for (long low = 0; low < PL_LANES; low++) {
+    const long high = low + stride;
+    double here[3][CORNERS];
+    pl_rectangle_strain(&slopes, (const double[]){x[low], x[low + 1], x[high], x[high + 1]},
+                        (const double[]){y[low], y[low + 1], y[high], y[high + 1]}, here);
+    PL_UNROLL_4
+    for (int k = 0; k < CORNERS; k++) {
+      xx[k * PL_LANES + low] = here[0][k];
+      yy[k * PL_LANES + low] = here[1][k];
+      xy[k * PL_LANES + low] = here[2][k];
+    }
   }
-  for (int d = 0; d < 2; d++)
-    for (int high = 0; high < 2; high++)
-      force[d][first + high * stride] += before[d][high][PL_LANES - 1];
+}
+
+void rectangle_cells_push(const pl_rectangle *r, int groups, const double *const stress[3],
+                          double *const pushed[RECTANGLE_PUSHES]) {
+  const double *xx = stress[0], *yy = stress[1], *xy = stress[2];
+  const pl_rectangle slopes = *r;
+  for (long first = 0; first < (long)groups * PL_LANES; first += PL_LANES) {
+    INDEPENDENT
+    for (long lane = 0; lane < PL_LANES; lane++) {
+      double here[3][CORNERS], force[2][CORNERS];
+      PL_UNROLL_4
+      for (int k = 0; k < CORNERS; k++) {
+        const long q = CORNERS * first + k * PL_LANES + lane;
+        here[0][k] = xx[q];
+        here[1][k] = yy[q];
+        here[2][k] = xy[q];
+      }
+      pl_rectangle_push(&slopes, here[0], here[2], force[0]);
+      pl_rectangle_push(&slopes, here[2], here[1], force[1]);
+      PL_UNROLL_4
+      for (int k = 0; k < CORNERS; k++) {
+        pushed[k][first + lane] = force[0][k];
+        pushed[CORNERS + k][first + lane] = force[1][k];
+      }
+    }
+  }
+}
+
+/* A node has a cell to its left and one to its right. */
+static void gather_row(int cells, const double *left_node, const double *right_node,
+                       double *force) {
+  force[0] += left_node[0];
+  INDEPENDENT
+  for (long n = 1; n < cells; n++)
+    force[n] += left_node[n] + right_node[n - 1];
+  force[cells] += right_node[cells - 1];
+}
+
+void rectangle_cells_gather(int cells, double *const pushed[RECTANGLE_PUSHES],
+                            double *const force[2], long stride) {
+  for (int d = 0; d < 2; d++) {
+    double *const *of = pushed + d * CORNERS;
+    gather_row(cells, of[LOW_LEFT], of[LOW_RIGHT], force[d]);
+    gather_row(cells, of[HIGH_LEFT], of[HIGH_RIGHT], force[d] + stride);
+  }
 }

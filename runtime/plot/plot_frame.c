@@ -12,6 +12,7 @@
 #include "runtime/base/symmetric_tensor.h"
 #include "runtime/deck/output_fields.h"
 #include "runtime/plot/canvas.h"
+#include "runtime/result/mesh_views.h"
 #include "runtime/result/result_fields.h"
 #include "runtime/result/result_file.h"
 #include "runtime/result/result_find.h"
@@ -29,6 +30,7 @@ void plot_frame_free(plot_frame *m) {
   free(m->pairs);
   free(m->marked);
   free(m->nodes);
+  free(m->of_cells);
   plot_meshes_free(&m->meshes);
 }
 
@@ -351,6 +353,22 @@ static bool read_damage(result_file *f, plot_frame *m, const char *path, const p
   return false;
 }
 
+/* Of states and outputs cells have one value each, in results that know it. */
+static bool read_cells(result_file *f, plot_frame *m, const plot_map_options *o, char *error,
+                       size_t size) {
+  char unit[64];
+  long count = 0;
+  if (m->meshes.count == 0 || m->of_bonds || m->of_damage || o->contours > 0) return true;
+  if (strcmp(m->shown, MESH_DEAD_CELLS) == 0) {
+    m->of_cells = plot_meshes_show_dead(&m->meshes);
+    return true;
+  }
+  m->of_cells = result_read_cells(f, m->shown, o->frame, &count, unit, sizeof unit);
+  if (!m->of_cells || count == plot_meshes_cells(&m->meshes)) return true;
+  snprintf(error, size, "`/cells/%s` does not have a value for each cell", m->shown);
+  return false;
+}
+
 /* NULL with a sentence: a damage of bonds. */
 static double *read_one_damage(result_file *f, const plot_frame *m, const char *field, long frame,
                                char *error, size_t size) {
@@ -467,11 +485,12 @@ static bool read_frame(result_file *f, const char *path, plot_frame *m, const pl
   snprintf(m->title, sizeof m->title, "%s", o->title ? o->title : title);
   free(title);
   const bool two = strchr(o->field, ',') != NULL;
-  m->of_damage = two || strcmp(o->field, "damage") == 0;
+  const bool of_mesh = m->meshes.count > 0 && m->bonds == 0 && is_stored(f, "damage");
+  m->of_damage = two || (strcmp(o->field, "damage") == 0 && !of_mesh);
   if (two)
     return read_two_damages(f, m, o, error, size) && (!o->mark || read_marks(f, m, o, error, size));
   return read_damage(f, m, path, o, error, size) &&
-         (m->of_damage || read_values(f, m, o, error, size)) &&
+         (m->of_damage || read_values(f, m, o, error, size)) && read_cells(f, m, o, error, size) &&
          (!o->mark || read_marks(f, m, o, error, size));
 }
 

@@ -18,6 +18,7 @@ typedef struct plot_frame {
   char damages[2][64]; /* names of the two */
   int32_t *pairs;      /* [bonds][2] */
   double *values;      /* of the particles, or of the bonds; NULL: a map of damage */
+  double *of_cells;    /* [cells of all meshes] in place of the values of their nodes; NULL: none */
   long value_count;
   bool of_bonds; /* the values are those of bonds */
   /* Of the particles, or of the bonds: 1 where there is a mark, else 0; NULL without marks. */

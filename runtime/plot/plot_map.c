@@ -280,7 +280,7 @@ static void draw_meshes(canvas *c, const map *m, const sheet *s, int component) 
   if (f->values && !f->of_bonds) values = must_calloc((size_t)f->particles + 1, sizeof *values);
   for (long p = 0; values && p < f->particles; p++)
     values[p] = plot_frame_value(f, p, component);
-  const mesh_view v = {f->reference, f->moved, values};
+  const mesh_view v = {f->reference, f->moved, values, f->of_cells};
   if (values && s->level_count > 0)
     plot_cells_contours(c, &f->meshes, &v, &m->at, s->levels, s->level_count);
   else if (values)
@@ -477,17 +477,23 @@ static void draw_level_legend(canvas *c, const sheet *s, const plot_map_options 
   }
 }
 
+static void widen(double value, double *low, double *high) {
+  if (!isfinite(value)) return;
+  *low = pl_fmin(*low, value);
+  *high = pl_fmax(*high, value);
+}
+
 /* Least and largest value that is drawn; false when none is a number. */
 static bool range_of(const sheet *s, int component, double *low, double *high) {
   *low = INFINITY;
   *high = -INFINITY;
-  for (int n = 0; n < s->count; n++)
-    for (long k = 0; k < s->panels[n].frame.value_count; k++) {
-      const double v = plot_frame_value(&s->panels[n].frame, k, component);
-      if (!isfinite(v)) continue;
-      *low = pl_fmin(*low, v);
-      *high = pl_fmax(*high, v);
-    }
+  for (int n = 0; n < s->count; n++) {
+    const plot_frame *f = &s->panels[n].frame;
+    for (long k = 0; k < f->value_count; k++)
+      if (!f->of_cells || !f->nodes[k]) widen(plot_frame_value(f, k, component), low, high);
+    for (long c = 0; f->of_cells && c < plot_meshes_cells(&f->meshes); c++)
+      widen(f->of_cells[c], low, high);
+  }
   return *low <= *high;
 }
 

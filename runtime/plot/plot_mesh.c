@@ -19,6 +19,7 @@ void plot_meshes_free(plot_meshes *m) {
   for (int k = 0; k < m->count; k++) {
     free(m->items[k].cells);
     free(m->items[k].first);
+    free(m->items[k].number);
     crack_lines_close(&m->items[k].lines);
   }
   for (int k = 0; k < m->crack_count; k++)
@@ -83,6 +84,12 @@ static double mean_size(const plot_mesh *m, const double *reference) {
   return m->cell_count > 0 ? sqrt(fabs(sum) / (double)m->cell_count) : 0;
 }
 
+static void number_cells(plot_mesh *m) {
+  m->number = must_alloc(((size_t)m->cell_count + 1) * sizeof *m->number);
+  for (long c = 0; c < m->cell_count; c++)
+    m->number[c] = (int32_t)c;
+}
+
 /* Of a mesh of a file. */
 static void take_lists(plot_mesh *m, int columns) {
   int32_t *given = m->cells;
@@ -90,10 +97,13 @@ static void take_lists(plot_mesh *m, int columns) {
   const size_t most = CORNERS * (size_t)m->cell_count + 1; /* parts */
   m->cells = must_calloc(CORNERS * most, sizeof *m->cells);
   m->first = must_alloc(most * sizeof *m->first);
+  m->number = must_alloc(most * sizeof *m->number);
   for (long c = 0; c < m->cell_count; c++) {
     const int parts = split(given + columns * c, columns, (int32_t(*)[CORNERS])m->cells + count);
-    for (int k = 0; k < parts; k++)
+    for (int k = 0; k < parts; k++) {
+      m->number[count] = (int32_t)c;
       m->first[count++] = k == 0 ? given[columns * c] : -1;
+    }
   }
   m->cell_count = count;
   free(given);
@@ -111,7 +121,12 @@ static bool read_mesh(plot_mesh *m, result_file *f, const char *name, const doub
   m->cells = result_read_table(f, path, true, 3, MOST_NODES, &m->cell_count, &columns);
   if (!m->cells || !read_first(f, group, &first) || first < 0 || first > particles) return false;
   const bool of_file = columns != CORNERS || has_triangles(m);
-  if (of_file) take_lists(m, columns);
+  m->listed = m->cell_count;
+  m->first_particle = first;
+  if (of_file)
+    take_lists(m, columns);
+  else
+    number_cells(m);
   if (!names_particles(m->cells, m->cell_count, particles - (long)first)) return false;
   for (long k = 0; k < CORNERS * m->cell_count; k++)
     m->cells[k] += (int32_t)first;
@@ -195,19 +210,52 @@ static void give_lines(plot_meshes *m) {
                         m->cracks[c].points + 2 * k);
 }
 
+long plot_meshes_cells(const plot_meshes *m) {
+  long sum = 0;
+  for (int k = 0; k < m->count; k++)
+    sum += m->items[k].listed;
+  return sum;
+}
+
+/* In the order of the meshes' first particles, not of their names. */
+static void number_all(plot_meshes *m) {
+  for (int k = 0; k < m->count; k++) {
+    plot_mesh *of = &m->items[k];
+    long before = 0;
+    for (int n = 0; n < m->count; n++)
+      if (m->items[n].first_particle < of->first_particle) before += m->items[n].listed;
+    for (long c = 0; c < of->all_count; c++)
+      of->number[c] += (int32_t)before;
+  }
+}
+
+double *plot_meshes_show_dead(plot_meshes *m) {
+  double *dead = must_calloc((size_t)plot_meshes_cells(m) + 1, sizeof *dead);
+  for (int k = 0; k < m->count; k++) {
+    plot_mesh *of = &m->items[k];
+    for (long c = of->cell_count; c < of->all_count; c++)
+      dead[of->number[c]] = 1;
+    of->cell_count = of->all_count;
+  }
+  return dead;
+}
+
 /* Cells that have died stand behind those that are left. */
 static void bury(plot_mesh *m, const double *dead, long particles) {
   unsigned char *begun = must_calloc((size_t)particles + 1, 1);
-  int32_t *gone = must_calloc(CORNERS * (size_t)m->cell_count + 1, sizeof *gone);
+  int32_t *gone = must_calloc((CORNERS + 1) * (size_t)m->cell_count + 1, sizeof *gone),
+          *gone_number = gone + CORNERS * m->cell_count;
   long left = 0, died = 0;
   bool dies = false;
   for (long c = 0; c < m->cell_count; c++) {
     const int32_t *cell = m->cells + CORNERS * c, first = m->first ? m->first[c] : cell[0];
     if (first >= 0) dies = mesh_cell_died(dead[first], begun[first]++);
+    *(dies ? &gone_number[died] : &m->number[left]) = m->number[c];
     int32_t *to = dies ? gone + CORNERS * died++ : m->cells + CORNERS * left++;
     memmove(to, cell, CORNERS * sizeof *cell);
   }
   memcpy(m->cells + CORNERS * left, gone, CORNERS * (size_t)died * sizeof *gone);
+  memcpy(m->number + left, gone_number, (size_t)died * sizeof *gone_number);
   m->cell_count = left;
   free(begun);
   free(gone);
@@ -236,6 +284,7 @@ bool plot_meshes_read(plot_meshes *m, result_file *f, long frame, char *error, s
     good = read_mesh(&m->items[m->count++], f, names.items[k], reference, particles);
   if (!good) snprintf(error, size, "`/meshes` of `%s` is damaged", f->path);
   good = good && (names.count == 0 || read_cracks(m, f, frame, error, size));
+  if (good) number_all(m);
   if (good) give_lines(m);
   if (good && m->count > 0) bury_all(m, f, frame, particles);
   result_names_free(&names);
@@ -248,6 +297,7 @@ bool plot_meshes_read(plot_meshes *m, result_file *f, long frame, char *error, s
 typedef struct cell_view { /* a cell at the beginning, and the cracks that come near it */
   const mesh_view *of;
   const int32_t *corner;
+  double value;             /* where cells have one */
   const double *low, *high; /* m */
   const crack_lines *lines;
   int near[MOST_NEAR], near_count;
@@ -257,6 +307,7 @@ static cell_view view_of(const plot_mesh *m, const mesh_view *v, long cell) {
   const int32_t *corner = m->cells + CORNERS * cell;
   cell_view c = {.of = v,
                  .corner = corner,
+                 .value = v->of_cells ? v->of_cells[m->number[cell]] : 0,
                  .low = v->reference + 2 * corner[0],
                  .high = v->reference + 2 * corner[2],
                  .lines = &m->lines};
@@ -331,7 +382,10 @@ static void take_part(const cell_view *c, double x, double y, double size, mesh_
     double share[CORNERS];
     shares_at(seen, u, v, share);
     move_point(c, share, u, v, at[k]);
-    if (c->of->values) value[k] = mixed(c, c->of->values, 1, 0, share);
+    if (c->of->of_cells)
+      value[k] = c->value;
+    else if (c->of->values)
+      value[k] = mixed(c, c->of->values, 1, 0, share);
   }
   take(context, (const double(*)[2])at, value);
 }

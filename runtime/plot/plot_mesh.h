@@ -1,5 +1,5 @@
-/* Meshes of a result as pictures show them: cells, coloured by the values of their nodes, and
-   cracks. A cell that a crack crosses is cut into small parts, each of which takes the values of
+/* Meshes of a result as pictures show them: cells, coloured by their own values or their nodes',
+   and cracks. A cell that a crack crosses is cut into small parts, each of which takes the values of
    the nodes on its own side. */
 #ifndef PERILAT_RUNTIME_PLOT_MESH_H
 #define PERILAT_RUNTIME_PLOT_MESH_H
@@ -26,6 +26,9 @@ typedef struct plot_mesh {
   /* [all_count] of a file: the first node of the cell; -1: of the same as the one before; NULL:
      cells[.][0] */
   int32_t *first;
+  int32_t *number; /* [all_count] which of the cells of all meshes it is, or a part of */
+  long listed;     /* cells in the result */
+  int64_t first_particle;
   double size; /* m: a side of a cell of the same area */
   crack_lines lines;
 } plot_mesh;
@@ -41,11 +44,17 @@ typedef struct plot_meshes {
    with a sentence in `error`. To be freed in either case. */
 bool plot_meshes_read(plot_meshes *m, result_file *f, long frame, char *error, size_t size);
 void plot_meshes_free(plot_meshes *m);
+/* Cells that have died are shown, too: [cells of all meshes], 1 where one has, else 0; to be
+   freed. */
+double *plot_meshes_show_dead(plot_meshes *m);
+/* Of all meshes. */
+long plot_meshes_cells(const plot_meshes *m);
 
 /* What is drawn: nodes at the beginning and where they have moved to, [particles][2] m, and a value
    of each (may be NULL). */
 typedef struct mesh_view {
   const double *reference, *moved, *values;
+  const double *of_cells; /* [cells of all meshes] in place of `values`; NULL: none */
 } mesh_view;
 
 /* A part of a cell: four corners around, m, and what they have there. */

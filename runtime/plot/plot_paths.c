@@ -107,7 +107,7 @@ static bool lay_out(picture *p, double legend, char *error, size_t size) {
 }
 
 static void draw_outline(canvas *c, const picture *p, const path_set *s) {
-  const mesh_view v = {s->reference, s->reference, NULL};
+  const mesh_view v = {s->reference, s->reference, NULL, NULL};
   plot_cells_outline(c, &s->meshes, &v, &p->at);
 }
 

@@ -13,6 +13,7 @@ enum { NAME = 512 };
 static void cells_free(mesh_cells *c) {
   free(c->corners);
   free(c->nodes);
+  free(c->numbers);
 }
 
 void mesh_views_free(mesh_views *v) {
@@ -73,11 +74,13 @@ static bool is_whole(const mesh_views *v, const result_header *h, const result_m
   return true;
 }
 
-static void add_cell(mesh_cells *c, long first_particle, const int32_t *cell, int columns) {
+static void add_cell(mesh_cells *c, long first_particle, const int32_t *cell, int columns,
+                     int32_t number) {
   int nodes = 0;
   for (; nodes < columns && cell[nodes] >= 0; nodes++)
     c->corners[c->corner_count++] = (int32_t)first_particle + cell[nodes];
   c->alike = c->count == 0 || c->alike == nodes ? nodes : 0;
+  c->numbers[c->count] = number;
   c->nodes[c->count++] = (unsigned char)nodes;
 }
 
@@ -89,20 +92,22 @@ static bool has_died(const mesh_views *v, unsigned char *begun, long corner, lon
 static mesh_cells cells_of(const mesh_views *v, const result_header *h, long frame, bool all) {
   mesh_cells shown = {.count = 0};
   size_t most = 0, corners = 0;
+  int32_t number = 0;
   for (int n = 0; n < h->mesh_count; n++) {
     most += (size_t)h->meshes[n].cell_count;
     corners += (size_t)h->meshes[n].cell_count * (size_t)h->meshes[n].columns;
   }
   shown.corners = must_alloc((corners + 1) * sizeof *shown.corners);
   shown.nodes = must_alloc(most + 1);
+  shown.numbers = must_alloc((most + 1) * sizeof *shown.numbers);
   unsigned char *begun = must_calloc((size_t)v->particles + 1, 1); /* cells so far at a corner */
   for (int n = 0; n < h->mesh_count; n++)
-    for (long c = 0; c < h->meshes[n].cell_count; c++) {
+    for (long c = 0; c < h->meshes[n].cell_count; c++, number++) {
       const result_mesh *m = &h->meshes[n];
       const int32_t *cell = m->cells + m->columns * c;
       const bool died = !all && v->dead && has_died(v, begun, m->first_particle + cell[0], frame);
       if (!died && (all || is_whole(v, h, m, cell, frame)))
-        add_cell(&shown, m->first_particle, cell, m->columns);
+        add_cell(&shown, m->first_particle, cell, m->columns, number);
     }
   free(begun);
   return shown;
@@ -268,7 +273,8 @@ static bool write_nothings(hid_t file, const mesh_views *v, long frames) {
   for (int k = 0; k < v->path_count; k++)
     for (long n = 0; n < frames && good; n++) {
       const long points = mesh_path_count(&v->paths[k], n);
-      good = write_nothing(file, points, 1) && write_nothing(file, points, 3);
+      good = write_nothing(file, points, 1) && write_nothing(file, points, 3) &&
+             write_nothing(file, 1, 1);
     }
   return good;
 }
@@ -295,7 +301,79 @@ static bool write_set(hid_t file, const char *name, const mesh_cells *c) {
   return good;
 }
 
-bool mesh_views_write(hid_t file, const mesh_views *v, long frames) {
+/* --- values of cells -------------------------------------------------------------------------- */
+
+void mesh_views_all_values_name(const result_field *f, char *name, size_t size) {
+  snprintf(name, size, "/xdmf/cell_values/%s/all", f->name);
+}
+
+void mesh_views_values_name(const result_field *f, long frame, char *name, size_t size) {
+  snprintf(name, size, "/xdmf/cell_values/%s/%ld", f->name, frame);
+}
+
+int64_t mesh_views_values_begin(const mesh_views *v, long frame) {
+  int64_t sum = 0;
+  for (long k = 0; k < frame; k++)
+    sum += v->sets[v->set_of_frame[k]].count;
+  return sum;
+}
+
+/* values[f->count]: what has been written of a frame. */
+static bool read_frame(hid_t set, const result_field *f, long frame, double *values) {
+  const hsize_t start[2] = {(hsize_t)frame, 0}, count[2] = {1, (hsize_t)f->count};
+  const hid_t space = H5Dget_space(set), memory = H5Screate_simple(2, count, NULL);
+  const bool good = H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
+                    H5Dread(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values) >= 0;
+  H5Sclose(memory);
+  H5Sclose(space);
+  return good;
+}
+
+/* all[...]: of each frame the cells that are shown. */
+static bool take_shown(hid_t file, const mesh_views *v, const result_field *f, long frames,
+                       double *all) {
+  char name[NAME];
+  snprintf(name, sizeof name, "/cells/%s", f->name);
+  const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+  double *values = must_calloc((size_t)f->count + 1, sizeof *values);
+  bool good = set >= 0;
+  for (long k = 0; k < frames && good; k++) {
+    const mesh_cells *shown = &v->sets[v->set_of_frame[k]];
+    good = read_frame(set, f, k, values);
+    for (long c = 0; c < shown->count; c++)
+      *all++ = values[shown->numbers[c]];
+  }
+  free(values);
+  if (set >= 0) H5Dclose(set);
+  return good;
+}
+
+static bool show_values(hid_t file, const mesh_views *v, const result_field *f, long frame,
+                        const char *set) {
+  char name[NAME];
+  const hsize_t count[1] = {(hsize_t)v->sets[v->set_of_frame[frame]].count};
+  const h5_block from = {
+      .set = set, .start = {(hsize_t)mesh_views_values_begin(v, frame)}, .count = {count[0], 1}};
+  mesh_views_values_name(f, frame, name, sizeof name);
+  return h5_make_view(file, name, 1, count, &from, 1, false);
+}
+
+static bool write_values(hid_t file, const mesh_views *v, const result_field *f, long frames) {
+  char group[NAME], name[NAME];
+  const hsize_t count[1] = {(hsize_t)mesh_views_values_begin(v, frames)};
+  double *all = must_alloc(((size_t)count[0] + 1) * sizeof *all);
+  snprintf(group, sizeof group, "/xdmf/cell_values/%s", f->name);
+  mesh_views_all_values_name(f, name, sizeof name);
+  bool good = h5_make_group(file, "/xdmf/cell_values") && h5_make_group(file, group) &&
+              take_shown(file, v, f, frames, all) &&
+              h5_write_doubles(file, name, all, 1, count, f->unit);
+  for (long k = 0; k < frames && good; k++)
+    good = show_values(file, v, f, k, name);
+  free(all);
+  return good;
+}
+
+bool mesh_views_write(hid_t file, const result_header *h, const mesh_views *v, long frames) {
   char name[NAME];
   bool good = v->set_count == 0 || h5_make_group(file, "/xdmf/cells");
   for (int k = 0; good && k < v->set_count; k++) {
@@ -304,5 +382,7 @@ bool mesh_views_write(hid_t file, const mesh_views *v, long frames) {
   }
   for (int k = 0; good && k < v->path_count; k++)
     good = show_paths(file, &v->paths[k], frames);
+  for (int k = 0; good && k < h->field_count && frames > 0; k++)
+    if (result_field_of_cells(&h->fields[k])) good = write_values(file, v, &h->fields[k], frames);
   return good && write_nothings(file, v, frames);
 }

@@ -6,9 +6,12 @@
                                            crosses, for the frames of set k; [C, 3] or [C, 6] of
                                            triangles; where kinds differ all in one row, each with
                                            its number of XDMF before it
+     /xdmf/cell_values/<field>/all         [sum of C] values of those cells, frame by frame, and
+     /xdmf/cell_values/<field>/<frame>     [C] the same for each frame
      /xdmf/cracks/<crack>/<frame>          [P, 3] points of the crack
-     /xdmf/nothing/<columns>/<P>           [P] NaN, [P, 3] 0: fields of the nodes on a crack, which
-                                           has none; a reader of ParaView's colours a grid only
+     /xdmf/nothing/<columns>/<P>           [P] NaN, [P, 3] 0: fields of the nodes and, [1], of the
+                                           cells on a crack, which has none; a
+                                           reader of ParaView's colours a grid only
                                            with arrays that all grids have
 
    A crack that has come further leaves out more cells, and so do cells that died: frames in between
@@ -40,6 +43,7 @@ typedef struct mesh_path { /* a crack, frame by frame */
 typedef struct mesh_cells { /* that are there and no crack crosses */
   int32_t *corners;         /* [corner_count] particles, cell by cell */
   unsigned char *nodes;     /* [count] of each: 3, 4, 6 */
+  int32_t *numbers;         /* [count] among the cells of all meshes */
   long count, corner_count;
   int alike; /* nodes of all; 0: they differ */
 } mesh_cells;
@@ -62,9 +66,13 @@ long mesh_path_count(const mesh_path *p, long frame);
 
 bool mesh_views_write_meshes(hid_t file, const result_header *h);
 /* After the frames. */
-bool mesh_views_write(hid_t file, const mesh_views *v, long frames);
+bool mesh_views_write(hid_t file, const result_header *h, const mesh_views *v, long frames);
 void mesh_views_set_name(int set, char *name, size_t size);
 void mesh_views_path_name(const mesh_path *p, long frame, char *name, size_t size);
+/* A frame of a field of cells; where it begins among all frames. */
+void mesh_views_values_name(const result_field *f, long frame, char *name, size_t size);
+void mesh_views_all_values_name(const result_field *f, char *name, size_t size);
+int64_t mesh_views_values_begin(const mesh_views *v, long frame);
 void mesh_views_nothing_name(long points, int columns, char *name, size_t size);
 /* "notch" of the field "notch/points". */
 int mesh_path_name_length(const mesh_path *p);

@@ -251,7 +251,7 @@ static int shape_of(const frame_sets *s, const result_field *f, hsize_t shape[3]
   shape[0] = (hsize_t)s->count;
   shape[1] = (hsize_t)(p ? p->most : f->count);
   shape[2] = (hsize_t)f->components;
-  return f->interaction ? 2 : 3;
+  return f->interaction || result_field_of_cells(f) ? 2 : 3;
 }
 
 /* "/cracks/notch" of "notch/points". */
@@ -261,13 +261,16 @@ static bool make_group_of_path(hid_t file, const result_field *f) {
   return h5_make_group(file, name);
 }
 
+static const char *group_of(const result_field *f) {
+  return result_field_of_cracks(f) ? "/cracks" : result_field_of_cells(f) ? "/cells" : "/frames";
+}
+
 static hid_t make_field(hid_t file, const frame_sets *s, const result_field *f) {
   char name[512];
   hsize_t shape[3];
-  if (result_field_of_cracks(f) && !h5_make_group(file, "/cracks")) return -1;
+  if (!h5_make_group(file, group_of(f))) return -1;
   if (result_field_is_path(f) && !make_group_of_path(file, f)) return -1;
-  snprintf(name, sizeof name, "%s/%s", result_field_of_cracks(f) ? "/cracks" : "/frames",
-           f->interaction ? f->interaction : f->name);
+  snprintf(name, sizeof name, "%s/%s", group_of(f), f->interaction ? f->interaction : f->name);
   if (f->interaction) {
     if (!h5_make_group(file, name)) return -1;
     snprintf(name, sizeof name, "/frames/%s/%s", f->interaction, f->name);
@@ -309,7 +312,8 @@ static bool describe_fields(hid_t file, const frame_sets *s) {
   bool good = true;
   for (int k = 0; good && k < s->header->field_count; k++) {
     const result_field *f = &s->header->fields[k];
-    good = describe(s->sets[k], f->interaction ? 2 : 3, &times, f->long_name);
+    hsize_t shape[3];
+    good = describe(s->sets[k], shape_of(s, f, shape), &times, f->long_name);
   }
   return h5_scale_end(&times) && good;
 }

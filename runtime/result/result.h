@@ -22,6 +22,9 @@
      /frames/time           [F] likewise; /frames/<field> [F, N, components];
                             /frames/<interaction>/<bond field> [F, M], attributes units, long_name
                             and kind ("state", "damage", "output" of the law, "other")
+     /cells/<field>         [F, C]: states and outputs of laws that are not linear, a value for each
+                            cell of all meshes in the order of their first particles; attributes as
+                            of fields of frames; only with meshes of such laws
      /cracks/<monitor>      [F, N, 2] m: place along the monitor's line and width of each crack in
                             the order of places, NaN beyond the last; only with such monitors
      /cracks/<crack>/points [F, P, 2] m: the points of a mesh's crack from its first to its last,
@@ -56,8 +59,9 @@ typedef struct result_field { /* of a frame */
   const char *unit;        /* "m", "1" */
   const char *interaction; /* NULL: per particle; else bond field of that interaction */
   int components;          /* 1, 2, ... */
-  long count;              /* particles, bonds or, at most, cracks */
-  /* "state", "damage", "output" of the law; "cracks" across the line of the monitor of that name;
+  long count;              /* particles, bonds, cells or, at most, cracks */
+  /* "state", "damage", "output" of the law; "cells": one value for each cell of the meshes, in
+     their order; "cracks" across the line of the monitor of that name;
      "path" of a crack of a mesh; else "other" */
   const char *kind;
   const char *long_name; /* in words; NULL: nobody has said */
@@ -67,7 +71,10 @@ typedef struct result_field { /* of a frame */
 static inline bool result_field_is_path(const result_field *f) {
   return strcmp(f->kind, "path") == 0;
 }
-/* Neither of particles nor of bonds. */
+static inline bool result_field_of_cells(const result_field *f) {
+  return strcmp(f->kind, "cells") == 0;
+}
+/* Neither of particles nor of bonds nor of cells. */
 static inline bool result_field_of_cracks(const result_field *f) {
   return strcmp(f->kind, "cracks") == 0 || result_field_is_path(f);
 }

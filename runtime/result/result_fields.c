@@ -34,11 +34,10 @@ static double *read_slab(hid_t set, long frame, int rank, const hsize_t shape[3]
   return NULL;
 }
 
-/* A frame of one data set. */
-static double *read_one(result_file *f, const char *field, long frame, long *count, int *components,
-                        char *unit_text, size_t unit_size, char *error, size_t size) {
-  hid_t set = open_field(f, field, error, size);
-  if (set < 0) return NULL;
+/* A frame of a data set, a field. */
+static double *read_of_set(result_file *f, hid_t set, const char *field, long frame, long *count,
+                           int *components, char *unit_text, size_t unit_size, char *error,
+                           size_t size) {
   int rank = 0;
   hsize_t shape[3] = {0, 0, 0};
   if (!result_set_shape(set, 1, &rank, shape) || rank < 2) {
@@ -60,6 +59,28 @@ static double *read_one(result_file *f, const char *field, long frame, long *cou
   *components = rank > 2 ? (int)shape[2] : 1;
   h5_read_attribute_text(set, "units", unit_text, unit_size);
   return values;
+}
+
+static double *read_one(result_file *f, const char *field, long frame, long *count, int *components,
+                        char *unit_text, size_t unit_size, char *error, size_t size) {
+  const hid_t set = open_field(f, field, error, size);
+  if (set < 0) return NULL;
+  return read_of_set(f, set, field, frame, count, components, unit_text, unit_size, error, size);
+}
+
+double *result_read_cells(result_file *f, const char *field, long frame, long *count,
+                          char *unit_text, size_t unit_size) {
+  char path[560], unsaid[1700];
+  int components = 0;
+  snprintf(path, sizeof path, "/cells/%.500s", field);
+  const hid_t set = result_set_open(f, path);
+  if (set < 0) return NULL;
+  double *values = read_of_set(f, set, field, frame, count, &components, unit_text, unit_size,
+                               unsaid, sizeof unsaid);
+  H5Dclose(set);
+  if (values && components == 1) return values;
+  free(values);
+  return NULL;
 }
 
 /* --- fields of bonds -------------------------------------------------------------------------- */

@@ -31,7 +31,7 @@ int views_arrays(const result_header *h, views_array *arrays, arena *texts) {
   int count = 0;
   for (int k = 0; k < h->field_count; k++) {
     const result_field *f = &h->fields[k];
-    bool shown = result_field_of_cracks(f);
+    bool shown = result_field_of_cracks(f) || result_field_of_cells(f);
     for (int n = 0; n < count; n++)
       shown = shown || is_same(arrays[n].field, f);
     if (shown) continue;
@@ -310,11 +310,35 @@ static bool begin_groups(hid_t file) {
   return H5Gclose(vtk) >= 0 && good;
 }
 
+/* Values of cells stand there already, frame by frame. */
+static bool link_values(hid_t file, const mesh_views *m, const result_field *f, long frames) {
+  char all[NAME], name[NAME], offsets[NAME];
+  const hsize_t shape[1] = {(hsize_t)frames};
+  int64_t *at = must_alloc((size_t)frames * sizeof *at);
+  for (long k = 0; k < frames; k++)
+    at[k] = mesh_views_values_begin(m, k);
+  mesh_views_all_values_name(f, all, sizeof all);
+  snprintf(name, sizeof name, "/VTKHDF/CellData/%s", f->name);
+  snprintf(offsets, sizeof offsets, "/VTKHDF/Steps/CellDataOffsets/%s", f->name);
+  const bool good = H5Lcreate_hard(file, all, file, name, H5P_DEFAULT, H5P_DEFAULT) >= 0 &&
+                    h5_write_list(file, offsets, at, 1, shape);
+  free(at);
+  return good;
+}
+
+static bool link_all_values(hid_t file, const result_header *h, const mesh_views *m, long frames) {
+  bool good = true;
+  for (int k = 0; k < h->field_count && good; k++)
+    if (result_field_of_cells(&h->fields[k])) good = link_values(file, m, &h->fields[k], frames);
+  return good;
+}
+
 bool views_write(hid_t file, const result_header *h, const mesh_views *m, long frames) {
   grid_parts parts = parts_of(h, m);
   bool good = begin_groups(file) && write_grid(file, h, m, &parts) &&
               (!frames || write_steps(file, m, &parts, frames)) &&
-              mesh_views_write(file, m, frames);
+              mesh_views_write(file, h, m, frames) &&
+              (!parts.sets || !frames || link_all_values(file, h, m, frames));
   free(parts.cells);
   arena *texts = arena_new();
   views_array *arrays = must_calloc((size_t)h->field_count + 1, sizeof *arrays);

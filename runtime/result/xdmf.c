@@ -51,8 +51,9 @@ static void print_item(FILE *out, const char *file, const char *set, const char 
 static void print_array(FILE *out, const char *file, const views_array *a, const char *set,
                         long count) {
   const int components = views_components(a->field);
+  const bool of_cells = a->field->interaction || result_field_of_cells(a->field);
   fprintf(out, "<Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">", a->name,
-          components == 1 ? "Scalar" : "Vector", a->field->interaction ? "Cell" : "Node");
+          components == 1 ? "Scalar" : "Vector", of_cells ? "Cell" : "Node");
   print_item(out, file, set, "Float", 8, count, components);
   fputs("</Attribute>\n", out);
 }
@@ -133,6 +134,20 @@ static void print_set(const sidecar *s, const char *name, const mesh_cells *c) {
   }
 }
 
+/* Of cells; set -1: of a crack, which has none. */
+static void print_values(const sidecar *s, long frame, int set) {
+  for (int k = 0; k < s->header->field_count; k++) {
+    const views_array a = {&s->header->fields[k], s->header->fields[k].name};
+    char name[512];
+    if (!result_field_of_cells(a.field)) continue;
+    if (set < 0)
+      mesh_views_nothing_name(1, 1, name, sizeof name);
+    else
+      mesh_views_values_name(a.field, frame, name, sizeof name);
+    print_array(s->out, s->file, &a, name, set < 0 ? 1 : s->meshes->sets[set].count);
+  }
+}
+
 static void print_cells(const sidecar *s) {
   begin_series(s, "cells", (int)strlen("cells"));
   for (long frame = 0; frame < s->frames; frame++) {
@@ -143,6 +158,7 @@ static void print_cells(const sidecar *s) {
     print_set(s, name, &s->meshes->sets[set]);
     print_geometry(s->out, s->file, VIEWS_POINTS, s->header->particle_count);
     print_attributes(s, frame, false);
+    print_values(s, frame, set);
     fputs("</Grid>\n", s->out);
   }
   fputs("</Grid>", s->out);
@@ -175,6 +191,7 @@ static void print_path(const sidecar *s, const mesh_path *p) {
     fputs("</DataItem></Topology>\n", s->out);
     print_geometry(s->out, s->file, name, points);
     print_nothings(s, points);
+    print_values(s, frame, -1);
     fputs("</Grid>\n", s->out);
   }
   fputs("</Grid>", s->out);

@@ -5,13 +5,13 @@
 #include "runtime/deck/deck_value.h"
 
 /* In a result stand side by side: the times, fields of particles, a folder for the bonds of each
-   lattice; in such a folder the fields of its bonds. */
+   lattice; in such a folder the fields of its bonds. Those of cells have a folder of their own. */
 static bool is_named_once(const deck *k, const frame_field *f, int count, int field) {
   const char *name = f[field].name;
-  if (f[field].on_bonds) return true;
+  if (f[field].on_bonds || f[field].on_cells) return true;
   bool once = strcmp(name, "time") != 0;
   for (int n = 0; n < count; n++)
-    if (n != field && !f[n].of_cracks)
+    if (n != field && !f[n].of_cracks && !f[n].on_cells)
       once = once &&
              strcmp(f[n].on_bonds ? k->interactions[f[n].interaction].name : f[n].name, name) != 0;
   return once;

@@ -6,10 +6,10 @@
 
 typedef struct frame_field {
   const char *name, *unit;
-  bool on_bonds;
+  bool on_bonds, on_cells;
   int components;
   int interaction;  /* of the run; on particles the first that has the field */
-  long count;       /* particles of all bodies, or bonds of that interaction */
+  long count;       /* particles of all bodies, bonds of that interaction, or cells of all meshes */
   bool of_law;      /* it, or a parameter, has its name from the law */
   bool of_cracks;   /* place and width (m) of the cracks across a monitor's line; it has the
                             monitor's name, and is NaN beyond the last crack; or places (m) of the

@@ -127,6 +127,19 @@ static bool is_density(const pl_law *law, int varying) {
   return law->varying[varying] == law->density;
 }
 
+/* Which of the body's laws it is. */
+static int number_of(const frames_of *of) {
+  return (int)(of->law - of->body->laws);
+}
+
+static void values_of_cell_state(const frames_of *of, const frame_source *from, double *values) {
+  cells_mean_state(of->body->cells, number_of(of), from->index, values);
+}
+
+static void values_of_cell_output(const frames_of *of, const frame_source *from, double *values) {
+  cells_mean_output(of->body->cells, number_of(of), from->index, values);
+}
+
 static void values_of_parameter(const frames_of *of, const frame_source *from, double *values) {
   const bool density = is_density(of->law->law, from->index);
   const double *array = density ? of->law->planes->density : of->law->state->parameter[from->index];
@@ -201,6 +214,24 @@ static void values_of_damage(const frames_of *of, const frame_source *from, doub
   free(laws);
 }
 
+/* The largest of the laws' damages. */
+static void values_of_cell_damage(const frames_of *of, const frame_source *from, double *values) {
+  const long count = cells_whole_count(of->body->cells);
+  double *one = must_calloc((size_t)count + 1, sizeof *one);
+  (void)from;
+  for (int n = 0; n < of->body->law_count; n++) {
+    const pl_law *law = of->body->laws[n].law;
+    for (int k = 0; k < law->field_count; k++) {
+      if (law->fields[k].kind != PL_FIELD_DAMAGE) continue;
+      cells_mean_state(of->body->cells, n, k, one);
+      for (long c = 0; c < count; c++)
+        if (one[c] > values[c]) values[c] = one[c];
+    }
+    memset(one, 0, (size_t)count * sizeof *one);
+  }
+  free(one);
+}
+
 /* Energy lost in the bonds that a particle owns (those to the right and above). */
 static void values_of_dissipated(const frames_of *of, const frame_source *from, double *values) {
   const rows *g = of->body->lattice_rows;
@@ -225,9 +256,9 @@ static void values_of_dead_cells(const frames_of *of, const frame_source *from, 
   memset(values, 0, (size_t)count * sizeof *values);
   for (int cell = 0; c && cell < mesh_cell_count(&c->mesh); cell++) {
     int corner[ELEMENT_MOST_NODES];
+    if (!cells_whole(c, cell)) continue;
     mesh_cell_nodes(&c->mesh, cell, corner);
     const int32_t first = cells_particle(c, corner[0]);
-    if (c->mesh.cell[cell] == CELL_ABSENT || first < 0) continue;
     values[first] += cells_dead(c, cell) ? ldexp(1, begun[first]) : 0;
     begun[first]++;
   }
@@ -372,10 +403,10 @@ static int count_laws(const run_body *bodies, int count) {
 }
 
 static size_t most_fields(const run_body *bodies, int count) {
-  size_t most = OWN_FIELDS + TENSORS * (1 + TENSOR_MOST);
+  size_t most = 2 * OWN_FIELDS + TENSORS * (1 + TENSOR_MOST);
   for (int n = 0; n < count_laws(bodies, count); n++) {
     const pl_law *law = bodies[0].laws[n].law;
-    most += (size_t)(law->field_count + law->output_count + law->parameter_count);
+    most += (size_t)(2 * (law->field_count + law->output_count) + law->parameter_count);
   }
   return most;
 }
@@ -394,13 +425,21 @@ static long particles_of(const run_body *bodies, int count) {
   return sum;
 }
 
+static long cells_of(const run_body *bodies, int count) {
+  long sum = 0;
+  for (int b = 0; b < count; b++)
+    sum += bodies[b].cells ? cells_whole_count(bodies[b].cells) : 0;
+  return sum;
+}
+
 /* The place of a field that another law has brought, or -1. */
 static int find_shared(const frame_set *f, const frame_field *field) {
   for (int k = 0; k < f->count && !field->on_bonds; k++) {
     const frame_field *other = &f->fields[k];
     if (!other->on_bonds && other->interaction != field->interaction &&
-        other->components == field->components && strcmp(other->name, field->name) == 0 &&
-        strcmp(other->unit, field->unit) == 0 && strcmp(other->kind, field->kind) == 0)
+        other->on_cells == field->on_cells && other->components == field->components &&
+        strcmp(other->name, field->name) == 0 && strcmp(other->unit, field->unit) == 0 &&
+        strcmp(other->kind, field->kind) == 0)
       return k;
   }
   return -1;
@@ -410,14 +449,21 @@ static int find_shared(const frame_set *f, const frame_field *field) {
 static frame_source *add(frame_set *f, frame_field field, values_of *values, int index) {
   const int shared = find_shared(f, &field), at = shared < 0 ? f->count++ : shared;
   if (shared < 0) {
-    field.count = field.on_bonds ? f->laws[field.interaction].rows->bond_count
-                                 : particles_of(f->bodies, f->body_count);
+    field.count = field.on_bonds   ? f->laws[field.interaction].rows->bond_count
+                  : field.on_cells ? cells_of(f->bodies, f->body_count)
+                                   : particles_of(f->bodies, f->body_count);
     f->fields[at] = field;
   }
   frame_source *from = &f->sources[at * f->law_count + field.interaction];
   *from = (frame_source){
       .values = values, .components = field.components, .on_bonds = field.on_bonds, .index = index};
   return from;
+}
+
+/* The field of nodes once more, as one value a cell. */
+static void add_on_cells(frame_set *f, frame_field field, values_of *values, int index) {
+  field.on_cells = true;
+  add(f, field, values, index);
 }
 
 static const char *words_of(const char *doc, const char *otherwise) {
@@ -434,14 +480,16 @@ static void add_own(frame_set *f, const own_field *own, int b) {
   const bool asked = is_asked(f->asked, own->name) || own->values == values_of_dead_cells;
   if (!asked || !exists_on(own, f->asked, of)) return;
   const bool largest = own->values == values_of_damage && damage_on_particles(of->law);
-  add(f,
-      (frame_field){.name = own->name,
-                    .unit = own->unit,
-                    .components = component_count(own->components, of->law),
-                    .interaction = first_law(f, b),
-                    .kind = own->kind,
-                    .long_name = largest ? "the largest damage of the particle" : own->words},
-      own->values, 0);
+  const frame_field field = {.name = own->name,
+                             .unit = own->unit,
+                             .components = component_count(own->components, of->law),
+                             .interaction = first_law(f, b),
+                             .kind = own->kind,
+                             .long_name =
+                                 largest ? "the largest damage of the particle" : own->words};
+  add(f, field, own->values, 0);
+  if (of->cells && own->values == values_of_damage)
+    add_on_cells(f, field, values_of_cell_damage, 0);
 }
 
 /* "stress_xx" */
@@ -527,39 +575,54 @@ static void add_parameter(frame_set *f, int n, int parameter, values_of *values,
       values, index);
 }
 
-static void add_of_law(frame_set *f, int n) {
+static frame_field field_of_law(const pl_field *of, int n, const char *kind, const char *words) {
+  return (frame_field){.name = of->name,
+                       .unit = of->unit,
+                       .on_bonds = on_bonds(of),
+                       .components = 1,
+                       .interaction = n,
+                       .of_law = true,
+                       .kind = kind,
+                       .long_name = words_of(of->doc, words)};
+}
+
+static void add_states(frame_set *f, int n, bool of_cells) {
   const pl_law *law = f->laws[n].law;
-  const deck_output *asked = f->asked;
   for (int k = 0; k < law->field_count; k++) {
     const pl_field *s = &law->fields[k];
     const bool damages = s->kind == PL_FIELD_DAMAGE;
-    if (!is_asked(asked, s->name) && !(damages && is_asked(asked, "damage"))) continue;
-    add(f,
-        (frame_field){.name = s->name,
-                      .unit = s->unit,
-                      .on_bonds = on_bonds(s),
-                      .components = 1,
-                      .interaction = n,
-                      .of_law = true,
-                      .kind = damages ? "damage" : "state",
-                      .long_name =
-                          words_of(s->doc, damages ? "damage of the law" : "state of the law")},
-        values_of_state, k);
+    if (!is_asked(f->asked, s->name) && !(damages && is_asked(f->asked, "damage"))) continue;
+    const frame_field field = field_of_law(s, n, damages ? "damage" : "state",
+                                           damages ? "damage of the law" : "state of the law");
+    add(f, field, values_of_state, k);
+    if (of_cells) add_on_cells(f, field, values_of_cell_state, k);
   }
+}
+
+/* Laws that are linear have those that follow the strain alone: smooth, and known at nodes. */
+static bool is_of_linear_law(const frame_set *f, const char *output) {
+  for (int n = 0; n < f->law_count; n++)
+    for (int k = 0; k < f->laws[n].law->output_count && f->laws[n].law->linear; k++)
+      if (strcmp(f->laws[n].law->outputs[k].name, output) == 0) return true;
+  return false;
+}
+
+static void add_outputs(frame_set *f, int n, bool of_cells) {
+  const pl_law *law = f->laws[n].law;
   for (int k = 0; k < law->output_count; k++) {
     const pl_field *o = &law->outputs[k];
-    if (!is_asked(asked, o->name)) continue;
-    add(f,
-        (frame_field){.name = o->name,
-                      .unit = o->unit,
-                      .on_bonds = on_bonds(o),
-                      .components = 1,
-                      .interaction = n,
-                      .of_law = true,
-                      .kind = "output",
-                      .long_name = words_of(o->doc, "output of the law")},
-        values_of_output, k);
+    if (!is_asked(f->asked, o->name)) continue;
+    const frame_field field = field_of_law(o, n, "output", "output of the law");
+    add(f, field, values_of_output, k);
+    if (of_cells && !is_of_linear_law(f, o->name)) add_on_cells(f, field, values_of_cell_output, k);
   }
+}
+
+static void add_of_law(frame_set *f, int n) {
+  const pl_law *law = f->laws[n].law;
+  const bool of_cells = f->bodies[f->laws[n].from->lattice].cells != NULL;
+  add_states(f, n, of_cells);
+  add_outputs(f, n, of_cells);
   for (int k = 0; k < law->varying_count; k++)
     add_parameter(f, n, law->varying[k], values_of_parameter, k);
   for (int p = 0; p < law->parameter_count; p++)
@@ -659,11 +722,10 @@ int frames_fields(const frame_set *f, const frame_field **fields) {
   return f->count;
 }
 
-/* Of particles whose laws do not have the field. */
-static void fill_without(const frame_field *field, const run_body *of, double *values) {
-  const long count = run_body_particles(of) * field->components;
+/* Of particles or cells whose laws do not have the field. */
+static void fill_without(const frame_field *field, long count, double *values) {
   const double none = strcmp(field->kind, "damage") == 0 ? 0 : NAN;
-  for (long k = 0; k < count; k++)
+  for (long k = 0; k < count * field->components; k++)
     values[k] = none;
 }
 
@@ -707,6 +769,19 @@ static void values_between_cells(const frame_set *f, int field, const run_body *
   free(sum);
 }
 
+/* Of all meshes, one after the other. */
+static void values_on_cells(const frame_set *f, int field, double *values) {
+  for (int b = 0; b < f->body_count; b++) {
+    const run_body *here = &f->bodies[b];
+    if (!here->cells) continue;
+    const long count = cells_whole_count(here->cells);
+    fill_without(&f->fields[field], count, values);
+    for (int n = 0; n < here->law_count; n++)
+      values_of_law(f, field, here, &here->laws[n], values);
+    values += count;
+  }
+}
+
 static void values_of_cracks(const frame_set *f, const frame_field *field, double *values) {
   long count;
   const crack *found = crack_line_find(line_of(f, field), &count);
@@ -732,6 +807,10 @@ void frames_values(const frame_set *f, int field, double *values) {
     values_of_cracks(f, of, values);
     return;
   }
+  if (of->on_cells) {
+    values_on_cells(f, field, values);
+    return;
+  }
   if (of->on_bonds) {
     const run_law *law = &f->laws[of->interaction];
     values_of_law(f, field, &f->bodies[law->from->lattice], law, values);
@@ -740,7 +819,7 @@ void frames_values(const frame_set *f, int field, double *values) {
   for (int b = 0; b < f->body_count; b++) {
     const run_body *here = &f->bodies[b];
     double *at = values + here->first_particle * of->components;
-    fill_without(of, here, at);
+    fill_without(of, run_body_particles(here), at);
     if (here->cells && of->of_law && laws_with(f, field, here) > 1) {
       values_between_cells(f, field, here, at);
       continue;

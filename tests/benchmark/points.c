@@ -148,9 +148,11 @@ static void gap_add(gap *g, double a, double b) {
   g->largest = fmax(g->largest, fabs(a));
 }
 
+/* The program by hand keeps eps_bar, xx, yy, zz, xy; the law all but zz. */
 static gap states_apart(const loaded *l, const plastic_program *by, const plastic_plate *plate) {
   const cell_strips *s = &l->points->strips;
   const mesh *m = &l->cells->mesh;
+  static const int kept[] = {0, 1, 2, 4};
   gap g = {0, 0};
   for (int cell = 0; cell < mesh_cell_count(m); cell++)
     for (int k = 0; k < 4; k++) {
@@ -159,9 +161,9 @@ static gap states_apart(const loaded *l, const plastic_program *by, const plasti
       double state[5];
       by->state(plate, i, j, at[0] > mesh_at(m, 0, i) + 0.5 * m->spacing[0],
                 at[1] > mesh_at(m, 1, j) + 0.5 * m->spacing[1], state);
-      for (int f = 0; f < 5; f++)
+      for (int f = 0; f < 4; f++)
         gap_add(&g, l->points->old_field[f * (long)s->count + s->of_cell[cell] + k * PL_LANES],
-                state[f]);
+                state[kept[f]]);
     }
   return g;
 }
@@ -184,9 +186,20 @@ static bool near(const char *what, gap g) {
 
 enum { GENERATED, HANDWRITTEN, FUSED, PROGRAMS };
 
-/* One loading; seconds of each program are added to. False where they differ. */
-static bool load_all(loaded *l, plastic_plate *const plate[2], double strain,
-                     double seconds[PROGRAMS], double *changes) {
+/* Seconds of each program in each step: the least of all loadings, so that what others take from the
+   machine counts for little. */
+typedef struct least_times {
+  double of[PROGRAMS][STEPS];
+} least_times;
+
+static void note_time(least_times *t, int program, int step, double begun) {
+  double *least = &t->of[program][step], taken = processor_seconds() - begun;
+  *least = *least > 0 ? fmin(*least, taken) : taken;
+}
+
+/* One loading. False where programs differ. */
+static bool load_all(loaded *l, plastic_plate *const plate[2], double strain, least_times *t,
+                     double *changes) {
   static const plastic_program *const by[] = {&plastic_plain, &plastic_fused};
   const double *const u[2] = {l->u[0], l->u[1]};
   bool fair = true;
@@ -197,12 +210,12 @@ static bool load_all(loaded *l, plastic_plate *const plate[2], double strain,
     load(l, strain * n / STEPS);
     double begun = processor_seconds();
     find(l, 1);
-    seconds[GENERATED] += processor_seconds() - begun;
+    note_time(t, GENERATED, n - 1, begun);
     *changes += part_that_changes(l) / STEPS;
     for (int k = 0; k < 2; k++) {
       begun = processor_seconds();
       by[k]->find(plate[k], u, l->other);
-      seconds[HANDWRITTEN + k] += processor_seconds() - begun;
+      note_time(t, HANDWRITTEN + k, n - 1, begun);
       if (n % 10 == 0 && fair)
         fair = near("forces", forces_apart(l)) &&
                (*changes == 0 || near("states", states_apart(l, by[k], plate[k])));
@@ -212,29 +225,30 @@ static bool load_all(loaded *l, plastic_plate *const plate[2], double strain,
 }
 
 static bool measure_beside(figures *f) {
+  enum { LOADINGS = 9 };
   static const char *const name[] = {"generated", "handwritten", "handwritten_fused"};
+  static least_times least;
   loaded l = loaded_open("von_mises", "plane_strain", false);
   plastic_plate *plate[] = {plate_for(&l, &plastic_plain), plate_for(&l, &plastic_fused)};
-  double taken[PROGRAMS][ROUNDS], median[PROGRAMS], changes = 0;
+  double each[PROGRAMS] = {0}, changes = 0;
   bool fair = true;
-  for (int round = -1; round < ROUNDS && fair; round++) {
-    double seconds[PROGRAMS] = {0};
+  for (int n = 0; n < LOADINGS && fair; n++) {
     changes = 0;
-    fair = load_all(&l, plate, 4e-3, seconds, &changes);
-    for (int k = 0; k < PROGRAMS && round >= 0; k++)
-      taken[k][round] = seconds[k] / STEPS / l.cells->points.count;
+    fair = load_all(&l, plate, 4e-3, &least, &changes);
   }
-  printf("  von_mises in plane strain, %d points, %d steps; %.0f %% yield in a step\n",
-         l.cells->points.count, STEPS, 100 * changes);
+  printf(
+      "  von_mises in plane strain, %d points, %d steps, each the least of %d; %.0f %% yield in a "
+      "step\n",
+      l.cells->points.count, STEPS, LOADINGS, 100 * changes);
   for (int k = 0; k < PROGRAMS && fair; k++) {
-    median[k] = median_of(taken[k], ROUNDS);
-    printf("    %-20s %6.2f ns a point and step, +- %.1f %%\n", name[k], 1e9 * median[k],
-           100 * spread_of(taken[k], ROUNDS));
-    figures_add(f, 1e9 * median[k], "von_mises_%s_nanoseconds_per_point", name[k]);
+    for (int n = 0; n < STEPS; n++)
+      each[k] += least.of[k][n] / STEPS / l.cells->points.count;
+    printf("    %-20s %6.2f ns a point and step\n", name[k], 1e9 * each[k]);
+    figures_add(f, 1e9 * each[k], "von_mises_%s_nanoseconds_per_point", name[k]);
   }
   if (fair) {
-    figures_add(f, median[HANDWRITTEN] / median[GENERATED], "von_mises_generated_of_handwritten");
-    figures_add(f, median[FUSED] / median[GENERATED], "von_mises_generated_of_handwritten_fused");
+    figures_add(f, each[HANDWRITTEN] / each[GENERATED], "von_mises_generated_of_handwritten");
+    figures_add(f, each[FUSED] / each[GENERATED], "von_mises_generated_of_handwritten_fused");
   }
   plastic_plain.close(plate[0]);
   plastic_fused.close(plate[1]);

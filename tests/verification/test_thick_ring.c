@@ -98,7 +98,8 @@ static double *flow_at_nodes(ring *r) {
   const int count = simulation_frame_fields(r->run.simulation, &fields);
   double *flow = calloc(1000, sizeof *flow);
   for (int k = 0; k < count; k++)
-    if (strcmp(fields[k].name, "eps_bar") == 0) simulation_frame_values(r->run.simulation, k, flow);
+    if (strcmp(fields[k].name, "eps_bar") == 0 && !fields[k].on_cells)
+      simulation_frame_values(r->run.simulation, k, flow);
   return flow;
 }
 

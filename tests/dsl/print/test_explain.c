@@ -209,6 +209,19 @@ static void documents_are_as_expected(void **state) {
   }
 }
 
+static void deviators_are_told_from_tensors(void **state) {
+  (void)state;
+  reading r;
+  read_law(&r, "model m\n  law continuum\n  parameter E = 2 [GPa]\n"
+               "  state e on point = deviator 0  \"shape\"\n  state d on point = tensor 0\n"
+               "  e = dev(strain)\n  d = strain\n  stress sigma = E*(e + d)\nend model\n");
+  char *found = explained(r.law, EXPLAIN_MARKDOWN);
+  assert_non_null(strstr(found, "| `e` | 1 | point | deviator 0 | shape |"));
+  assert_non_null(strstr(found, "| `d` | 1 | point | tensor 0 |"));
+  free(found);
+  end(&r);
+}
+
 /* y, with `mode` and not `size` decided. */
 static void chosen_branches_stand_alone(void **state) {
   (void)state;
@@ -278,6 +291,7 @@ int main(void) {
       cmocka_unit_test(units_read_as_formulas),
       cmocka_unit_test(descriptions_are_escaped),
       cmocka_unit_test(documents_are_as_expected),
+      cmocka_unit_test(deviators_are_told_from_tensors),
       cmocka_unit_test(chosen_branches_stand_alone),
       cmocka_unit_test(the_command_explains_with_options),
   };

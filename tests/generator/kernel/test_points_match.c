@@ -1,5 +1,7 @@
-/* Every law of a continuum and of cracks in models/ and beside the tests of kernels: its compiled
-   kernel against the interpreter; Hooke's law against its closed form. */
+/* Every law of a continuum and of cracks beside the tests of kernels: its compiled kernel against
+   the interpreter; Hooke's law against its closed form. Those of models/:
+   test_points_of_cracking_match.c, test_points_of_concrete_match.c, test_points_of_models_match.c.
+ */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -7,39 +9,7 @@
 
 #include <cmocka.h>
 
-#include "tests/generator/kernel/compiled_kernel.h"
-
-static void check_setting(const char *path, const law_choice *choice, law_setting setting) {
-  model m;
-  const pl_law *kernel = open_kernel_for(&m, path, choice, &setting, false, 0);
-  free(compiler_says(&m, "gcc", "-Wall -Wextra -Werror"));
-  assert_same_bits(&m, kernel, states_asked());
-  model_close(&m);
-}
-
-/* Of a continuum in every setting that the law names. */
-static int check_law_of_points(const char *path, const law_choice *choice) {
-  static const law_setting settings[] = {SETTING_PLANE_STRESS, SETTING_PLANE_STRAIN, SETTING_SPACE};
-  bool meant[3] = {false};
-  char words[96];
-  model m;
-  const bool opened = model_open(&m, path, choice, choice ? 1 : 0);
-  const bool continuum = opened && m.law->tree->law == LAW_CONTINUUM;
-  const bool crack = opened && m.law->tree->law == LAW_CRACK;
-  for (int k = 0; k < 3; k++)
-    meant[k] =
-        crack ? k == 0
-              : continuum && model_suits(&m, law_setting_name(settings[k]), words, sizeof words);
-  model_close(&m);
-  for (int k = 0; k < 3; k++)
-    if (meant[k]) check_setting(path, choice, settings[k]);
-  return continuum || crack;
-}
-
-static void kernels_of_the_models_match(void **state) {
-  (void)state;
-  check_folder(SOURCE_DIR "/models/*.plm", check_law_of_points);
-}
+#include "tests/generator/kernel/points_kernel.h"
 
 static void kernels_of_the_test_laws_match(void **state) {
   (void)state;
@@ -226,11 +196,9 @@ static void cracks_turn_to_the_largest_hoop_stress(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(kernels_of_the_models_match),
-                                     cmocka_unit_test(kernels_of_the_test_laws_match),
-                                     cmocka_unit_test(hooke_in_the_plane),
-                                     cmocka_unit_test(hooke_in_space),
-                                     cmocka_unit_test(a_law_that_is_not_linear),
-                                     cmocka_unit_test(cracks_turn_to_the_largest_hoop_stress)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(kernels_of_the_test_laws_match), cmocka_unit_test(hooke_in_the_plane),
+      cmocka_unit_test(hooke_in_space), cmocka_unit_test(a_law_that_is_not_linear),
+      cmocka_unit_test(cracks_turn_to_the_largest_hoop_stress)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -58,6 +58,29 @@ static void a_bar_breaks_in_two(void **state) {
   small_close(&c.r);
 }
 
+/* One value a cell: 1 in the weak cells, which all failed, 0 where the law knows no damage. */
+static void cells_show_their_own_state(void **state) {
+  (void)state;
+  enum { CELLS = 40 * 10 };
+  const frame_field *fields;
+  laws_run c;
+  double values[CELLS];
+  int seen = 0;
+  laws_go(&c, laws, RUN BAR "&output fields = 'failed' /\n");
+  const int count = simulation_frame_fields(c.r.simulation, &fields);
+  for (int k = 0; k < count; k++) {
+    if (!fields[k].on_cells) continue;
+    seen++;
+    assert_string_equal(fields[k].name, "failed");
+    assert_int_equal(fields[k].count, CELLS);
+    simulation_frame_values(c.r.simulation, k, values);
+    for (int n = 0; n < CELLS; n++)
+      assert_true(n % 40 == 19 || n % 40 == 20 ? values[n] == 1 : values[n] == 0);
+  }
+  assert_int_equal(seen, 1);
+  small_close(&c.r);
+}
+
 /* A strip of nodes between dead cells keeps its momentum, however far it goes. */
 static void nodes_of_dead_cells_fly_on(void **state) {
   (void)state;
@@ -139,8 +162,8 @@ static void others_do_not_die(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_bar_breaks_in_two), cmocka_unit_test(nodes_of_dead_cells_fly_on),
+      cmocka_unit_test(a_bar_breaks_in_two),   cmocka_unit_test(nodes_of_dead_cells_fly_on),
       cmocka_unit_test(threads_change_no_bit), cmocka_unit_test(a_resumed_run_is_the_same),
-      cmocka_unit_test(others_do_not_die)};
+      cmocka_unit_test(others_do_not_die),     cmocka_unit_test(cells_show_their_own_state)};
   return cmocka_run_group_tests(tests, set_up, NULL);
 }

@@ -563,6 +563,9 @@ static const wrong decks[] = {
      "quadrilaterals alone take the mean dilatation, and `disc.msh` has triangles only"},
     {"&mesh name = 'b' file = 'disc.msh' gauss = 1 hourglass = 0.05 thickness = 1 /",
      "triangles have no hourglass modes, and `disc.msh` has nothing else"},
+    {"&mesh name = 'b' file = 'disc.msh' gauss = 1 thickness = 1 /",
+     "quadrilaterals alone may have one point in place of 2 x 2, and `disc.msh` has triangles "
+     "only"},
     {"&mesh name = 'b' size = 1, 1 nodes = 3, 3 method = 'finite_elements' unit = 'mm' thickness = "
      "1 /",
      "`unit` is that of places in a `file`"},

@@ -10,6 +10,7 @@
 
 #include "runtime/kernel.h"
 #include "runtime/mesh/rectangle_cells.h"
+#include "runtime/rectangle.h"
 
 enum { CELLS = 2 * PL_LANES + 3, GROUPS = 3, STRIDE = 4 * PL_LANES, POINTS = 4 * PL_LANES };
 
@@ -31,9 +32,9 @@ static void slopes_at_points(double slope[4][4][2]) {
     }
 }
 
-static rectangle_slopes slopes(void) {
+static pl_rectangle slopes(void) {
   double slope[4][4][2];
-  rectangle_slopes r;
+  pl_rectangle r;
   slopes_at_points(slope);
   assert_true(rectangle_slopes_find(&r, (const double(*)[4][2])slope, 1e-12));
   return r;
@@ -42,7 +43,7 @@ static rectangle_slopes slopes(void) {
 /* u_x = x y, u_y = 2 x - 3 y + x y: eps_xx = y, eps_yy = x - 3, eps_xy = (x + 2 + y)/2. */
 static void strains_are_those_of_the_field(void **state) {
   (void)state;
-  const rectangle_slopes r = slopes();
+  const pl_rectangle r = slopes();
   double plane[2][2 * STRIDE], strain[3][POINTS];
   for (int j = 0; j < 2; j++)
     for (int i = 0; i < STRIDE; i++) {
@@ -66,7 +67,7 @@ static void strains_are_those_of_the_field(void **state) {
 /* Each node has sum B^T stress volume over the cells that are there. */
 static void forces_are_those_of_the_stress(void **state) {
   (void)state;
-  const rectangle_slopes r = slopes();
+  const pl_rectangle r = slopes();
   const double volume = 0.7;
   double slope[4][4][2], stress[3][GROUPS * POINTS], force[2][2 * STRIDE], right[2][2 * STRIDE];
   slopes_at_points(slope);
@@ -84,18 +85,45 @@ static void forces_are_those_of_the_stress(void **state) {
         right[0][at] += volume * (s[0] * stress[0][k] + s[1] * stress[2][k]);
         right[1][at] += volume * (s[1] * stress[1][k] + s[0] * stress[2][k]);
       }
-  rectangle_cells_push(&r, CELLS, (const double *const[]){stress[0], stress[1], stress[2]}, volume,
-                       (double *const[]){force[0], force[1]}, STRIDE);
+  const pl_rectangle by = rectangle_slopes_times(&r, volume);
+  double plane[RECTANGLE_PUSHES][GROUPS * PL_LANES], *pushed[RECTANGLE_PUSHES];
+  for (int k = 0; k < RECTANGLE_PUSHES; k++)
+    pushed[k] = plane[k];
+  rectangle_cells_push(&by, GROUPS, (const double *const[]){stress[0], stress[1], stress[2]},
+                       pushed);
+  rectangle_cells_gather(CELLS, pushed, (double *const[]){force[0], force[1]}, STRIDE);
   for (int d = 0; d < 2; d++)
     for (int k = 0; k < 2 * STRIDE; k++)
       assert_true(fabs(force[d][k] - right[d][k]) < 1e-12);
+}
+
+/* Forces do the work of the stress: sum f u = sum s : strain. */
+static void forces_and_strains_are_conjugate(void **state) {
+  (void)state;
+  const pl_rectangle r = slopes();
+  double u[2][4], stress[3][4], strain[3][4], force[2][4], outer = 0, inner = 0;
+  for (int k = 0; k < 4; k++) {
+    for (int d = 0; d < 2; d++)
+      u[d][k] = sin(1 + 3 * k + 5 * d);
+    for (int c = 0; c < 3; c++)
+      stress[c][k] = cos(2 + 3 * k + 7 * c);
+  }
+  pl_rectangle_strain(&r, u[0], u[1], strain);
+  pl_rectangle_push(&r, stress[0], stress[2], force[0]);
+  pl_rectangle_push(&r, stress[2], stress[1], force[1]);
+  for (int k = 0; k < 4; k++) {
+    outer += force[0][k] * u[0][k] + force[1][k] * u[1][k];
+    inner +=
+        stress[0][k] * strain[0][k] + stress[1][k] * strain[1][k] + 2 * stress[2][k] * strain[2][k];
+  }
+  assert_true(fabs(inner) > 1 && fabs(outer - inner) < 1e-12 * fabs(inner));
 }
 
 static void other_slopes_are_no_rectangle(void **state) {
   (void)state;
   for (int at = 0; at < 32; at++) {
     double slope[4][4][2];
-    rectangle_slopes r;
+    pl_rectangle r;
     slopes_at_points(slope);
     slope[at / 8][at / 2 % 4][at % 2] += 1e-6;
     assert_false(rectangle_slopes_find(&r, (const double(*)[4][2])slope, 1e-9));
@@ -105,6 +133,7 @@ static void other_slopes_are_no_rectangle(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(strains_are_those_of_the_field),
                                      cmocka_unit_test(forces_are_those_of_the_stress),
+                                     cmocka_unit_test(forces_and_strains_are_conjugate),
                                      cmocka_unit_test(other_slopes_are_no_rectangle)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

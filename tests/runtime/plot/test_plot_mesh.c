@@ -38,7 +38,7 @@ static void begin(small_plot *s) {
     memcpy(s->cells + 4 * c, around, sizeof around);
   }
   s->mesh = (plot_mesh){.cell_count = CELLS, .cells = s->cells, .size = sqrt(0.125)};
-  s->view = (mesh_view){s->reference, s->moved, s->values};
+  s->view = (mesh_view){s->reference, s->moved, s->values, NULL};
 }
 
 typedef struct seen {
@@ -51,6 +51,33 @@ static double area_of(const double at[4][2]) {
   for (int k = 0; k < 4; k++)
     sum += at[k][0] * at[(k + 1) % 4][1] - at[(k + 1) % 4][0] * at[k][1];
   return 0.5 * sum;
+}
+
+/* Each part has the one value of its cell, whatever its nodes have. */
+static void look_at_cells(void *context, const double at[4][2], const double value[4]) {
+  seen *s = context;
+  const int i = (int)(at[0][0] / 0.5 + 1e-6), j = (int)(at[0][1] / 0.25 + 1e-6);
+  s->parts++;
+  for (int k = 0; k < 4; k++)
+    s->worst = fmax(s->worst, fabs(value[k] - (100 - (j * (ALONG - 1) + i))));
+}
+
+static void values_of_cells_do_not_mix(void **state) {
+  (void)state;
+  int32_t number[CELLS];
+  double of_cells[CELLS];
+  small_plot p;
+  seen s = {.area = 0};
+  begin(&p);
+  for (int c = 0; c < CELLS; c++) {
+    number[c] = CELLS - 1 - c; /* the table has them the other way round */
+    of_cells[number[c]] = 100 - c;
+  }
+  p.mesh.number = number;
+  p.view.of_cells = of_cells;
+  plot_mesh_parts(&p.mesh, &p.view, 3, 7, look_at_cells, &s);
+  assert_int_equal(s.parts, 9 * CELLS);
+  assert_true(s.worst == 0);
 }
 
 /* Moved by (0.1 y, 0), with the value 3 x - y of where it was. */
@@ -198,6 +225,7 @@ static void paths_need_a_result(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(parts_are_the_mesh_and_linear_fields_exact),
+                                     cmocka_unit_test(values_of_cells_do_not_mix),
                                      cmocka_unit_test(a_crack_keeps_its_sides_apart),
                                      cmocka_unit_test(the_outline_is_what_one_cell_has_alone),
                                      cmocka_unit_test(triangles_are_filled_and_outlined),

@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "runtime/result/mesh_views.h"
+#include "runtime/result/result_fields.h"
 #include "runtime/result/result_read.h"
 #include "runtime/result/xdmf.h"
 
@@ -30,7 +31,8 @@ static const int32_t cells[4 * CELLS] = {0, 1, 4, 3, 1, 2, 5, 4, 3, 4, 7, 6, 4, 
 static const int32_t method[CELLS] = {1, 2, 2, 3};
 static const result_mesh plate = {"plate", 1, NODES, CELLS, 4, cells, method, 0.5, NULL, NULL};
 static const result_field fields[] = {{"displacement", "m", NULL, 2, ALL, "other", "displacement"},
-                                      {"slit/points", "m", NULL, 2, MOST, "path", "its points"}};
+                                      {"slit/points", "m", NULL, 2, MOST, "path", "its points"},
+                                      {"D", "1", NULL, 1, CELLS, "cells", "damage"}};
 static const result_crack cracks[] = {{"slit/points", "plate"}};
 
 /* The crack comes in from the left, stands still, and turns up along x = 1 and into cell 3. */
@@ -59,7 +61,7 @@ static result_header header(const char *path) {
                          .cracks = cracks,
                          .crack_count = 1,
                          .fields = fields,
-                         .field_count = 2};
+                         .field_count = 3};
 }
 
 static mesh_views views(const result_header *h, double *points, long frames) {
@@ -164,6 +166,46 @@ static void cells_of_one_node_die_apart(void **state) {
   mesh_views_free(&v);
 }
 
+/* Of frame k and cell c; the crack crosses cell 0 in all frames. */
+static double damage_of(int k, int c) {
+  return 10 * k + c;
+}
+
+static void assert_numbers(hid_t file, const char *name, int frame) {
+  double values[CELLS];
+  const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+  assert_true(set >= 0);
+  assert_true(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
+  H5Dclose(set);
+  for (int c = 1; c < CELLS; c++)
+    assert_true(values[c - 1] == damage_of(frame, c));
+}
+
+/* Of cells: all in the result, those that are shown for ParaView. */
+static void assert_values_of_cells(const char *path) {
+  char error[512], unit[64];
+  long count = 0;
+  result_file *f = result_read(path, error, sizeof error);
+  for (int k = 0; k < FRAMES; k++) {
+    double *values = result_read_cells(f, "D", k, &count, unit, sizeof unit);
+    assert_non_null(values);
+    assert_int_equal(count, CELLS);
+    for (int c = 0; c < CELLS; c++)
+      assert_true(values[c] == damage_of(k, c));
+    free(values);
+  }
+  assert_null(result_read_cells(f, "displacement", 0, &count, unit, sizeof unit));
+  assert_null(result_read_cells(f, "D", FRAMES, &count, unit, sizeof unit));
+  result_read_close(f);
+  const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  for (int k = 0; k < FRAMES; k++) {
+    char name[64];
+    snprintf(name, sizeof name, "/xdmf/cell_values/D/%d", k);
+    assert_numbers(file, name, k);
+  }
+  H5Fclose(file);
+}
+
 static bool has_number(hid_t file, const char *name, long rows, int columns) {
   hsize_t shape[3] = {0, 0, 0};
   const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
@@ -185,7 +227,10 @@ static void what_is_written_is_read_back(void **state) {
   assert_true(result_begin(r, error, sizeof error));
   const double u[2 * ALL] = {0};
   for (int k = 0; k < FRAMES; k++) {
-    const double *values[] = {u, paths[k]};
+    double damage[CELLS];
+    for (int c = 0; c < CELLS; c++)
+      damage[c] = damage_of(k, c);
+    const double *values[] = {u, paths[k], damage};
     assert_true(result_frame(r, k, values, error, sizeof error));
   }
   const double time = 0;
@@ -222,7 +267,10 @@ static void what_is_written_is_read_back(void **state) {
   assert_true(has_number(file, "/xdmf/cracks/slit/1", 2, 3));
   assert_true(has_number(file, "/xdmf/cracks/slit/3", 4, 3));
   assert_true(has_number(file, "/VTKHDF/Connectivity", 12, 0));
+  assert_true(has_number(file, "/VTKHDF/CellData/D", 3 * FRAMES, 0));
+  assert_true(has_number(file, "/VTKHDF/Steps/CellDataOffsets/D", FRAMES, 0));
   H5Fclose(file);
+  assert_values_of_cells(path);
   result_sidecar(path, sidecar, sizeof sidecar);
   remove(sidecar);
   remove(path);
@@ -256,6 +304,9 @@ static void the_sidecar_has_cells_and_cracks_in_every_frame(void **state) {
   assert_int_equal(count_of(text, "NodesPerElement=\"4\" NumberOfElements=\"1\""), 2);
   assert_int_equal(count_of(text, "Dimensions=\"1 4\">0 1 2 3<"), 2);
   assert_int_equal(count_of(text, "Dimensions=\"4 3\">m.h5:/xdmf/cracks/slit/3<"), 1);
+  assert_int_equal(count_of(text, "Center=\"Cell\""), 2 * FRAMES); /* cells, and the crack */
+  assert_int_equal(count_of(text, "Dimensions=\"3\">m.h5:/xdmf/cell_values/D/2<"), 1);
+  assert_int_equal(count_of(text, "Dimensions=\"1\">m.h5:/xdmf/nothing/1/1<"), FRAMES);
   assert_int_equal(count_of(text, "<Grid"), count_of(text, "</Grid>"));
   free(text);
   close_views(&v);

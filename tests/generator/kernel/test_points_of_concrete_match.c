@@ -1,0 +1,20 @@
+/* Laws of a continuum in models/ that begin with c: compiled kernels against
+   the interpreter. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "tests/generator/kernel/points_kernel.h"
+
+static void kernels_of_c_match(void **state) {
+  (void)state;
+  check_folder(SOURCE_DIR "/models/c*.plm", check_law_of_points);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(kernels_of_c_match)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
