@@ -103,7 +103,6 @@ static const deck_key_info item_keys[] = {
      .type = DECK_LATER,
      .offset = DECK_NO_FIELD,
      .fallback = "1",
-     .unit = "1",
      .doc = "sample: a number, or `'student'`: others for each"},
     {.name = "quantity",
      .type = DECK_WORD,

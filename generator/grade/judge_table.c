@@ -107,8 +107,9 @@ void judge_table(const judge_request *q, FILE *out) {
   const exercise *e = q->basis->of;
   judging j = {.q = q, .memory = arena_new(), .out = out, .all_right = true};
   const char *bad;
-  bool read = answer_table_read(&j.answer, j.memory, q->answer, &bad);
-  if (e->solution) read = answer_table_read(&j.right, j.memory, e->solution, &bad) && read;
+  /* what students have is without a solution, and withholds what it needs */
+  const bool read = (!e->solution || answer_table_read(&j.right, j.memory, e->solution, &bad)) &&
+                    answer_table_read(&j.answer, j.memory, q->answer, &bad);
   for (int k = 0; k < e->item_count && read; k++)
     if (e->items[k].kind == ITEM_ANSWERS && item_is_judged(&e->items[k], q->only_public)) {
       judge_item(&j, k);

@@ -105,13 +105,40 @@ static bool invert_stiffness(int order, const double *D, double *S) {
   return info == 0;
 }
 
+/* Whether two tangents differ in what a bond resists by itself: dN/dstretch, dM_i/dtheta_i,
+   dM_j/dtheta_j. */
+static bool differ(const double a[PL_TANGENTS], const double b[PL_TANGENTS]) {
+  static const int own[] = {0, 6, 11};
+  for (size_t k = 0; k < sizeof own / sizeof *own; k++)
+    if (fabs(a[own[k]] - b[own[k]]) > 1e-6 * (fabs(a[own[k]]) + fabs(b[own[k]]))) return true;
+  return false;
+}
+
+/* The tangent at rest; where the law has a kink there (a max, the size of a rotation), the mean of
+   those on all sides of it. */
+static void tangent_at_rest(bond_probe *b, double tangent[PL_TANGENTS]) {
+  static const double beside = 1e-9; /* so small that only a kink at rest tells it from none */
+  const int sides = b->law->kind == PL_MICROPOLAR ? 8 : 2;
+  double mean[PL_TANGENTS] = {0}, side[PL_TANGENTS];
+  for (int k = 0; k < sides; k++) {
+    bond_probe_tangent(b,
+                       (bond_motion){k & 1 ? -beside : beside, 0, k & 2 ? -beside : beside,
+                                     k & 4 ? -0.7 * beside : 0.7 * beside},
+                       side);
+    for (int n = 0; n < PL_TANGENTS; n++)
+      mean[n] += side[n] / sides;
+  }
+  bond_probe_tangent(b, (bond_motion){0, 0, 0, 0}, tangent);
+  if (differ(mean, tangent)) memcpy(tangent, mean, sizeof mean);
+}
+
 static void pairwise_stiffness(const pl_law *law, const double *parameters, const rows *w,
                                implied_elasticity *out) {
   lattice_bond bonds[PL_MAX_DIRECTIONS];
   double tangents[PL_MAX_DIRECTIONS][PL_TANGENTS];
   for (int k = 0; k < w->directions; k++) {
     bonds[k] = bond_of(law, parameters, w, k);
-    bond_probe_tangent(bonds[k].probe, (bond_motion){0, 0, 0, 0}, tangents[k]);
+    tangent_at_rest(bonds[k].probe, tangents[k]);
   }
   for (int c = 0; c < 3; c++) {
     double e[3] = {c == 0, c == 1, c == 2}, stress[4];

@@ -15,9 +15,10 @@
 #include <strings.h>
 
 #include "generator/drive/drive_grammar.h"
+#include "generator/exercise/exercise_grammar.h"
 #include "generator/kernel/model.h"
-#include "runtime/deck/deck_groups.h"
 #include "runtime/base/namelist.h"
+#include "runtime/deck/deck_groups.h"
 #include "tests/generator/command_tools.h"
 
 enum { MOST_DECKS = 200, MOST_OWN = 100, MOST_VALUES = 100 };
@@ -60,6 +61,26 @@ static void add_decks(collection *c, const char *pattern) {
   for (size_t k = 0; k < found.gl_pathc; k++)
     add_deck(c, found.gl_pathv[k]);
   globfree(&found);
+}
+
+/* Files of the course that hold such a group: decks, paths and exercises stand side by side there. */
+static void add_of_course(collection *c, const char *group) {
+  static const char *const patterns[] = {SOURCE_DIR "/examples/course/*/*.nml",
+                                         SOURCE_DIR "/examples/course/*/teacher/hidden/*.nml"};
+  for (size_t p = 0; p < sizeof patterns / sizeof *patterns; p++) {
+    glob_t found;
+    assert_int_equal(glob(patterns[p], 0, NULL, &found), 0);
+    for (size_t k = 0; k < found.gl_pathc; k++) {
+      char error[1000];
+      size_t length;
+      char *text =
+          read_text_file(found.gl_pathv[k], NAMELIST_LARGEST_TEXT, &length, error, sizeof error);
+      assert_non_null(text);
+      if (strstr(text, group)) add_deck(c, found.gl_pathv[k]);
+      free(text);
+    }
+    globfree(&found);
+  }
 }
 
 static void let_go(collection *c) {
@@ -308,6 +329,7 @@ static void fortran_reads_every_deck(void **state) {
   skip_without_compiler(w);
   collection c = {.grammar = &deck_grammar_of_decks, .memory = arena_new()};
   add_decks(&c, SOURCE_DIR "/examples/*/*.nml");
+  add_of_course(&c, "\n&lattice");
   add_deck(&c, SOURCE_DIR "/generator/templates/deck.nml");
   write_text(w, "force.nml",
              "&force region = 'a' total = '2 kN' times = 0, '1 s', 1.5 /\n"
@@ -324,8 +346,19 @@ static void fortran_reads_every_path(void **state) {
   skip_without_compiler(w);
   collection c = {.grammar = &drive_grammar, .memory = arena_new()};
   add_decks(&c, SOURCE_DIR "/models/drives/*.nml");
+  add_of_course(&c, "\n&path");
   add_deck(&c, SOURCE_DIR "/generator/templates/drive.nml");
   assert_true(c.count > 10);
+  expect_decks(w, &c);
+  let_go(&c);
+}
+
+static void fortran_reads_every_exercise(void **state) {
+  workplace *w = *state;
+  skip_without_compiler(w);
+  collection c = {.grammar = &exercise_grammar, .memory = arena_new()};
+  add_of_course(&c, "\n&exercise");
+  assert_true(c.count > 6);
   expect_decks(w, &c);
   let_go(&c);
 }
@@ -333,8 +366,9 @@ static void fortran_reads_every_path(void **state) {
 /* A namelist and a variable in it cannot share a name. */
 static void no_key_is_named_like_its_group(void **state) {
   (void)state;
-  const deck_grammar *const grammars[] = {&deck_grammar_of_decks, &drive_grammar};
-  for (size_t f = 0; f < 2; f++)
+  const deck_grammar *const grammars[] = {&deck_grammar_of_decks, &drive_grammar,
+                                          &exercise_grammar};
+  for (size_t f = 0; f < sizeof grammars / sizeof *grammars; f++)
     for (int g = 0; g < grammars[f]->group_count; g++) {
       const deck_group_info *info = grammars[f]->groups[g];
       for (int k = 0; k < info->key_count; k++)
@@ -347,6 +381,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       T(fortran_reads_every_deck),
       T(fortran_reads_every_path),
+      T(fortran_reads_every_exercise),
       cmocka_unit_test(no_key_is_named_like_its_group),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

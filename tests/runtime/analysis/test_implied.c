@@ -229,6 +229,25 @@ static void waves_and_constants(void **state) {
   }
 }
 
+/* Laws written with the size of a rotation, or with tension and compression by themselves, have no
+   derivative of their force at rest; the lattice has its E and nu all the same. */
+static void kinks_at_rest_do_not_count(void **state) {
+  (void)state;
+  static const char *const names[] = {"../examples/course/03_moments/teacher/equal/square",
+                                      "../examples/course/05_memory/teacher/equal/energy"};
+  for (int k = 0; k < 2; k++) {
+    probe p;
+    implied_elasticity e;
+    open_law(&p, names[k], NULL, 0, 10e-3);
+    assert_true(implied_elastic(p.law, p.parameters, p.lattice, &e));
+    for (int d = 0; d < 2; d++) {
+      near(e.E[d], 30e9, 1e-9);
+      near(e.nu[d], k == 0 ? 0.2 : 1.0 / 3, 1e-9);
+    }
+    close_law(&p);
+  }
+}
+
 /* Of the stress under uniform strain e along x, the row bonds give E e and the inclined ones,
    stretched e/4, E e/8. The row bonds soften so slowly that the stress is largest where the
    inclined ones reach S_t, at e = 4 S_t. Along y the inclined bonds alone work, stretched 3/4 e:
@@ -258,6 +277,7 @@ int main(void) {
       cmocka_unit_test(bending_breaks_inclined_bonds_early),
       cmocka_unit_test(an_elastic_bond_never_separates),
       cmocka_unit_test(waves_and_constants),
+      cmocka_unit_test(kinks_at_rest_do_not_count),
       cmocka_unit_test(strength_along_the_rows),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
