@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/base/elementary.h"
 #include "generator/against/difference_words.h"
 #include "generator/drive/drive_expect.h"
 
@@ -80,7 +81,7 @@ static bool agrees(const path_case *c, const drive_table *t, const reference_law
   const double rounded = 2e-3;
   table_difference d;
   if (t->of != right->table.of) return false;
-  table_difference_find(&d, t, &right->table, fmax(rounded, c->item->tolerance), right->skip,
+  table_difference_find(&d, t, &right->table, pl_fmax(rounded, c->item->tolerance), right->skip,
                         c->item->energies);
   const bool none = d.kind == DIFFERENCE_NONE;
   table_difference_free(&d);
