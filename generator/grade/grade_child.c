@@ -17,6 +17,7 @@
 #include "generator/grade/judge_table.h"
 #include "generator/kernel/document.h"
 #include "runtime/base/clock.h"
+#include "runtime/base/confined.h"
 
 enum {
   MOST_COPIED = 20, /* laws beside an answer */
@@ -24,6 +25,7 @@ enum {
   A_WHILE = 5,      /* s */
   MOST_ENTRIES = 64
 };
+static const char law_name[] = "answer.plm", table_name[] = "answers.txt";
 #define MOST_SAID ((size_t)8 << 20) /* B, of records */
 
 /* --- the folder ------------------------------------------------------------------------------- */
@@ -57,7 +59,7 @@ static void copy_others(const handed_in *answer, const char *folder) {
   int copied = 0;
   for (struct dirent *e; at && copied < MOST_COPIED && (e = readdir(at));) {
     char from[4096];
-    if (!text_ends_in(e->d_name, ".plm") || strcmp(e->d_name, "answer.plm") == 0) continue;
+    if (!text_ends_in(e->d_name, ".plm") || strcmp(e->d_name, law_name) == 0) continue;
     snprintf(from, sizeof from, "%s/%s", answer->folder, e->d_name);
     copied += copy_law(from, folder, e->d_name) == NULL;
   }
@@ -79,9 +81,18 @@ static bool make_folder(char *folder, size_t size) {
 
 /* --- the process ------------------------------------------------------------------------------ */
 
+/* The deck of an exercise names the law that is marked as one beside it; another one may stand
+   there, the teacher's or a student's own. */
+static void hide_law_beside(const exercise *e) {
+  char path[4096 + 16];
+  snprintf(path, sizeof path, "%s/%s", e->folder, law_name);
+  file_never_read(path);
+}
+
 static void be_child(const judge_request *q, const char *folder, const confinement *to, int pipe) {
   FILE *out = fdopen(pipe, "w");
   if (!out || !confine(folder, to) || !model_confine(q->answer, q->basis->of->folder)) _exit(3);
+  hide_law_beside(q->basis->of);
   if (q->basis->of->of_answers)
     judge_table(q, out);
   else
@@ -153,7 +164,7 @@ bool grade_child_begin(judging_child *c, marks *m, const judge_request *q, const
     c->folder[0] = 0;
     return false;
   }
-  here.answer = q->basis->of->of_answers ? "answers.txt" : "answer.plm";
+  here.answer = q->basis->of->of_answers ? table_name : law_name;
   m->trouble = copy_law(answer->file, c->folder, here.answer);
   if (m->trouble) return true;
   copy_others(answer, c->folder);

@@ -170,6 +170,26 @@ static void formulas_are_not_the_students(void **state) {
   expect(w, "grade memory answer.plm", 0, "20 of  20  Out and in");
 }
 
+/* --- runs ------------------------------------------------------------------------------------- */
+
+/* The deck of a run says `model = './answer.plm'`; another law of that name beside it is not the
+   one that is marked. */
+static void runs_are_of_the_law_that_is_marked(void **state) {
+  workplace *w = *state;
+  assert_int_equal(shell(w, "cp -r '" SOURCE_DIR "/examples/course/06_damping' run; mkdir class; "
+                            "cp run/teacher/solution.plm right.plm; cp right.plm class/ada.plm; "
+                            "cp run/teacher/wrong/half.plm class/bob.plm"),
+                   0);
+  for (int wrong = 0; wrong < 2; wrong++) {
+    assert_int_equal(shell(w, "cp %s run/answer.plm", wrong ? "class/bob.plm" : "right.plm"), 0);
+    assert_int_equal(shell(w, "$P grade run right.plm"), 0);
+    says(w, "     10 of  10  Two swings");
+    expect(w, "grade run class --csv marks.csv", 2, "");
+    assert_int_equal(shell(w, "cut -d, -f1,8 marks.csv"), 0);
+    says(w, "\"ada\",10\n\"bob\",0\n");
+  }
+}
+
 /* --- a class ---------------------------------------------------------------------------------- */
 
 static void a_class_has_a_row_each(void **state) {
@@ -417,6 +437,7 @@ int main(void) {
                                      TEST(hidden_items_stay_hidden),
                                      TEST(publishing_refuses),
                                      TEST(formulas_are_not_the_students),
+                                     TEST(runs_are_of_the_law_that_is_marked),
                                      TEST(a_class_has_a_row_each),
                                      TEST(further_laws_are_their_owners),
                                      TEST(samples_are_the_students),
