@@ -147,13 +147,36 @@ static void publishing_refuses(void **state) {
   expect(w, "grade memory --publish memory", 1, "is not empty");
   expect(w, "grade memory --publish memory/given", 1, "lies in the exercise itself");
   assert_false(exists(w, "memory/given"));
-  assert_int_equal(shell(w, "cp memory/teacher/solution.plm memory/hint.plm"), 0);
+  assert_int_equal(shell(w,
+                         "cp memory/teacher/solution.plm memory/hint.plm; echo 'See `hint.plm`.' "
+                         ">> memory/task.md"),
+                   0);
   expect(w, "grade memory --publish given", 1, "is the same as a file of teacher/");
   assert_false(exists(w, "given/hint.plm"));
   assert_int_equal(shell(w, "rm -r given memory/hint.plm; ln -s teacher/solution.plm memory/a.plm"),
                    0);
   expect(w, "grade memory --publish given", 0, "written given/task.md");
   assert_false(exists(w, "given/a.plm"));
+}
+
+/* A teacher has tried the exercise out in its own folder. */
+static void what_nobody_names_is_not_published(void **state) {
+  workplace *w = *state;
+  assert_int_equal(shell(w,
+                         "cd memory; cp teacher/wrong/half.plm answer.plm; cp answer.plm old.plm; "
+                         "echo x | tee beam.h5 beam.xdmf loop.png shown.png marks.csv my.nml "
+                         "my.nml.bak side.plm > deep.plm; mkdir data; echo 'See deep.plm.' > "
+                         "data/outline.csv; echo \"model = 'side' file = 'data/outline.csv'\" > "
+                         "beam.nml; echo 'Save it as answer.plm: perilat run beam.nml; perilat "
+                         "plot beam.h5 -o loop.png ![a](shown.png) my.nml.bak' >> task.md"),
+                   0);
+  expect(w, "grade memory --publish given", 0, "left out answer.plm: it is an answer");
+  says(w, "left out beam.h5: it is a result");
+  says(w, "left out marks.csv: nothing that students get names it");
+  assert_int_equal(shell(w, "cd given; find . -type f | sort | tr '\\n' ' '"), 0);
+  assert_string_equal(w->said, "./beam.nml ./data/outline.csv ./deep.plm ./exercise.nml "
+                               "./my.nml.bak ./public.nml ./shown.png ./side.plm ./starter.plm "
+                               "./task.md ");
 }
 
 /* A constant of the student's may have any value. */
@@ -436,6 +459,7 @@ int main(void) {
                                      TEST(cases_that_no_path_reaches_are_noted),
                                      TEST(hidden_items_stay_hidden),
                                      TEST(publishing_refuses),
+                                     TEST(what_nobody_names_is_not_published),
                                      TEST(formulas_are_not_the_students),
                                      TEST(runs_are_of_the_law_that_is_marked),
                                      TEST(a_class_has_a_row_each),
