@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "generator/against/table_difference.h"
+#include "generator/against/difference_words.h"
 #include "generator/check/physics.h"
 #include "generator/grade/curve_text.h"
 #include "generator/grade/judge_path.h"
@@ -154,25 +154,42 @@ static bool is_right(const exercise_item *item, double value, double expected) {
   return fabs(value - expected) <= item->tolerance * fabs(expected);
 }
 
+/* "E is 6e+10, minus twice what it should be"; "E is 0". */
+static void say_number(FILE *out, const char *what, double value, double expected) {
+  const double ratio = value / expected;
+  fprintf(out, "%s is ", what);
+  if (expected != 0 && fabs(ratio) >= 1e-9) fprintf(out, "%.5g, ", value);
+  if (expected != 0)
+    ratio_say(ratio, "what it should be", out);
+  else
+    fprintf(out, "%.5g, not 0", value);
+  rounding_say(ratio, out);
+}
+
+static char *number_words(arena *a, const char *what, double value, double expected) {
+  char *text;
+  size_t length;
+  FILE *out = must_open_text(&text, &length);
+  say_number(out, what, value, expected);
+  must_close_text(out);
+  char *words = arena_text(a, text, length);
+  free(text);
+  return words;
+}
+
 static void put_number(judging *j, int k, double value, double expected, const char *why) {
   const exercise_item *item = &j->b->of->items[k];
   const bool right = is_right(item, value, expected);
   const char *what = item->kind != ITEM_RUN                ? item->quantity
                      : strcmp(item->of, "dissipated") == 0 ? "the dissipated energy"
                                                            : item->monitor;
-  const char *ratio = expected != 0 ? ratio_words(fabs(value / expected)) : NULL;
   put_mark(j, k, right, right, 1, value);
   j->all_right = j->all_right && right;
   if (right || item->show == SHOW_NOTHING || !j->reads) return;
   if (isnan(value))
     record_write(j->out, RECORD_WORDS, k, NULL, why);
-  else if (ratio)
-    record_write(j->out, RECORD_WORDS, k, NULL,
-                 arena_printf(j->memory, "%s is %.5g, %s what it should be", what, value, ratio));
   else
-    record_write(j->out, RECORD_WORDS, k, NULL,
-                 arena_printf(j->memory, "%s is %.5g, %.3g times what it should be", what, value,
-                              value / expected));
+    record_write(j->out, RECORD_WORDS, k, NULL, number_words(j->memory, what, value, expected));
 }
 
 static void judge_implied(judging *j, int k) {

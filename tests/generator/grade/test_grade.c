@@ -81,6 +81,11 @@ static void others_get_general_words(void **state) {
   says(w, "yours ");
   says(w, "E is 2e+10, twice what it should be");
   graded(w, RIGIDITY "-sqrt(3)/2*E*s*t|", "the force N has the wrong sign in all states");
+  graded(w, RIGIDITY "-sqrt(3)*E*s*t|", "minus twice what it should be in all states");
+  does_not_say(w, ", twice what");
+  graded(w, RIGIDITY "0.866*E*s*t|", "off by 0.0029 % in all states: is a constant rounded?");
+  says(w, "E is 9.9997e+09, off by 0.0029 %: is a constant rounded?");
+  does_not_say(w, "1 times");
   graded(w,
          "s|(S_u - kappa)|(2*S_u - kappa)|; s|/(S_u - S_t)|/(2*S_u - S_t)|; s|kappa < S_u|kappa "
          "< 2*S_u|",
