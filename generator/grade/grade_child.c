@@ -164,6 +164,7 @@ bool grade_child_begin(judging_child *c, marks *m, const judge_request *q, const
     c->folder[0] = 0;
     return false;
   }
+  here.shown = answer->file;
   here.answer = q->basis->of->of_answers ? table_name : law_name;
   m->trouble = copy_law(answer->file, c->folder, here.answer);
   if (m->trouble) return true;

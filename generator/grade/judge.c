@@ -11,6 +11,8 @@
 #include "generator/grade/measure.h"
 #include "runtime/deck/deck_value.h"
 
+enum { MOST_MESSAGES = 100 };
+
 typedef struct judging {
   const judge_request *q;
   const grade_basis *b;
@@ -32,27 +34,53 @@ static void put_mark(const judging *j, int item, double share, int passed, int o
 
 /* --- check ------------------------------------------------------------------------------------ */
 
-/* Errors alone, as `perilat check` prints them. */
-static void put_messages(const judging *j, const diagnostics *said) {
-  diagnostics errors = *said;
+/* One message as `perilat check` prints it. */
+static void put_message(const judging *j, const diagnostics *said, const diagnostic *one) {
+  diagnostics alone = *said;
+  diagnostic copy = *one;
   char *text;
   size_t length;
-  int holes = 0;
-  errors.items = must_calloc((size_t)said->count + 1, sizeof *errors.items);
-  errors.count = 0;
-  for (int k = 0; k < said->count; k++) {
-    if (diag_severity(said->items[k].code) != SEVERITY_ERROR) continue;
-    errors.items[errors.count++] = said->items[k];
-    holes += said->items[k].code == DIAG_HOLE;
-  }
+  alone.items = &copy;
+  alone.count = 1;
   FILE *to = must_open_text(&text, &length);
-  diag_print(&errors, to);
+  diag_print(&alone, to);
   must_close_text(to);
-  const double numbers[4] = {errors.count, said->count - errors.count, holes, 0};
-  record_write(j->out, RECORD_CHECKED, -1, numbers, NULL);
-  if (errors.count) record_write(j->out, RECORD_MESSAGES, -1, NULL, text);
-  free(errors.items);
+  while (length > 0 && text[length - 1] == '\n')
+    text[--length] = 0;
+  const bool error = diag_severity(one->code) == SEVERITY_ERROR;
+  record_write(j->out, error ? RECORD_MESSAGE : RECORD_ADVICE, -1, NULL, text);
   free(text);
+}
+
+/* Those of one severity, the first hundred. */
+static int put_severity(const judging *j, const diagnostics *said, const diagnostic *const *order,
+                        bool errors) {
+  int count = 0;
+  for (int k = 0; k < said->count; k++) {
+    if ((diag_severity(order[k]->code) == SEVERITY_ERROR) != errors) continue;
+    if (count++ < MOST_MESSAGES) put_message(j, said, order[k]);
+  }
+  if (count > MOST_MESSAGES)
+    record_write(j->out, errors ? RECORD_MESSAGE : RECORD_ADVICE, -1, NULL,
+                 arena_printf(j->memory, "and %d more like these", count - MOST_MESSAGES));
+  return count;
+}
+
+/* They name the law as it was handed in. */
+static void put_messages(const judging *j, const diagnostics *said, source_set *sources) {
+  const diagnostic **order = diag_sorted(said);
+  int holes = 0;
+  for (int k = 0; k < said->count; k++)
+    holes += said->items[k].code == DIAG_HOLE;
+  if (sources->count) {
+    free(sources->items[0].name);
+    sources->items[0].name = must_copy(j->q->shown);
+  }
+  const int errors = put_severity(j, said, order, true),
+            warnings = put_severity(j, said, order, false);
+  const double numbers[4] = {errors, warnings, holes, 0};
+  record_write(j->out, RECORD_CHECKED, -1, numbers, NULL);
+  free(order);
 }
 
 static const char *first_error(arena *a, const diagnostics *said) {
@@ -68,7 +96,7 @@ static void check(judging *j) {
   j->reads = opened && model_plan(&m);
   j->obeys = j->reads && physics_check(m.law, NULL, &m.said, NULL);
   j->first_error = j->reads ? NULL : first_error(j->memory, &m.said);
-  put_messages(j, &m.said);
+  put_messages(j, &m.said, &m.sources);
   model_close(&m);
   if (j->reads) j->declared = names_declared(j->memory, j->q->answer);
 }

@@ -38,6 +38,11 @@ static void put_points(FILE *out, double got, int points) {
           got >= points - 1e-9 ? "all" : "less", points_shown(got), points);
 }
 
+static void put_texts(const char *tag, const char *rest, const text_list *texts, FILE *out) {
+  for (int k = 0; k < texts->count; k++)
+    put(out, tag, rest, texts->items[k]);
+}
+
 /* --- the class -------------------------------------------------------------------------------- */
 
 static void put_class(const exercise *e, const marks *all, int count, FILE *out) {
@@ -76,7 +81,7 @@ static void put_answer(const exercise *e, const marks *m, int number, FILE *out)
   const mark_sums s = marks_add_up(e, m);
   fprintf(out, "<section id=\"a%d\">", number);
   put(out, "h2", "", m->name);
-  if (m->messages) put(out, "pre", "", m->messages);
+  put_texts("pre", "", &m->messages, out);
   if (m->sentence) put(out, "p", " class=\"say\"", m->sentence);
   if (m->trouble) put(out, "p", " class=\"say\"", m->trouble);
   fputs("<table>", out);
@@ -88,7 +93,9 @@ static void put_answer(const exercise *e, const marks *m, int number, FILE *out)
   if (s.elsewhere) fprintf(out, "; %d are judged by the teacher", s.elsewhere);
   if (s.by_hand) fprintf(out, "; %d are given by hand", s.by_hand);
   fputs("</td></tr></table>\n", out);
-  if (m->notes) put(out, "p", "", m->notes);
+  if (m->advice.count) put(out, "p", "", advice_costs_nothing);
+  put_texts("pre", "", &m->advice, out);
+  put_texts("p", "", &m->notes, out);
   fputs("</section>\n", out);
 }
 

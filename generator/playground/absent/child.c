@@ -16,7 +16,7 @@ bool grade_child_begin(judging_child *c, marks *m, const judge_request *q, const
     m->trouble = "there is no answer";
     return true;
   }
-  here.answer = answer->file;
+  here.answer = here.shown = answer->file;
   FILE *out = must_open_text(&said, &size);
   if (q->basis->of->of_answers)
     judge_table(&here, out);

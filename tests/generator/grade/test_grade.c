@@ -111,6 +111,32 @@ static void errors_are_told_at_their_line(void **state) {
   says(w, "[hole]");
 }
 
+/* The file as it was given; warnings cost nothing. */
+static void messages_name_the_file_that_was_given(void **state) {
+  workplace *w = *state;
+  answer(w, "s/kappa, stretch/kappa, strech/");
+  assert_int_equal(shell(w, "mkdir try; mv answer.plm try/m04.plm"), 0);
+  expect(w, "grade memory try/m04.plm", 2, "try/m04.plm:13:22: error: there is no quantity");
+  does_not_say(w, "answer.plm");
+  expect(w, "grade memory try", 2, "try/m04.plm:13:22: error: there is no quantity");
+}
+
+static void warnings_are_shown(void **state) {
+  workplace *w = *state;
+  assert_int_equal(
+      shell(w, "sed 's/^  state kappa/  constant idle = E*t\\n&/' right.plm > idle.plm"), 0);
+  expect(w, "grade memory idle.plm", 0,
+         "  warnings of `perilat check`, which cost nothing:\n"
+         "  idle.plm:12:12: warning: no force and no output uses the constant `idle` [unused]\n");
+  says(w, "     90 of  90  points");
+  expect(w, "grade memory idle.plm --html a.html --json > a.json", 0, "");
+  assert_int_equal(shell(w, "cat a.html a.json"), 0);
+  says(w, "which cost nothing:</p><pre>idle.plm:");
+  says(w, "\"messages\": [],");
+  says(w, "\"advice\": [\n        \"idle.plm:");
+  says(w, "\"notes\": [],");
+}
+
 /* A default of the student's is not asked. */
 static void defaults_are_the_exercises(void **state) {
   workplace *w = *state;
@@ -460,6 +486,8 @@ int main(void) {
                                      TEST(others_get_general_words),
                                      TEST(numbers_for_names_are_told),
                                      TEST(errors_are_told_at_their_line),
+                                     TEST(messages_name_the_file_that_was_given),
+                                     TEST(warnings_are_shown),
                                      TEST(defaults_are_the_exercises),
                                      TEST(cases_that_no_path_reaches_are_noted),
                                      TEST(hidden_items_stay_hidden),
