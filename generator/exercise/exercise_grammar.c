@@ -103,7 +103,8 @@ static const deck_key_info item_keys[] = {
      .type = DECK_LATER,
      .offset = DECK_NO_FIELD,
      .fallback = "1",
-     .doc = "sample: a number, or `'student'`: others for each"},
+     .doc = "sample: a number, or `'student'`: others for each answer, the same wherever its file "
+            "lies"},
     {.name = "quantity",
      .type = DECK_WORD,
      .choices = "E|nu|G|stable_step|omega_max|peak_stress|work_of_fracture|crack_energy",

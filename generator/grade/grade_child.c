@@ -30,27 +30,22 @@ static const char law_name[] = "answer.plm", table_name[] = "answers.txt";
 
 /* --- the folder ------------------------------------------------------------------------------- */
 
-/* An ordinary file of a bearable size, not a link. Returns what is wrong with it, or NULL. */
-static const char *copy_law(const char *from, const char *folder, const char *name) {
+static bool write_text(const handed_text *t, const char *folder, const char *name) {
   char to[4096];
-  struct stat about;
-  const int in = open(from, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  if (in < 0) return errno == ELOOP ? "it is a link, not a file" : "it can not be read";
-  const char *bad = fstat(in, &about) != 0 || !S_ISREG(about.st_mode) ? "it is no ordinary file"
-                    : (size_t)about.st_size > MODEL_LIMIT             ? "it is longer than 1 MB"
-                                                                      : NULL;
   snprintf(to, sizeof to, "%s/%s", folder, name);
-  const int out = bad ? -1 : open(to, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (!bad && out < 0) bad = "it can not be copied";
-  char *text = bad ? NULL : must_alloc(MODEL_LIMIT + 1);
-  ssize_t got = 0;
-  while (!bad && (got = read(in, text, MODEL_LIMIT + 1)) > 0)
-    if (write(out, text, (size_t)got) != got) bad = "it can not be copied";
-  if (got < 0) bad = "it can not be read";
-  free(text);
-  if (out >= 0) close(out);
-  close(in);
-  return bad;
+  const int out = open(to, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (out < 0) return false;
+  const bool good = write(out, t->text, t->length) == (ssize_t)t->length;
+  return close(out) == 0 && good;
+}
+
+/* Nothing is said of what can not be copied. */
+static bool copy_law(const char *from, const char *folder, const char *name) {
+  arena *a = arena_new();
+  const handed_text t = handed_text_read(a, from);
+  const bool good = !t.bad && write_text(&t, folder, name);
+  arena_free(a);
+  return good;
 }
 
 /* Further laws beside the answer, so that it may include them. */
@@ -61,7 +56,7 @@ static void copy_others(const handed_in *answer, const char *folder) {
     char from[4096];
     if (!text_ends_in(e->d_name, ".plm") || strcmp(e->d_name, law_name) == 0) continue;
     snprintf(from, sizeof from, "%s/%s", answer->folder, e->d_name);
-    copied += copy_law(from, folder, e->d_name) == NULL;
+    copied += copy_law(from, folder, e->d_name);
   }
   if (at) closedir(at);
 }
@@ -153,20 +148,18 @@ static bool start(judging_child *c, const judge_request *q, const confinement *t
 }
 
 bool grade_child_begin(judging_child *c, marks *m, const judge_request *q, const handed_in *answer,
-                       const confinement *to) {
+                       const handed_text *text, const confinement *to) {
   judge_request here = *q;
   *c = (judging_child){.m = m, .from = -1, .begun = monotonic_seconds()};
-  if (!answer->file) {
-    m->trouble = "there is no answer";
-    return true;
-  }
+  m->trouble = text->bad;
+  if (m->trouble) return true;
   if (!make_folder(c->folder, sizeof c->folder)) {
     c->folder[0] = 0;
     return false;
   }
   here.shown = answer->file;
   here.answer = q->basis->of->of_answers ? table_name : law_name;
-  m->trouble = copy_law(answer->file, c->folder, here.answer);
+  if (!write_text(text, c->folder, here.answer)) m->trouble = "it can not be copied";
   if (m->trouble) return true;
   copy_others(answer, c->folder);
   if (start(c, &here, to)) return true;

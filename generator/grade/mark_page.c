@@ -70,7 +70,8 @@ static void put_item(const exercise_item *item, const item_mark *i, const marks 
   fputs("<td>", out);
   put(out, "strong", "", item->title);
   if (item->kind == ITEM_HAND) fputs(" (by hand)", out);
-  if (i->of > 1 && i->passed < i->of) fprintf(out, ": %d of %d", i->passed, i->of);
+  if (i->of > 1 && i->passed < i->of)
+    fprintf(out, ": %d of %d%s", i->passed, i->of, all_or_nothing(item));
   if (i->words && !m->sentence) put(out, "pre", "", i->words);
   if (i->state && !m->sentence) put(out, "pre", "", i->state);
   if (i->curve) curve_svg(i->curve, out);

@@ -55,6 +55,10 @@ static bool needs_words(const exercise_item *item, const marks *m) {
   return !m->sentence || item->kind == ITEM_ANSWERS;
 }
 
+const char *all_or_nothing(const exercise_item *item) {
+  return item->kind == ITEM_SAMPLE ? ", all or nothing" : "";
+}
+
 static void print_item(const exercise_item *item, const item_mark *i, const marks *m, FILE *out) {
   const char *title = name_shown(item->title);
   if (item->kind == ITEM_HAND) {
@@ -66,7 +70,8 @@ static void print_item(const exercise_item *item, const item_mark *i, const mark
     return;
   }
   fprintf(out, "  %5s of %3d  %s", points_shown(i->share * item->points), item->points, title);
-  if (i->of > 1 && i->passed < i->of) fprintf(out, ": %d of %d", i->passed, i->of);
+  if (i->of > 1 && i->passed < i->of)
+    fprintf(out, ": %d of %d%s", i->passed, i->of, all_or_nothing(item));
   fputc('\n', out);
   if (i->words && needs_words(item, m)) print_lines(i->words, "                ", out);
   if (i->state && needs_words(item, m)) print_lines(i->state, "                  ", out);

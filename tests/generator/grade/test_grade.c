@@ -284,22 +284,38 @@ static void further_laws_are_their_owners(void **state) {
   says(w, "\"eve\",90\n\"flat\",0\n\"parts\",0\n");
 }
 
-/* Numbers vary from student to student, and not from one time to the next. */
-static void samples_are_the_students(void **state) {
+/* Numbers vary from answer to answer, and not with the place or the line ends of a file. */
+static void samples_are_the_answers(void **state) {
   workplace *w = *state;
-  assert_int_equal(shell(w, "sed -i '/vary/s/points = 10/points = 10  show = '\\''curve'\\''/' "
-                            "memory/exercise.nml; mkdir class; sed 's|sqrt(3)/2|0.9|' right.plm | "
-                            "tee class/ada.plm > class/bob.plm"),
+  assert_int_equal(
+      shell(w, "sed -i '/vary/s/points = 10/points = 10  show = '\\''curve'\\''/' "
+               "memory/exercise.nml; mkdir class other class/eve; sed 's|sqrt(3)/2|0.9|' right.plm "
+               "> class/ada.plm; (cat class/ada.plm; echo '! Bob') > class/bob.plm; sed "
+               "'s/$/\\r/' class/ada.plm > class/eve/answer.plm; cp class/ada.plm other/x.plm"),
+      0);
+  assert_int_equal(shell(w,
+                         "drawn() { $P grade memory $1 --html $2 $3 $4 > said; grep polyline $2 | "
+                         "tail -1; }; drawn class/ada.plm 1 > a; drawn class/bob.plm 2 > b; "
+                         "drawn class/eve/answer.plm 3 > c; drawn other/x.plm 4 > d; drawn "
+                         "class/ada.plm 5 --seed 4 > e; test -s a && cmp a c && cmp a d && "
+                         "! cmp -s a b && ! cmp -s a e"),
                    0);
-  assert_int_equal(shell(w, "$P grade memory class --html a.html > a; $P grade memory class "
-                            "--html b.html > b; cmp a b && cmp a.html b.html"),
-                   0);
-  assert_int_equal(shell(w, "$P grade memory class --html c.html --seed 4 > c; ! cmp -s c.html "
-                            "b.html"),
-                   0);
-  assert_int_equal(shell(w, "[ $(grep -c polyline a.html) = 4 ] && [ $(grep polyline a.html | sort "
-                            "-u | wc -l) = 3 ]"),
-                   0);
+  expect(w, "grade memory class/ada.plm", 2, "Any material: 0 of 4, all or nothing\n");
+}
+
+/* What is no law at all is told in the table of a class. */
+static void files_that_hold_nothing_are_told(void **state) {
+  workplace *w = *state;
+  assert_int_equal(
+      shell(w,
+            "mkdir -p class/dir/answer.plm; : > class/a.plm; printf ' \\n\\r\\n' > class/b.plm; "
+            "printf 'PK\\0\\1' > class/c.plm; ln -s a.plm class/d.plm; cp right.plm class/e.plm"),
+      0);
+  expect(w, "grade memory class --csv c.csv", 2, "not judged to the end: the file is empty");
+  assert_int_equal(shell(w, "sed -n '2,$s/,[^\"]*,/ /p' c.csv"), 0);
+  says(w, "\"a\" \"the file is empty\"\n\"b\" \"the file is empty\"\n"
+          "\"c\" \"it is not a text file\"\n\"d\" \"it is a link, not a file\"\n"
+          "\"dir\" \"it is no ordinary file\"\n\"e\" \"\"\n");
 }
 
 /* --- the exercise put to the test ------------------------------------------------------------- */
@@ -497,7 +513,8 @@ int main(void) {
                                      TEST(runs_are_of_the_law_that_is_marked),
                                      TEST(a_class_has_a_row_each),
                                      TEST(further_laws_are_their_owners),
-                                     TEST(samples_are_the_students),
+                                     TEST(samples_are_the_answers),
+                                     TEST(files_that_hold_nothing_are_told),
                                      TEST(the_exercise_holds),
                                      TEST(what_does_not_hold_is_told),
                                      TEST(broken_exercises_are_errors_at_their_line),
