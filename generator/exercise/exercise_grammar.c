@@ -55,8 +55,9 @@ static const deck_key_info item_keys[] = {
      .choices = "nothing|words|state|curve",
      .fallback = "'state'",
      AT(exercise_item, show),
-     .doc = "what is said of a wrong answer: points alone; words; the first state that differs, "
-            "too; both curves, too"},
+     .doc =
+         "what is said of a wrong answer: points alone; words; the first state that differs, "
+         "too; both curves in the page of --html, too (of public paths always, but for 'words')"},
     {.name = "file",
      .type = DECK_NAMES,
      AT(exercise_item, files),

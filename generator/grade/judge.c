@@ -111,6 +111,11 @@ static void judge_check(judging *j, int k) {
 
 /* --- paths ------------------------------------------------------------------------------------ */
 
+/* Those of a public path are no secret. */
+static bool shows_curves(const exercise_item *item) {
+  return item->show >= SHOW_CURVE || (item->show == SHOW_STATE && !item->hidden);
+}
+
 /* "path 2 of 3: ..."; what is said is the item's choice. */
 static void put_outcome(const judging *j, int k, const path_case *c, int of,
                         const path_outcome *o) {
@@ -120,7 +125,7 @@ static void put_outcome(const judging *j, int k, const path_case *c, int of,
       of > 1 ? arena_printf(j->memory, "path %d of %d: %s", c->number, of, o->words) : o->words;
   record_write(j->out, RECORD_WORDS, k, NULL, words);
   if (item->show >= SHOW_STATE && o->state) record_write(j->out, RECORD_STATE, k, NULL, o->state);
-  if (item->show < SHOW_CURVE || !c->referenced || !o->table.memory) return;
+  if (!shows_curves(item) || !c->referenced || !o->table.memory) return;
   char *curve = curve_text(&o->table, &c->right.table);
   record_write(j->out, RECORD_CURVE, k, NULL, curve);
   free(curve);

@@ -23,7 +23,8 @@ static const char head[] =
     "td.n{text-align:right;font-variant-numeric:tabular-nums}.less{color:#b3261e}.all{color:#"
     "1b6e3a}"
     "\n.say{border-left:4px solid #d98200;padding:.3rem .8rem;background:#fff7e8}\n"
-    "pre{background:#f4f4f4;padding:.5rem;overflow-x:auto}section{margin-top:2.5rem}\n"
+    "pre{background:#f4f4f4;padding:.5rem;white-space:pre-wrap;overflow-wrap:anywhere}section{"
+    "margin-top:2.5rem}\n"
     "svg{width:30rem;max-width:100%;display:block}td pre{max-width:44rem}\n</style>\n<title>";
 
 /* "<TAG>text</TAG>", the text written out. */

@@ -265,9 +265,27 @@ static void a_class_has_a_row_each(void **state) {
   says(w, "\"trouble\": \"there is no answer\"");
   assert_int_equal(shell(w, "cat marks.xml"), 0);
   says(w, "<testsuite name=\"memory bob\" tests=\"6\" failures=\"4\" skipped=\"1\"");
-  assert_int_equal(shell(w, "cat marks.html; grep -c '<svg' marks.html"), 0);
-  says(w, "\n1\n");
-  does_not_say(w, "<script");
+  /* of the public path, and of the hidden one that asks for it */
+  assert_int_equal(shell(w, "grep -c '<svg' marks.html; grep -c '<script' marks.html; grep -o "
+                            "pre-wrap marks.html"),
+                   0);
+  assert_string_equal(w->said, "2\n0\npre-wrap\n");
+}
+
+/* Curves are shown of public paths, where the exercise says no other thing. */
+static void public_paths_have_curves(void **state) {
+  workplace *w = *state;
+  assert_int_equal(shell(w, "sed -i \"s/show = 'curve'//\" memory/exercise.nml"), 0);
+  answer(w, RIGIDITY "sqrt(3)*E*s*t|");
+  expect(w, "grade memory answer.plm --html a.html", 2, "");
+  assert_int_equal(shell(w, "grep -c '<svg' a.html; sed -n '/Out and in/,/<svg/p' a.html | "
+                            "grep -c Cycles"),
+                   1);
+  assert_string_equal(w->said, "1\n0\n");
+  assert_int_equal(
+      shell(w, "sed -i \"s/file = 'public.nml'/& show = 'words'/\" memory/exercise.nml"), 0);
+  expect(w, "grade memory answer.plm --html a.html", 2, "");
+  assert_int_equal(shell(w, "! grep -q '<svg' a.html"), 0);
 }
 
 /* A student's own folder may hold further laws; what lies in the class's is others'. */
@@ -512,6 +530,7 @@ int main(void) {
                                      TEST(formulas_are_not_the_students),
                                      TEST(runs_are_of_the_law_that_is_marked),
                                      TEST(a_class_has_a_row_each),
+                                     TEST(public_paths_have_curves),
                                      TEST(further_laws_are_their_owners),
                                      TEST(samples_are_the_answers),
                                      TEST(files_that_hold_nothing_are_told),
