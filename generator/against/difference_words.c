@@ -49,9 +49,16 @@ const char *column_words(const char *name) {
   return name;
 }
 
-/* "twice that of the reference", "0.73 times what it should be". */
-static void say_ratio(double ratio, const char *should, FILE *out) {
+void ratio_say(double ratio, const char *should, FILE *out) {
   const char *known = ratio_words(fabs(ratio));
+  if (fabs(ratio) < 1e-9) {
+    fputs("0", out);
+    return;
+  }
+  if (ratio_is_rounding(ratio)) {
+    fprintf(out, "off by %.2g %%", 100 * fabs(ratio - 1));
+    return;
+  }
   if (ratio < 0) fputs("minus ", out);
   if (known)
     fprintf(out, "%s %s", known, should);
@@ -59,20 +66,32 @@ static void say_ratio(double ratio, const char *should, FILE *out) {
     fprintf(out, "%.4g times %s", fabs(ratio), should);
 }
 
+void rounding_say(double ratio, FILE *out) {
+  if (ratio_is_rounding(ratio))
+    fputs(": is a constant rounded? write sqrt(3)/2 or pi, say, not their digits", out);
+}
+
 static const char *unit_shown(const char *unit_text) {
   return unit_is_pure(unit_text) ? "" : unit_text;
 }
 
+static const drive_column *driven_way(const drive_table *t) {
+  int way, force;
+  driven_columns(t, &way, &force);
+  return &t->columns[way];
+}
+
 static void say_place(const drive_table *t, long row, FILE *out) {
-  fprintf(out, "at %.6g s, %s %.6g", t->columns[DRIVE_COLUMN_TIME].values[row],
-          t->columns[t->way].name, t->columns[t->way].values[row]);
+  const drive_column *way = driven_way(t);
+  fprintf(out, "at %.6g s, %s %.6g", t->columns[DRIVE_COLUMN_TIME].values[row], way->name,
+          way->values[row]);
 }
 
 static void say_total(const table_difference *d, const char *should, FILE *out) {
   if (d->total != TOTAL_PEAK && !isnan(d->totals[TOTAL_PEAK]))
     fprintf(out, "%s agrees, but ", total_words[TOTAL_PEAK]);
   fprintf(out, "%s is ", total_words[d->total]);
-  say_ratio(d->totals[d->total], should, out);
+  ratio_say(d->totals[d->total], should, out);
 }
 
 static void say_side(const table_difference *d, const char *should, FILE *out) {
@@ -80,27 +99,23 @@ static void say_side(const table_difference *d, const char *should, FILE *out) {
   const bool minus = fabs(d->ratio + 1) <= 1e-6;
   if (isnan(d->ratio) || (!minus && !ratio_words(fabs(d->ratio)))) return;
   fputs(minus ? ": there it has the wrong sign" : ": there it is ", out);
-  if (d->ratio == 0)
-    fputs("0", out);
-  else if (!minus)
-    say_ratio(d->ratio, should, out);
+  if (!minus) ratio_say(d->ratio, should, out);
 }
 
 static void say_ratio_of_all(const table_difference *d, const char *should, FILE *out) {
   const column_difference *q = &d->columns[d->of];
   if (q->energy) fputs("the forces agree, but ", out);
   fprintf(out, "%s is ", column_words(q->name));
-  if (d->ratio == 0)
-    fputs("0", out);
-  else
-    say_ratio(d->ratio, should, out);
+  ratio_say(d->ratio, should, out);
   fputs(" in all states", out);
+  rounding_say(d->ratio, out);
 }
 
 static void say_state(const table_difference *d, const drive_table *answer, FILE *out) {
   const column_difference *q = &d->columns[d->of];
   if (q->energy) fputs("the forces agree, but ", out);
-  fprintf(out, "%s first differs ", column_words(q->name));
+  fprintf(out, "%s%s first differs ", column_words(q->name),
+          q->minor ? ", which is small beside the largest of its kind," : "");
   say_place(answer, d->row, out);
   fprintf(out, ": it is %.6g, not %.6g%s%s", q->answer[d->row] + 0.0, q->reference[d->row] + 0.0,
           *unit_shown(q->unit) ? " " : "", unit_shown(q->unit));
@@ -169,12 +184,13 @@ void difference_rows(const table_difference *d, const drive_table *t, const char
   const column_difference *shown[MOST_SHOWN];
   if (d->kind == DIFFERENCE_NONE || d->kind == DIFFERENCE_NO_NUMBER) return;
   const int count = shown_columns(d, shown);
-  fprintf(out, "%sfirst differs%11s  %13s", indent, "time [s]", t->columns[t->way].name);
+  const drive_column *way = driven_way(t);
+  fprintf(out, "%sfirst differs%11s  %13s", indent, "time [s]", way->name);
   for (int k = 0; k < count; k++)
     head(shown[k], out);
   for (int of = 0; of < 2; of++) {
     fprintf(out, "\n%s%-11s  %11.6g  %13.6g", indent, names[of],
-            t->columns[DRIVE_COLUMN_TIME].values[d->row], t->columns[t->way].values[d->row] + 0.0);
+            t->columns[DRIVE_COLUMN_TIME].values[d->row], way->values[d->row] + 0.0);
     for (int k = 0; k < count; k++)
       fprintf(out, "  %16.9g", (of ? shown[k]->reference : shown[k]->answer)[d->row] + 0.0);
   }
@@ -184,10 +200,11 @@ void difference_rows(const table_difference *d, const drive_table *t, const char
 /* --- for other programs ----------------------------------------------------------------------- */
 
 static void put_first(const table_difference *d, const drive_table *t, json *j) {
+  const drive_column *way = driven_way(t);
   json_put_object(j, "first");
   json_put_integer(j, "row", d->row);
   json_put_number(j, "time", t->columns[DRIVE_COLUMN_TIME].values[d->row]);
-  json_put_number(j, t->columns[t->way].name, t->columns[t->way].values[d->row]);
+  json_put_number(j, way->name, way->values[d->row]);
   for (int of = 0; of < 2; of++) {
     json_put_object(j, of ? "reference" : "answer");
     for (int c = 0; c < d->column_count; c++)

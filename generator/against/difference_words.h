@@ -20,6 +20,11 @@ void difference_rows(const table_difference *d, const drive_table *reference,
 /* Keys in an object that is open: `difference`, `of`, `ratio`, `side`, `total`, `totals`, `rows`,
    `skipped`, `worst`, `first`. */
 void difference_json(const table_difference *d, const drive_table *reference, json *j);
+/* "twice" and what it should be, "minus half that of the reference", "0.73 times ...", "0", "off by
+   0.003 %". */
+void ratio_say(double ratio, const char *should, FILE *out);
+/* Behind it, of a ratio that is nearly 1: the question whether a constant is rounded. */
+void rounding_say(double ratio, FILE *out);
 /* "the force N", "the stored energy", or the name itself. */
 const char *column_words(const char *name);
 

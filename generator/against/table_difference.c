@@ -6,8 +6,8 @@
 
 #include "dsl/base/elementary.h"
 
-/* What is no more than rounding: of a ratio, and of a quantity beside the largest of its kind. */
-static const double exact = 1e-6, floor_of_kind = 1e-6;
+/* What is no more than rounding, of a ratio; what is little beside the largest of its kind. */
+static const double exact = 1e-6, little = 1e-2;
 /* A value that says something, in parts of the scale. */
 static const double worth = 1e-3;
 
@@ -51,6 +51,10 @@ const char *ratio_words(double ratio) {
     if (fabs(ratio - known_ratios[k].ratio) <= within * known_ratios[k].ratio + 1e-9)
       return known_ratios[k].words;
   return NULL;
+}
+
+bool ratio_is_rounding(double ratio) {
+  return fabs(ratio - 1) <= 5e-3;
 }
 
 /* --- columns ---------------------------------------------------------------------------------- */
@@ -99,13 +103,41 @@ void column_scales(const drive_table *t, double *scales) {
   double of_kind[KINDS + 1] = {0};
   for (int c = 0; c < t->column_count; c++) {
     const kind of = kind_of_column(t, c);
-    scales[c] = largest(t->columns[c].values, t->rows);
-    of_kind[of] = pl_fmax(of_kind[of], scales[c]);
+    of_kind[of] = pl_fmax(of_kind[of], largest(t->columns[c].values, t->rows));
   }
-  for (int c = 0; c < t->column_count; c++) {
-    const kind of = kind_of_column(t, c);
-    scales[c] = of == ENERGIES ? of_kind[of] : pl_fmax(scales[c], floor_of_kind * of_kind[of]);
+  for (int c = 0; c < t->column_count; c++)
+    scales[c] = of_kind[kind_of_column(t, c)];
+}
+
+/* The next column, or turn, of the same sort that moves most; -1: none does. */
+static int most_moved(const drive_table *t) {
+  int best = -1;
+  double most = 0;
+  for (int c = 1; c < t->law_column; c++) {
+    const char *name = t->columns[c].name;
+    const bool moves = begins(name, "strain_") ? !begins(name, "strain_rate")
+                                               : begins(name, "theta_") || !strcmp(name, "twist");
+    const double size = moves ? largest(t->columns[c].values, t->rows) : 0;
+    if (size <= most) continue;
+    most = size;
+    best = c;
   }
+  return best;
+}
+
+void driven_columns(const drive_table *t, int *way, int *force) {
+  char answer[80];
+  *way = t->way;
+  *force = t->force;
+  if (largest(t->columns[t->way].values, t->rows) > 0) return;
+  const int moved = most_moved(t);
+  if (moved < 0) return;
+  const char *name = t->columns[moved].name;
+  snprintf(answer, sizeof answer, "%s%s", begins(name, "theta_") ? "M_" : "stress_",
+           begins(name, "twist") ? "" : strchr(name, '_') + 1);
+  const int other = drive_column_find(t, begins(name, "twist") ? "T" : answer);
+  *way = moved;
+  *force = other < 0 ? t->force : other;
 }
 
 static void match_columns(table_difference *d, const drive_table *answer,
@@ -126,6 +158,8 @@ static void match_columns(table_difference *d, const drive_table *answer,
                              .energy = role == COLUMN_ENERGY,
                              .scale = scales[c],
                              .first = -1};
+    q->minor =
+        pl_fmax(largest(q->answer, d->rows), largest(q->reference, d->rows)) < little * q->scale;
     if (q->scale == 0) q->scale = largest(q->answer, d->rows);
   }
   free(scales);
@@ -157,6 +191,7 @@ typedef struct search {
   const column_difference *q; /* that is spoken of */
   const drive_table *reference;
   const unsigned char *skip;
+  int way, force; /* columns */
 } search;
 
 static bool counts(const search *s, long row) {
@@ -188,22 +223,24 @@ static double common_ratio(const search *s, const bool *side) {
 }
 
 /* The answer in each row is that of the reference in the row before (later = 1) or after (-1): its
-   value, or what it is in parts of the way. */
+   value, or what it is in parts of the way. The shift must explain far more than it leaves. */
 static bool is_shifted(const search *s, int later, bool of_way) {
   const column_difference *q = s->q;
-  const double *way = s->reference->columns[s->reference->way].values;
-  const double far = largest(way, s->d->rows);
+  const double *way = s->reference->columns[s->way].values;
+  const double far = largest(way, s->d->rows), allowed = pl_fmax(exact, s->d->tolerance);
+  double most = 0; /* that the shift explains */
   long told = 0;
   for (long k = 1; k < s->d->rows - 1; k++) {
     const long other = k - later;
     if (!counts(s, k) || !counts(s, other)) continue;
-    if (of_way && (fabs(way[other]) < worth * far || way[other] * way[k] < 0)) continue;
+    if (of_way && (fabs(way[other]) <= worth * far || way[other] * way[k] < 0)) continue;
     const double expected =
         of_way ? q->reference[other] / way[other] * way[k] : q->reference[other];
-    if (fabs(q->answer[k] - expected) > pl_fmax(exact, s->d->tolerance) * q->scale) return false;
+    if (!(fabs(q->answer[k] - expected) <= allowed * q->scale)) return false;
     told += gap(q, k) > s->d->tolerance;
+    most = pl_fmax(most, gap(q, k));
   }
-  return told >= 2;
+  return told >= 2 && most > 20 * allowed;
 }
 
 static const double *column_values(const drive_table *t, const char *name) {
@@ -237,8 +274,9 @@ static void find_totals(search *s, const drive_table *answer) {
                  *r = names[k] ? column_values(reference, names[k]) : NULL;
     s->d->totals[k] = a && r ? total_ratio(a[rows - 1], r[rows - 1], scale) : NAN;
   }
-  const double *a = answer->columns[answer->force].values,
-               *r = reference->columns[reference->force].values;
+  const int same = drive_column_find(answer, reference->columns[s->force].name);
+  const double *a = answer->columns[same < 0 ? answer->force : same].values,
+               *r = reference->columns[s->force].values;
   s->d->totals[TOTAL_PEAK] = total_ratio(signed_peak(a, rows), signed_peak(r, rows), 0);
 }
 
@@ -264,7 +302,7 @@ static bool total_tells(search *s) {
 /* Rows of a side. What a law has lost counts from the row before. */
 static void mark_side(const search *s, difference_side side, bool *in) {
   const drive_table *t = s->reference;
-  const double *way = t->columns[t->way].values, *lost = column_values(t, "dissipated_damage");
+  const double *way = t->columns[s->way].values, *lost = column_values(t, "dissipated_damage");
   const double *stored = column_values(t, "stored");
   lost = lost ? lost : column_values(t, "dissipated");
   const double energy =
@@ -305,12 +343,22 @@ static double share_of(const search *s, const bool *in) {
   return agreeing >= 2 && inside ? (double)differing / (double)inside : 0;
 }
 
+/* A strain along an axis or a stretch has a side on which it is stretched; a shear or a turn has none.
+ */
+static bool has_length(const search *s, difference_side side) {
+  const char *name = s->reference->columns[s->way].name;
+  const size_t n = strlen(name);
+  return side > SIDE_OPENED || strcmp(name, "stretch") == 0 ||
+         (begins(name, "strain_") && name[n - 1] == name[n - 2]);
+}
+
 /* The side that the differing states fill best, at least half. */
 static bool side_tells(search *s) {
   bool *in = must_calloc((size_t)s->d->rows + 1, sizeof *in);
   double best = 0.5;
   bool found = false;
   for (int side = 0; side < SIDE_COUNT; side++) {
+    if (!has_length(s, (difference_side)side)) continue;
     mark_side(s, (difference_side)side, in);
     const double share = share_of(s, in);
     if (share < best + (found ? 1e-9 : 0)) continue;
@@ -326,6 +374,7 @@ static bool side_tells(search *s) {
 /* --- the whole -------------------------------------------------------------------------------- */
 
 static difference_kind classify(search *s) {
+  if (s->q->minor) return DIFFERENCE_STATE;
   const double ratio = common_ratio(s, NULL);
   s->d->ratio = ratio;
   if (fabs(ratio + 1) <= exact) return DIFFERENCE_SIGN;
@@ -353,6 +402,18 @@ static bool ends_early(table_difference *d, const drive_table *answer,
   return true;
 }
 
+/* The first that differs, of what is not little where there is such a one. */
+static bool choose_column(table_difference *d) {
+  int first = -1;
+  for (int c = 0; c < d->column_count; c++) {
+    const column_difference *q = &d->columns[c];
+    if (q->first >= 0 && (first < 0 || (d->columns[first].minor && !q->minor && !q->energy)))
+      first = c;
+  }
+  d->of = first < 0 ? 0 : first;
+  return first >= 0;
+}
+
 void table_difference_find(table_difference *d, const drive_table *answer,
                            const drive_table *reference, double tolerance,
                            const unsigned char *skip, bool energies) {
@@ -366,13 +427,9 @@ void table_difference_find(table_difference *d, const drive_table *answer,
   if (ends_early(d, answer, reference)) return;
   match_columns(d, answer, reference, energies);
   measure(d, skip);
-  while (d->of < d->column_count && d->columns[d->of].first < 0)
-    d->of++;
-  if (d->of == d->column_count) {
-    d->of = 0;
-    return;
-  }
+  if (!choose_column(d)) return;
   search s = {.d = d, .q = &d->columns[d->of], .reference = reference, .skip = skip};
+  driven_columns(reference, &s.way, &s.force);
   d->row = s.q->first;
   find_totals(&s, answer);
   d->kind = classify(&s);

@@ -63,6 +63,7 @@ typedef struct column_difference {
   const char *name, *unit;
   const double *answer, *reference;
   bool energy;
+  bool minor;     /* far below the largest of its kind: nothing is read from how it differs */
   double scale;   /* what its differences are measured by */
   double worst;   /* largest difference, in parts of the scale */
   long differing; /* rows that differ by more than the tolerance */
@@ -95,9 +96,13 @@ typedef enum column_role {
   COLUMN_ENERGY
 } column_role;
 column_role column_role_of(const drive_table *t, int column);
-/* What differences of each column are measured by [column_count]: its own largest value, but no
-   less than 1e-6 of the largest of its kind; of energies the largest of all. */
+/* What differences of each column are measured by [column_count]: the largest value of all columns
+   of its kind (forces, moments, stresses, strains, energies). */
 void column_scales(const drive_table *t, double *scales);
+
+/* The columns of what is driven and of what answers it: `way` and `force`, but where that way is at
+   rest all the time the strain or turn that is not, and the stress that goes with it. */
+void driven_columns(const drive_table *t, int *way, int *force);
 
 /* Compares `answer` with `reference`, tables of one path with the same rows: each column
    on its scale, by a relative `tolerance`. Rows that `skip` [rows] marks (NULL:
@@ -109,5 +114,7 @@ void table_difference_free(table_difference *d);
 
 /* A ratio that has a meaning of its own, within 2e-3: "twice", "half", ...; NULL: none. */
 const char *ratio_words(double ratio);
+/* So near to 1 that somebody has rounded a number. */
+bool ratio_is_rounding(double ratio);
 
 #endif

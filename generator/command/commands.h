@@ -136,7 +136,7 @@
   X(grade, "--publish", "FOLDER", "write what students get: nothing that is hidden")               \
   X(grade, "--csv", "FILE", "a row an answer, a column an item")                                   \
   X(grade, "--junit", "FILE", "as test results for continuous integration")                        \
-  X(grade, "--html", "FILE", "as a page, with both curves")                                        \
+  X(grade, "--html", "FILE", "as a page, with both curves of public paths")                        \
   X(grade, "--json", "", "as one JSON document on the standard output")                            \
   X(grade, "--seed", "N", "other random numbers than the exercise's own")                          \
   X(grade, "--time", "'20 s'", "processor time that an answer may take (20 s)")                    \

@@ -55,8 +55,9 @@ static const deck_key_info item_keys[] = {
      .choices = "nothing|words|state|curve",
      .fallback = "'state'",
      AT(exercise_item, show),
-     .doc = "what is said of a wrong answer: points alone; words; the first state that differs, "
-            "too; both curves, too"},
+     .doc =
+         "what is said of a wrong answer: points alone; words; the first state that differs, "
+         "too; both curves in the page of --html, too (of public paths always, but for 'words')"},
     {.name = "file",
      .type = DECK_NAMES,
      AT(exercise_item, files),
@@ -103,7 +104,8 @@ static const deck_key_info item_keys[] = {
      .type = DECK_LATER,
      .offset = DECK_NO_FIELD,
      .fallback = "1",
-     .doc = "sample: a number, or `'student'`: others for each"},
+     .doc = "sample: a number, or `'student'`: others for each answer, the same wherever its file "
+            "lies"},
     {.name = "quantity",
      .type = DECK_WORD,
      .choices = "E|nu|G|stable_step|omega_max|peak_stress|work_of_fracture|crack_energy",

@@ -6,6 +6,7 @@
 
 #include "dsl/base/elementary.h"
 #include "dsl/base/units.h"
+#include "generator/against/table_difference.h"
 #include "generator/grade/mark_files.h"
 
 enum { MOST_POINTS = 400, WIDTH = 440, HEIGHT = 260, MARGIN = 34 };
@@ -13,9 +14,9 @@ enum { MOST_POINTS = 400, WIDTH = 440, HEIGHT = 260, MARGIN = 34 };
 /* --- text ------------------------------------------------------------------------------------- */
 
 /* Every so many rows, and the last. */
-static void write_points(FILE *out, const drive_table *t) {
+static void write_points(FILE *out, const drive_table *t, int way, int force) {
   const long every = (t->rows + MOST_POINTS - 1) / MOST_POINTS;
-  const double *x = t->columns[t->way].values, *y = t->columns[t->force].values;
+  const double *x = t->columns[way].values, *y = t->columns[force].values;
   for (long k = 0; k < t->rows; k++)
     if ((k % every == 0 || k == t->rows - 1) && isfinite(x[k]) && isfinite(y[k]))
       fprintf(out, "%.7g %.7g ", x[k], y[k]);
@@ -25,12 +26,14 @@ static void write_points(FILE *out, const drive_table *t) {
 char *curve_text(const drive_table *answer, const drive_table *reference) {
   char *text;
   size_t length;
-  const drive_column *x = &reference->columns[reference->way],
-                     *y = &reference->columns[reference->force];
+  int way, force;
+  driven_columns(reference, &way, &force);
+  const drive_column *x = &reference->columns[way], *y = &reference->columns[force];
+  const int own[] = {drive_column_find(answer, x->name), drive_column_find(answer, y->name)};
   FILE *out = must_open_text(&text, &length);
   fprintf(out, "%s\n%s [%s]\n", x->name, y->name, unit_is_pure(y->unit) ? "1" : y->unit);
-  write_points(out, reference);
-  write_points(out, answer);
+  write_points(out, reference, way, force);
+  if (own[0] >= 0 && own[1] >= 0) write_points(out, answer, own[0], own[1]);
   must_close_text(out);
   return text;
 }

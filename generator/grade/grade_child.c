@@ -17,6 +17,7 @@
 #include "generator/grade/judge_table.h"
 #include "generator/kernel/document.h"
 #include "runtime/base/clock.h"
+#include "runtime/base/confined.h"
 
 enum {
   MOST_COPIED = 20, /* laws beside an answer */
@@ -24,31 +25,27 @@ enum {
   A_WHILE = 5,      /* s */
   MOST_ENTRIES = 64
 };
+static const char law_name[] = "answer.plm", table_name[] = "answers.txt";
 #define MOST_SAID ((size_t)8 << 20) /* B, of records */
 
 /* --- the folder ------------------------------------------------------------------------------- */
 
-/* An ordinary file of a bearable size, not a link. Returns what is wrong with it, or NULL. */
-static const char *copy_law(const char *from, const char *folder, const char *name) {
+static bool write_text(const handed_text *t, const char *folder, const char *name) {
   char to[4096];
-  struct stat about;
-  const int in = open(from, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  if (in < 0) return errno == ELOOP ? "it is a link, not a file" : "it can not be read";
-  const char *bad = fstat(in, &about) != 0 || !S_ISREG(about.st_mode) ? "it is no ordinary file"
-                    : (size_t)about.st_size > MODEL_LIMIT             ? "it is longer than 1 MB"
-                                                                      : NULL;
   snprintf(to, sizeof to, "%s/%s", folder, name);
-  const int out = bad ? -1 : open(to, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (!bad && out < 0) bad = "it can not be copied";
-  char *text = bad ? NULL : must_alloc(MODEL_LIMIT + 1);
-  ssize_t got = 0;
-  while (!bad && (got = read(in, text, MODEL_LIMIT + 1)) > 0)
-    if (write(out, text, (size_t)got) != got) bad = "it can not be copied";
-  if (got < 0) bad = "it can not be read";
-  free(text);
-  if (out >= 0) close(out);
-  close(in);
-  return bad;
+  const int out = open(to, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (out < 0) return false;
+  const bool good = write(out, t->text, t->length) == (ssize_t)t->length;
+  return close(out) == 0 && good;
+}
+
+/* Nothing is said of what can not be copied. */
+static bool copy_law(const char *from, const char *folder, const char *name) {
+  arena *a = arena_new();
+  const handed_text t = handed_text_read(a, from);
+  const bool good = !t.bad && write_text(&t, folder, name);
+  arena_free(a);
+  return good;
 }
 
 /* Further laws beside the answer, so that it may include them. */
@@ -57,9 +54,9 @@ static void copy_others(const handed_in *answer, const char *folder) {
   int copied = 0;
   for (struct dirent *e; at && copied < MOST_COPIED && (e = readdir(at));) {
     char from[4096];
-    if (!text_ends_in(e->d_name, ".plm") || strcmp(e->d_name, "answer.plm") == 0) continue;
+    if (!text_ends_in(e->d_name, ".plm") || strcmp(e->d_name, law_name) == 0) continue;
     snprintf(from, sizeof from, "%s/%s", answer->folder, e->d_name);
-    copied += copy_law(from, folder, e->d_name) == NULL;
+    copied += copy_law(from, folder, e->d_name);
   }
   if (at) closedir(at);
 }
@@ -79,9 +76,18 @@ static bool make_folder(char *folder, size_t size) {
 
 /* --- the process ------------------------------------------------------------------------------ */
 
+/* The deck of an exercise names the law that is marked as one beside it; another one may stand
+   there, the teacher's or a student's own. */
+static void hide_law_beside(const exercise *e) {
+  char path[4096 + 16];
+  snprintf(path, sizeof path, "%s/%s", e->folder, law_name);
+  file_never_read(path);
+}
+
 static void be_child(const judge_request *q, const char *folder, const confinement *to, int pipe) {
   FILE *out = fdopen(pipe, "w");
   if (!out || !confine(folder, to) || !model_confine(q->answer, q->basis->of->folder)) _exit(3);
+  hide_law_beside(q->basis->of);
   if (q->basis->of->of_answers)
     judge_table(q, out);
   else
@@ -142,19 +148,18 @@ static bool start(judging_child *c, const judge_request *q, const confinement *t
 }
 
 bool grade_child_begin(judging_child *c, marks *m, const judge_request *q, const handed_in *answer,
-                       const confinement *to) {
+                       const handed_text *text, const confinement *to) {
   judge_request here = *q;
   *c = (judging_child){.m = m, .from = -1, .begun = monotonic_seconds()};
-  if (!answer->file) {
-    m->trouble = "there is no answer";
-    return true;
-  }
+  m->trouble = text->bad;
+  if (m->trouble) return true;
   if (!make_folder(c->folder, sizeof c->folder)) {
     c->folder[0] = 0;
     return false;
   }
-  here.answer = q->basis->of->of_answers ? "answers.txt" : "answer.plm";
-  m->trouble = copy_law(answer->file, c->folder, here.answer);
+  here.shown = answer->file;
+  here.answer = q->basis->of->of_answers ? table_name : law_name;
+  if (!write_text(text, c->folder, here.answer)) m->trouble = "it can not be copied";
   if (m->trouble) return true;
   copy_others(answer, c->folder);
   if (start(c, &here, to)) return true;

@@ -3,14 +3,8 @@
 #define PERILAT_GENERATOR_GRADE_CHILD_H
 
 #include "generator/grade/confine.h"
+#include "generator/grade/handed_in.h"
 #include "generator/grade/judge.h"
-
-/* An answer as it was handed in. */
-typedef struct handed_in {
-  const char *name;   /* of the student, or of the file */
-  const char *file;   /* NULL: there is none */
-  const char *folder; /* its further laws may be included; NULL: none may */
-} handed_in;
 
 /* A process that judges. */
 typedef struct judging_child {
@@ -20,11 +14,11 @@ typedef struct judging_child {
   double begun;
 } judging_child;
 
-/* Begins to judge; several may run at the same time. q->answer is set here; the request may go once
-   this returns. False only where no process can be started, after a sentence. To be ended in any
+/* Begins to judge the text of an answer; several may run at the same time. q->answer is set here;
+   request and text may go once this returns. False only where no process can be started, after a sentence. To be ended in any
    case. */
 bool grade_child_begin(judging_child *c, marks *m, const judge_request *q, const handed_in *answer,
-                       const confinement *to);
+                       const handed_text *text, const confinement *to);
 /* Waits for its end and fills the marks. What could not be judged to the end is told in m->trouble;
    it is never an error of the grader. */
 void grade_child_end(judging_child *c, const confinement *to);

@@ -11,14 +11,14 @@
 
 /* --- one answer ------------------------------------------------------------------------------- */
 
-static uint64_t seed_of(const grading *g, const exercise_item *item, const char *name) {
+static uint64_t seed_of(const grading *g, const exercise_item *item, const handed_text *text) {
   uint64_t seed = item->seed;
-  if (item->seed_of_student) seed = hash_more(HASH_START, name, strlen(name));
+  if (item->seed_of_student) seed = handed_text_seed(text);
   return g->o->seeded ? hash_more(seed, &g->o->seed, sizeof g->o->seed) : seed;
 }
 
 /* Random paths of all sample items, one after the other. False after messages. */
-static bool draw_samples(grading *g, arena *a, const char *name, judge_request *q) {
+static bool draw_samples(grading *g, arena *a, const handed_text *text, judge_request *q) {
   const exercise *e = g->e;
   q->samples = NULL;
   for (int k = 0; k < e->item_count; k++) {
@@ -26,7 +26,7 @@ static bool draw_samples(grading *g, arena *a, const char *name, judge_request *
     int known, count;
     if (item->kind != ITEM_SAMPLE || !item_is_judged(item, g->o->only_public)) continue;
     const path_case *origins = sample_origins(&g->basis, item, &known);
-    path_case *more = path_samples(a, item, origins, known, e->solution, seed_of(g, item, name),
+    path_case *more = path_samples(a, item, origins, known, e->solution, seed_of(g, item, text),
                                    &count, &g->basis.said);
     if (!more) return false;
     path_case *all = arena_alloc(a, (size_t)(q->sample_count + count + 1) * sizeof *all);
@@ -43,8 +43,9 @@ bool grading_begin(grading *g, const handed_in *answer, marks *m, judging_child 
   judge_request q = {.basis = &g->basis, .only_public = g->o->only_public};
   marks_open(m, answer->name, g->e->item_count);
   *c = (judging_child){.m = m, .from = -1};
-  const bool good =
-      draw_samples(g, a, answer->name, &q) && grade_child_begin(c, m, &q, answer, &g->o->limits);
+  const handed_text text = handed_answer_read(a, answer->file);
+  const bool good = (text.bad || draw_samples(g, a, &text, &q)) &&
+                    grade_child_begin(c, m, &q, answer, &text, &g->o->limits);
   for (int k = 0; k < q.sample_count; k++)
     path_case_close(&q.samples[k]); /* the process has them */
   arena_free(a);

@@ -4,12 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "generator/against/table_difference.h"
+#include "generator/against/difference_words.h"
 #include "generator/check/physics.h"
 #include "generator/grade/curve_text.h"
 #include "generator/grade/judge_path.h"
 #include "generator/grade/measure.h"
 #include "runtime/deck/deck_value.h"
+
+enum { MOST_MESSAGES = 100 };
 
 typedef struct judging {
   const judge_request *q;
@@ -32,27 +34,53 @@ static void put_mark(const judging *j, int item, double share, int passed, int o
 
 /* --- check ------------------------------------------------------------------------------------ */
 
-/* Errors alone, as `perilat check` prints them. */
-static void put_messages(const judging *j, const diagnostics *said) {
-  diagnostics errors = *said;
+/* One message as `perilat check` prints it. */
+static void put_message(const judging *j, const diagnostics *said, const diagnostic *one) {
+  diagnostics alone = *said;
+  diagnostic copy = *one;
   char *text;
   size_t length;
-  int holes = 0;
-  errors.items = must_calloc((size_t)said->count + 1, sizeof *errors.items);
-  errors.count = 0;
-  for (int k = 0; k < said->count; k++) {
-    if (diag_severity(said->items[k].code) != SEVERITY_ERROR) continue;
-    errors.items[errors.count++] = said->items[k];
-    holes += said->items[k].code == DIAG_HOLE;
-  }
+  alone.items = &copy;
+  alone.count = 1;
   FILE *to = must_open_text(&text, &length);
-  diag_print(&errors, to);
+  diag_print(&alone, to);
   must_close_text(to);
-  const double numbers[4] = {errors.count, said->count - errors.count, holes, 0};
-  record_write(j->out, RECORD_CHECKED, -1, numbers, NULL);
-  if (errors.count) record_write(j->out, RECORD_MESSAGES, -1, NULL, text);
-  free(errors.items);
+  while (length > 0 && text[length - 1] == '\n')
+    text[--length] = 0;
+  const bool error = diag_severity(one->code) == SEVERITY_ERROR;
+  record_write(j->out, error ? RECORD_MESSAGE : RECORD_ADVICE, -1, NULL, text);
   free(text);
+}
+
+/* Those of one severity, the first hundred. */
+static int put_severity(const judging *j, const diagnostics *said, const diagnostic *const *order,
+                        bool errors) {
+  int count = 0;
+  for (int k = 0; k < said->count; k++) {
+    if ((diag_severity(order[k]->code) == SEVERITY_ERROR) != errors) continue;
+    if (count++ < MOST_MESSAGES) put_message(j, said, order[k]);
+  }
+  if (count > MOST_MESSAGES)
+    record_write(j->out, errors ? RECORD_MESSAGE : RECORD_ADVICE, -1, NULL,
+                 arena_printf(j->memory, "and %d more like these", count - MOST_MESSAGES));
+  return count;
+}
+
+/* They name the law as it was handed in. */
+static void put_messages(const judging *j, const diagnostics *said, source_set *sources) {
+  const diagnostic **order = diag_sorted(said);
+  int holes = 0;
+  for (int k = 0; k < said->count; k++)
+    holes += said->items[k].code == DIAG_HOLE;
+  if (sources->count) {
+    free(sources->items[0].name);
+    sources->items[0].name = must_copy(j->q->shown);
+  }
+  const int errors = put_severity(j, said, order, true),
+            warnings = put_severity(j, said, order, false);
+  const double numbers[4] = {errors, warnings, holes, 0};
+  record_write(j->out, RECORD_CHECKED, -1, numbers, NULL);
+  free(order);
 }
 
 static const char *first_error(arena *a, const diagnostics *said) {
@@ -68,7 +96,7 @@ static void check(judging *j) {
   j->reads = opened && model_plan(&m);
   j->obeys = j->reads && physics_check(m.law, NULL, &m.said, NULL);
   j->first_error = j->reads ? NULL : first_error(j->memory, &m.said);
-  put_messages(j, &m.said);
+  put_messages(j, &m.said, &m.sources);
   model_close(&m);
   if (j->reads) j->declared = names_declared(j->memory, j->q->answer);
 }
@@ -83,6 +111,11 @@ static void judge_check(judging *j, int k) {
 
 /* --- paths ------------------------------------------------------------------------------------ */
 
+/* Those of a public path are no secret. */
+static bool shows_curves(const exercise_item *item) {
+  return item->show >= SHOW_CURVE || (item->show == SHOW_STATE && !item->hidden);
+}
+
 /* "path 2 of 3: ..."; what is said is the item's choice. */
 static void put_outcome(const judging *j, int k, const path_case *c, int of,
                         const path_outcome *o) {
@@ -92,7 +125,7 @@ static void put_outcome(const judging *j, int k, const path_case *c, int of,
       of > 1 ? arena_printf(j->memory, "path %d of %d: %s", c->number, of, o->words) : o->words;
   record_write(j->out, RECORD_WORDS, k, NULL, words);
   if (item->show >= SHOW_STATE && o->state) record_write(j->out, RECORD_STATE, k, NULL, o->state);
-  if (item->show < SHOW_CURVE || !c->referenced || !o->table.memory) return;
+  if (!shows_curves(item) || !c->referenced || !o->table.memory) return;
   char *curve = curve_text(&o->table, &c->right.table);
   record_write(j->out, RECORD_CURVE, k, NULL, curve);
   free(curve);
@@ -154,25 +187,42 @@ static bool is_right(const exercise_item *item, double value, double expected) {
   return fabs(value - expected) <= item->tolerance * fabs(expected);
 }
 
+/* "E is 6e+10, minus twice what it should be"; "E is 0". */
+static void say_number(FILE *out, const char *what, double value, double expected) {
+  const double ratio = value / expected;
+  fprintf(out, "%s is ", what);
+  if (expected != 0 && fabs(ratio) >= 1e-9) fprintf(out, "%.5g, ", value);
+  if (expected != 0)
+    ratio_say(ratio, "what it should be", out);
+  else
+    fprintf(out, "%.5g, not 0", value);
+  rounding_say(ratio, out);
+}
+
+static char *number_words(arena *a, const char *what, double value, double expected) {
+  char *text;
+  size_t length;
+  FILE *out = must_open_text(&text, &length);
+  say_number(out, what, value, expected);
+  must_close_text(out);
+  char *words = arena_text(a, text, length);
+  free(text);
+  return words;
+}
+
 static void put_number(judging *j, int k, double value, double expected, const char *why) {
   const exercise_item *item = &j->b->of->items[k];
   const bool right = is_right(item, value, expected);
   const char *what = item->kind != ITEM_RUN                ? item->quantity
                      : strcmp(item->of, "dissipated") == 0 ? "the dissipated energy"
                                                            : item->monitor;
-  const char *ratio = expected != 0 ? ratio_words(fabs(value / expected)) : NULL;
   put_mark(j, k, right, right, 1, value);
   j->all_right = j->all_right && right;
   if (right || item->show == SHOW_NOTHING || !j->reads) return;
   if (isnan(value))
     record_write(j->out, RECORD_WORDS, k, NULL, why);
-  else if (ratio)
-    record_write(j->out, RECORD_WORDS, k, NULL,
-                 arena_printf(j->memory, "%s is %.5g, %s what it should be", what, value, ratio));
   else
-    record_write(j->out, RECORD_WORDS, k, NULL,
-                 arena_printf(j->memory, "%s is %.5g, %.3g times what it should be", what, value,
-                              value / expected));
+    record_write(j->out, RECORD_WORDS, k, NULL, number_words(j->memory, what, value, expected));
 }
 
 static void judge_implied(judging *j, int k) {

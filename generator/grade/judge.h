@@ -9,6 +9,7 @@
 typedef struct judge_request {
   const grade_basis *basis;
   const char *answer; /* the law's file, in the working folder */
+  const char *shown;  /* the file as it was given, in messages */
   bool only_public;
   /* of sample items: [sample_count], of this answer's seed */
   path_case *samples;

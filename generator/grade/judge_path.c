@@ -118,6 +118,15 @@ static void compare(path_outcome *out, arena *a, const path_case *c) {
 
 /* --- against what the path expects ------------------------------------------------------------ */
 
+/* Where it says more than the numbers do. */
+static void say_known_ratio(double ratio, FILE *out) {
+  const bool rounding = ratio_is_rounding(ratio), known = rounding || ratio_words(fabs(ratio));
+  if (!known || !isfinite(ratio) || fabs(ratio) < 1e-9) return;
+  fputs(rounding ? ", " : ": ", out);
+  ratio_say(ratio, should, out);
+  rounding_say(ratio, out);
+}
+
 static void say_failures(path_outcome *out, arena *a, const drive_input *in,
                          const drive_verdict *verdicts) {
   char *text;
@@ -129,8 +138,7 @@ static void say_failures(path_outcome *out, arena *a, const drive_input *in,
     if (v->passed) continue;
     fprintf(to, "%s is %.6g, expected %.6g%s%s (at %.6g s)", in->expects[k].quantity,
             v->found + 0.0, v->expected + 0.0, *unit_text ? " " : "", unit_text, v->time);
-    const char *ratio = v->expected != 0 ? ratio_words(fabs(v->found / v->expected)) : NULL;
-    if (ratio) fprintf(to, ": %s%s %s", v->found / v->expected < 0 ? "minus " : "", ratio, should);
+    say_known_ratio(v->found / v->expected, to);
     fputc('\n', to);
   }
   must_close_text(to);

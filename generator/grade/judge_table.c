@@ -34,6 +34,7 @@ static const char *words_of(const judging *j, const answer_entry *right, const a
   }
   const double ratio = x->value / right->value;
   const char *known = isfinite(ratio) ? ratio_words(fabs(ratio)) : NULL;
+  if (fabs(ratio) < 1e-9) return arena_printf(a, "%s is 0", right->name);
   if (known)
     return arena_printf(a, "%s is %s%s what it should be", right->name, ratio < 0 ? "minus " : "",
                         known);

@@ -26,6 +26,14 @@ static void item_json(const exercise_item *item, const item_mark *i, json *j) {
   json_object_end(j);
 }
 
+/* Always an array. */
+static void texts_json(const char *name, const text_list *texts, json *j) {
+  json_put_array(j, name);
+  for (int k = 0; k < texts->count; k++)
+    json_text(j, texts->items[k]);
+  json_array_end(j);
+}
+
 void marks_json(const exercise *e, const marks *m, json *j) {
   const mark_sums s = marks_add_up(e, m);
   json_object(j);
@@ -37,14 +45,15 @@ void marks_json(const exercise *e, const marks *m, json *j) {
   json_put_integer(j, "holes", m->holes);
   json_put_integer(j, "errors", m->errors);
   json_put_integer(j, "warnings", m->warnings);
-  json_put_text(j, "messages", m->messages);
+  texts_json("messages", &m->messages, j);
+  texts_json("advice", &m->advice, j);
   json_put_text(j, "sentence", m->sentence);
   json_put_text(j, "known",
                 m->known >= 0 && m->known < e->wrong_count ? e->wrong[m->known].name : NULL);
   json_put_text(j, "trouble", m->trouble);
   json_put_integer(j, "cases", m->cases);
   json_put_integer(j, "reached", m->reached);
-  json_put_text(j, "notes", m->notes);
+  texts_json("notes", &m->notes, j);
   json_put_number(j, "seconds", m->seconds);
   json_put_array(j, "items");
   for (int k = 0; k < e->item_count; k++)
@@ -145,7 +154,7 @@ static void junit_case(const exercise *e, const marks *m, int k, FILE *out) {
   const char *words = m->trouble && !i->judged ? m->trouble
                       : m->sentence            ? m->sentence
                       : i->words               ? i->words
-                      : m->messages            ? m->messages
+                      : m->messages.count      ? m->messages.items[0]
                                                : "";
   fputs("    <testcase classname=\"", out);
   xml_text(out, m->name);

@@ -23,7 +23,8 @@ static const char head[] =
     "td.n{text-align:right;font-variant-numeric:tabular-nums}.less{color:#b3261e}.all{color:#"
     "1b6e3a}"
     "\n.say{border-left:4px solid #d98200;padding:.3rem .8rem;background:#fff7e8}\n"
-    "pre{background:#f4f4f4;padding:.5rem;overflow-x:auto}section{margin-top:2.5rem}\n"
+    "pre{background:#f4f4f4;padding:.5rem;white-space:pre-wrap;overflow-wrap:anywhere}section{"
+    "margin-top:2.5rem}\n"
     "svg{width:30rem;max-width:100%;display:block}td pre{max-width:44rem}\n</style>\n<title>";
 
 /* "<TAG>text</TAG>", the text written out. */
@@ -36,6 +37,11 @@ static void put(FILE *out, const char *tag, const char *rest, const char *text) 
 static void put_points(FILE *out, double got, int points) {
   fprintf(out, "<td class=\"n %s\">%s</td><td class=\"n\">%d</td>",
           got >= points - 1e-9 ? "all" : "less", points_shown(got), points);
+}
+
+static void put_texts(const char *tag, const char *rest, const text_list *texts, FILE *out) {
+  for (int k = 0; k < texts->count; k++)
+    put(out, tag, rest, texts->items[k]);
 }
 
 /* --- the class -------------------------------------------------------------------------------- */
@@ -65,7 +71,8 @@ static void put_item(const exercise_item *item, const item_mark *i, const marks 
   fputs("<td>", out);
   put(out, "strong", "", item->title);
   if (item->kind == ITEM_HAND) fputs(" (by hand)", out);
-  if (i->of > 1 && i->passed < i->of) fprintf(out, ": %d of %d", i->passed, i->of);
+  if (i->of > 1 && i->passed < i->of)
+    fprintf(out, ": %d of %d%s", i->passed, i->of, all_or_nothing(item));
   if (i->words && !m->sentence) put(out, "pre", "", i->words);
   if (i->state && !m->sentence) put(out, "pre", "", i->state);
   if (i->curve) curve_svg(i->curve, out);
@@ -76,7 +83,7 @@ static void put_answer(const exercise *e, const marks *m, int number, FILE *out)
   const mark_sums s = marks_add_up(e, m);
   fprintf(out, "<section id=\"a%d\">", number);
   put(out, "h2", "", m->name);
-  if (m->messages) put(out, "pre", "", m->messages);
+  put_texts("pre", "", &m->messages, out);
   if (m->sentence) put(out, "p", " class=\"say\"", m->sentence);
   if (m->trouble) put(out, "p", " class=\"say\"", m->trouble);
   fputs("<table>", out);
@@ -88,7 +95,9 @@ static void put_answer(const exercise *e, const marks *m, int number, FILE *out)
   if (s.elsewhere) fprintf(out, "; %d are judged by the teacher", s.elsewhere);
   if (s.by_hand) fprintf(out, "; %d are given by hand", s.by_hand);
   fputs("</td></tr></table>\n", out);
-  if (m->notes) put(out, "p", "", m->notes);
+  if (m->advice.count) put(out, "p", "", advice_costs_nothing);
+  put_texts("pre", "", &m->advice, out);
+  put_texts("p", "", &m->notes, out);
   fputs("</section>\n", out);
 }
 

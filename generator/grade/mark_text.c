@@ -6,6 +6,8 @@
 #include "dsl/base/characters.h"
 #include "generator/exercise/exercise_grammar.h"
 
+const char advice_costs_nothing[] = "warnings of `perilat check`, which cost nothing:";
+
 const char *points_shown(double points) {
   static _Thread_local char texts[4][32];
   static _Thread_local int next;
@@ -43,9 +45,18 @@ static void print_lines(const char *text, const char *indent, FILE *out) {
   }
 }
 
+static void print_texts(const text_list *texts, const char *indent, FILE *out) {
+  for (int k = 0; k < texts->count; k++)
+    print_lines(texts->items[k], indent, out);
+}
+
 /* The sentence of a known wrong law says it all. */
 static bool needs_words(const exercise_item *item, const marks *m) {
   return !m->sentence || item->kind == ITEM_ANSWERS;
+}
+
+const char *all_or_nothing(const exercise_item *item) {
+  return item->kind == ITEM_SAMPLE ? ", all or nothing" : "";
 }
 
 static void print_item(const exercise_item *item, const item_mark *i, const marks *m, FILE *out) {
@@ -59,7 +70,8 @@ static void print_item(const exercise_item *item, const item_mark *i, const mark
     return;
   }
   fprintf(out, "  %5s of %3d  %s", points_shown(i->share * item->points), item->points, title);
-  if (i->of > 1 && i->passed < i->of) fprintf(out, ": %d of %d", i->passed, i->of);
+  if (i->of > 1 && i->passed < i->of)
+    fprintf(out, ": %d of %d%s", i->passed, i->of, all_or_nothing(item));
   fputc('\n', out);
   if (i->words && needs_words(item, m)) print_lines(i->words, "                ", out);
   if (i->state && needs_words(item, m)) print_lines(i->state, "                  ", out);
@@ -78,12 +90,14 @@ void marks_print(const exercise *e, const marks *m, FILE *out) {
   if (m->holes)
     fprintf(out, "  %d hole%s `?` %s still to be written\n", m->holes, m->holes == 1 ? "" : "s",
             m->holes == 1 ? "is" : "are");
-  if (m->messages) print_lines(m->messages, "  ", out);
+  print_texts(&m->messages, "  ", out);
   if (m->sentence) print_lines(m->sentence, "  ", out);
   for (int k = 0; k < e->item_count; k++)
     print_item(&e->items[k], &m->items[k], m, out);
   if (m->trouble) fprintf(out, "  not judged to the end: %s\n", m->trouble);
-  if (m->notes) print_lines(m->notes, "  note: ", out);
+  if (m->advice.count) fprintf(out, "  %s\n", advice_costs_nothing);
+  print_texts(&m->advice, "  ", out);
+  print_texts(&m->notes, "  note: ", out);
   print_sum(e, m, out);
 }
 

@@ -21,6 +21,10 @@ void marks_print(const exercise *e, const marks *m, FILE *out);
 /* The most important sentence of it, on one line, or ""; what was compared with the solution says
    more than what was expected. Of the marks' memory. */
 const char *marks_in_short(const exercise *e, const marks *m);
+/* Behind "3 of 8", of an item whose parts earn nothing alone: ", all or nothing"; else "". */
+const char *all_or_nothing(const exercise_item *item);
+/* Ahead of warnings. */
+extern const char advice_costs_nothing[];
 /* A number of points: "13.3", "20". Good until the thread's fourth next call. */
 const char *points_shown(double points);
 

@@ -7,7 +7,7 @@
 
 #include "dsl/base/characters.h"
 
-enum { MOST_TEXT = 1 << 20 };
+enum { MOST_TEXT = 1 << 20, MOST_TEXTS = 1000 /* of a kind */ };
 
 /* Ahead of each text. */
 typedef struct record_head {
@@ -62,6 +62,12 @@ static char *joined(arena *a, char *before, const char *more) {
   return arena_printf(a, "%s%s%s", before ? before : "", before ? "\n" : "", more);
 }
 
+static void add_text(marks *m, text_list *to, char *text) {
+  if (to->count == MOST_TEXTS) return;
+  to->items = arena_room(m->memory, to->items, to->count, sizeof *to->items);
+  to->items[to->count++] = text;
+}
+
 static void take_item(marks *m, const record_head *h, char *text) {
   if (h->item < 0 || h->item >= m->item_count) return;
   item_mark *i = &m->items[h->item];
@@ -94,15 +100,18 @@ static void take_record(marks *m, const record_head *h, char *text) {
     m->warnings = bounded(h->numbers[1], 1000000);
     m->holes = bounded(h->numbers[2], 1000000);
     return;
-  case RECORD_MESSAGES:
-    m->messages = text;
+  case RECORD_MESSAGE:
+    add_text(m, &m->messages, text);
+    return;
+  case RECORD_ADVICE:
+    add_text(m, &m->advice, text);
     return;
   case RECORD_SENTENCE:
     m->sentence = text;
     m->known = bounded(h->numbers[0], 1000000);
     return;
   case RECORD_NOTE:
-    m->notes = joined(m->memory, m->notes, text);
+    add_text(m, &m->notes, text);
     return;
   case RECORD_CASES:
     m->cases = bounded(h->numbers[0], 1000000);

@@ -17,17 +17,23 @@ typedef struct item_mark {
   char *curve;    /* both curves as SVG, or NULL */
 } item_mark;
 
+typedef struct text_list {
+  char **items; /* [count] */
+  int count;
+} text_list;
+
 typedef struct marks {
   arena *memory;
   const char *name; /* of the answer */
   item_mark *items;
   int item_count;
   int errors, warnings, holes; /* of `perilat check` */
-  char *messages;              /* its errors as they are printed, or NULL */
+  text_list messages;          /* its errors as they are printed */
+  text_list advice;            /* its warnings, which cost nothing */
   char *sentence;              /* of a known wrong law, or NULL */
   int known;                   /* which one; -1: none */
   int cases, reached;          /* conditions of the law, and those that were seen true and false */
-  char *notes;                 /* lines that cost nothing, or NULL */
+  text_list notes;             /* sentences that cost nothing */
   const char *trouble;         /* why it was not judged to the end, or NULL */
   double seconds;
   bool ended;
@@ -35,7 +41,8 @@ typedef struct marks {
 
 /* X(code): what a record says */
 #define MARK_RECORDS(X)                                                                            \
-  X(MARK) X(WORDS) X(STATE) X(CURVE) X(CHECKED) X(MESSAGES) X(SENTENCE) X(NOTE) X(CASES) X(END)
+  X(MARK)                                                                                          \
+  X(WORDS) X(STATE) X(CURVE) X(CHECKED) X(MESSAGE) X(ADVICE) X(SENTENCE) X(NOTE) X(CASES) X(END)
 typedef enum mark_record {
 #define X(code) RECORD_##code,
   MARK_RECORDS(X)

@@ -258,13 +258,30 @@ static int run_of(arena *a, const char *path, deck_override *all, int count, run
   return made->count++;
 }
 
+/* The text in quotes, as a deck has it. */
+static const char *quoted(arena *a, const char *text) {
+  const char *all = "'";
+  for (; *text; text++)
+    all = arena_printf(a, "%s%s%c", all, *text == '\'' ? "'" : "", *text);
+  return arena_printf(a, "%s'", all);
+}
+
+/* The whole path of the law: what else has its name beside the deck, or among the models, is
+   another one. */
+static const char *law_in_deck(arena *a, const char *answer) {
+  char *whole = realpath(answer, NULL);
+  const char *name = quoted(a, whole ? whole : answer);
+  free(whole);
+  return name;
+}
+
 double measure_run(arena *a, const exercise_item *item, const char *answer, const char *const *more,
                    int more_count, runs_made *made, const char **why) {
   const int most = item->set_count + more_count + 2;
   deck_override *all = arena_alloc(a, (size_t)most * sizeof *all);
   int count = 0;
   const char *of = item->material ? arena_printf(a, "[%s]", item->material) : "";
-  all[count++].text = arena_printf(a, "material%s.model=%s", of, answer);
+  all[count++].text = arena_printf(a, "material%s.model=%s", of, law_in_deck(a, answer));
   for (int k = 0; k < item->set_count; k++)
     all[count++].text = item->set[k];
   for (int k = 0; k < more_count; k++)

@@ -1,5 +1,6 @@
 #include "generator/grade/publish.h"
 
+#include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
@@ -18,6 +19,13 @@ enum { DEEPEST = 4 };
 #define LONGEST ((size_t)64 << 20) /* B, of a file */
 static const char own_file[] = "exercise.nml", kept[] = "teacher";
 
+/* A file that may be given to students. */
+typedef struct candidate {
+  const char *name, *path; /* from the exercise's folder; whole */
+  const char *unfit;       /* why it is never given, or NULL */
+  bool taken;
+} candidate;
+
 typedef struct publishing {
   const exercise *e;
   const source_set *sources;
@@ -26,6 +34,8 @@ typedef struct publishing {
   const char **secrets; /* texts of all files in the teacher's folder */
   size_t *lengths;
   int secret_count;
+  candidate *all;
+  int count;
 } publishing;
 
 static bool fail(const char *what, const char *path) {
@@ -107,23 +117,114 @@ static bool copy_file(const publishing *p, const char *from, const char *to) {
   return good;
 }
 
-/* Links are left out: they may lead anywhere. */
-static bool copy_folder(const publishing *p, const char *from, const char *to, int depth) {
+/* --- what students get ------------------------------------------------------------------------ */
+
+/* Why a file is never given, whatever names it; NULL: it may be. */
+static const char *unfit(const char *name) {
+  static const char *const results[] = {".h5", ".hdf5", ".xdmf"};
+  if (strcmp(name, "answer.plm") == 0 || strcmp(name, "answers.txt") == 0) return "it is an answer";
+  for (size_t k = 0; k < sizeof results / sizeof *results; k++)
+    if (text_ends_in(name, results[k])) return "it is a result";
+  return NULL;
+}
+
+static bool is_picture(const char *name) {
+  static const char *const endings[] = {".png", ".svg", ".pdf", ".jpg", ".jpeg", ".gif", ".webp"};
+  for (size_t k = 0; k < sizeof endings / sizeof *endings; k++)
+    if (text_ends_in(name, endings[k])) return true;
+  return false;
+}
+
+/* Every ordinary file beside the teacher's folder. Links are left out: they may lead anywhere. */
+static void find_candidates(publishing *p, const char *inside, int depth) {
   const char **names;
-  const int count = entries_of(p->memory, from, &names);
+  const int count = entries_of(p->memory, path_in(p->memory, p->e->folder, inside), &names);
   for (int k = 0; k < count; k++) {
-    const char *path = path_in(p->memory, from, names[k]),
-               *target = path_in(p->memory, to, names[k]);
+    const char *name = arena_printf(p->memory, "%s%s", inside, names[k]),
+               *path = path_in(p->memory, p->e->folder, name);
     struct stat about;
-    if (depth == 0 && (strcmp(names[k], kept) == 0 || strcmp(names[k], own_file) == 0)) continue;
-    if (lstat(path, &about) != 0) return fail("cannot read", path);
-    if (S_ISDIR(about.st_mode)) {
-      if (depth == DEEPEST) continue;
-      if (mkdir(target, 0777) != 0) return fail("cannot make the folder", target);
-      if (!copy_folder(p, path, target, depth + 1)) return false;
-    } else if (S_ISREG(about.st_mode)) {
-      if (!copy_file(p, path, target)) return false;
-    }
+    if (depth == 0 && (strcmp(name, kept) == 0 || strcmp(name, own_file) == 0)) continue;
+    if (lstat(path, &about) != 0) continue;
+    if (S_ISDIR(about.st_mode) && depth < DEEPEST)
+      find_candidates(p, arena_printf(p->memory, "%s/", name), depth + 1);
+    if (!S_ISREG(about.st_mode)) continue;
+    p->all = arena_room(p->memory, p->all, p->count, sizeof *p->all);
+    p->all[p->count++] = (candidate){name, path, unfit(names[k]), false};
+  }
+}
+
+/* Task, starter, and what public items name. */
+static bool is_first(const exercise *e, const char *name) {
+  if (strcmp(name, "task.md") == 0 || strncmp(name, "starter.", 8) == 0) return true;
+  for (int k = 0; k < e->item_count; k++)
+    for (int f = 0; f < e->items[k].found_count && item_is_public(&e->items[k]); f++)
+      if (strcmp(e->items[k].found[f].name, name) == 0) return true;
+  return false;
+}
+
+static bool continues_name(char c) {
+  return isalnum((unsigned char)c) || c == '_' || c == '-';
+}
+
+/* `name` between two marks; of a picture a page that shows it, not one that has it drawn. */
+static bool is_named_at(const char *text, const char *at, size_t length, bool picture) {
+  const char before = at > text ? at[-1] : ' ', after = at[length];
+  if (picture) return before == '(' || before == '"' || before == '/';
+  if (continues_name(before) || before == '.' || continues_name(after)) return false;
+  return after != '.' || !continues_name(at[length + 1]);
+}
+
+/* Does the text name the file, or a law by what stands before its ending, in quotes? */
+static bool names_file(const char *text, const char *name) {
+  const char *slash = strrchr(name, '/'), *last = slash ? slash + 1 : name;
+  const size_t length = strlen(last), stem = text_ends_in(last, ".plm") ? length - 4 : 0;
+  const bool picture = is_picture(last);
+  for (const char *at = text; (at = strstr(at, last)); at++)
+    if (is_named_at(text, at, length, picture)) return true;
+  for (const char *at = text; stem && (at = strchr(at, '\'')); at++)
+    if (strncmp(at + 1, last, stem) == 0 && at[1 + stem] == '\'') return true;
+  return false;
+}
+
+/* A file that is given brings what it names. False after a sentence. */
+static bool take(publishing *p, candidate *c) {
+  size_t length;
+  char *text = whole_text(c->path, &length);
+  if (!text) return false;
+  bool good = true;
+  c->taken = true;
+  for (int k = 0; k < p->count && good; k++)
+    if (!p->all[k].taken && !p->all[k].unfit && names_file(text, p->all[k].name))
+      good = take(p, &p->all[k]);
+  free(text);
+  return good;
+}
+
+/* The folders of a name, as far as they are not there. */
+static bool make_folders(const publishing *p, const char *name) {
+  for (const char *slash = name; (slash = strchr(slash, '/')); slash++) {
+    const char *folder =
+        path_in(p->memory, p->folder, arena_text(p->memory, name, (size_t)(slash - name)));
+    if (mkdir(folder, 0777) != 0 && errno != EEXIST) return fail("cannot make the folder", folder);
+  }
+  return true;
+}
+
+/* False after a sentence; what is left out is told. */
+static bool copy_files(publishing *p) {
+  find_candidates(p, "", 0);
+  for (int k = 0; k < p->count; k++)
+    if (!p->all[k].taken && !p->all[k].unfit && is_first(p->e, p->all[k].name) &&
+        !take(p, &p->all[k]))
+      return false;
+  for (int k = 0; k < p->count; k++) {
+    const candidate *c = &p->all[k];
+    if (!c->taken)
+      printf("left out %s: %s\n", name_shown(c->name),
+             c->unfit ? c->unfit : "nothing that students get names it");
+    else if (!make_folders(p, c->name) ||
+             !copy_file(p, c->path, path_in(p->memory, p->folder, c->name)))
+      return false;
   }
   return true;
 }
@@ -205,8 +306,8 @@ bool publish(const exercise *e, const source_set *sources, const char *folder) {
     rmdir(folder);
     good = false;
   }
-  good = good && learn_secrets(&p, path_in(p.memory, e->folder, kept), 0) &&
-         copy_folder(&p, e->folder, folder, 0) && write_exercise(&p);
+  good = good && learn_secrets(&p, path_in(p.memory, e->folder, kept), 0) && copy_files(&p) &&
+         write_exercise(&p);
   arena_free(p.memory);
   return good;
 }

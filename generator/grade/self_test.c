@@ -21,7 +21,8 @@ static bool test_right(grading *g, const char *name, const char *path, bool all_
   printf("%s of %d points", points_shown(s.got), s.judged);
   if (m.cases) printf(", %d of %d conditions seen true and false", m.reached, m.cases);
   putchar('\n');
-  if (!whole && m.notes) printf("      %s\n", m.notes);
+  for (int k = 0; !whole && k < m.notes.count; k++)
+    printf("      %s\n", m.notes.items[k]);
   if (!good) marks_print(g->e, &m, stdout);
   good = good && whole;
   marks_close(&m);

@@ -12,6 +12,7 @@ static struct {
   bool on;
   int count;
   char folders[MOST_FOLDERS][PATH_LONGEST];
+  char hidden[PATH_LONGEST]; /* a file that is never read; "": none */
 } confined;
 
 /* Takes the folder as it is without links. */
@@ -32,6 +33,13 @@ bool files_confine(const char *folder, const char *const *readable, int count) {
   return true;
 }
 
+void file_never_read(const char *path) {
+  char *whole = realpath(path, NULL);
+  confined.hidden[0] = 0;
+  if (whole && strlen(whole) < PATH_LONGEST) strcpy(confined.hidden, whole);
+  free(whole);
+}
+
 bool files_are_confined(void) {
   return confined.on;
 }
@@ -47,6 +55,7 @@ bool file_may_be_read(const char *path) {
   bool found = false;
   for (int k = 0; whole && k < confined.count && !found; k++)
     found = lies_in(whole, confined.folders[k]);
+  if (whole && strcmp(whole, confined.hidden) == 0) found = false;
   free(whole);
   return found;
 }

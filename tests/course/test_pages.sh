@@ -49,6 +49,13 @@ for starter in "$course"/*/starter.plm; do
   grep -q '^model answer$' "$starter" || fault "$folder: the law of its starter is not called answer"
 done
 
+# Public expectations are rounded; that the solution's numbers are not, a task says.
+for exercise in "$course"/*/exercise.nml; do
+  folder=$(basename "$(dirname "$exercise")")
+  grep -q "'sample'\|'reference'" "$exercise" || continue
+  grep -q 'compared to six digits' "$course/$folder/task.md" || fault "$folder: its task does not say how exactly a law is compared"
+done
+
 # Minutes of task and table, and how many wrong laws the table tells.
 for exercise in "$course"/*/exercise.nml; do
   folder=$(basename "$(dirname "$exercise")")

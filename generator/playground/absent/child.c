@@ -6,17 +6,15 @@
 #include "generator/kernel/document.h"
 
 bool grade_child_begin(judging_child *c, marks *m, const judge_request *q, const handed_in *answer,
-                       const confinement *to) {
+                       const handed_text *text, const confinement *to) {
   judge_request here = *q;
   char *said;
   size_t size;
   (void)to;
   *c = (judging_child){.m = m, .from = -1};
-  if (!answer->file) {
-    m->trouble = "there is no answer";
-    return true;
-  }
-  here.answer = answer->file;
+  m->trouble = text->bad;
+  if (m->trouble) return true;
+  here.answer = here.shown = answer->file;
   FILE *out = must_open_text(&said, &size);
   if (q->basis->of->of_answers)
     judge_table(&here, out);

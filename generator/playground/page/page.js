@@ -336,7 +336,7 @@ function mark() {
   }
   const sum = key => answer.items.filter(is_judged).reduce((all, item) => all + item[key], 0);
   $('marked').textContent = `${sum('got')} of the ${sum('points')} points that can be judged here`;
-  const words = [answer.sentence, answer.trouble, answer.notes].filter(w => typeof w === 'string').map(w => one_item(w, 'fail'));
+  const words = [answer.sentence, answer.trouble, ...answer.notes].filter(w => typeof w === 'string').map(w => one_item(w, 'fail'));
   $('marks').replaceChildren(...words, ...answer.items.map(mark_item));
 }
 

@@ -254,6 +254,109 @@ static void rounding_is_no_difference(void **state) {
   table_difference_free(&d);
 }
 
+/* Words of two tables of a particle that is sheared to and fro: strain_xy, stress_xx of the second
+   order, stress_xy. */
+typedef struct sheared {
+  double time[9], none[9], shear[9], small[9], large[9];
+} sheared;
+
+enum { SHEARED_ROWS = 9 };
+
+static void shear(sheared *s, double small, double large, int late) {
+  for (int k = 0; k < SHEARED_ROWS; k++) {
+    const double at = 1e-3 * sin(0.7 * k), before = 1e-3 * sin(0.7 * (k - late));
+    s->time[k] = k;
+    s->none[k] = 0;
+    s->shear[k] = at;
+    s->small[k] = small * at * at;
+    s->large[k] = large * before;
+  }
+}
+
+static drive_table table_of(sheared *s, drive_column columns[5]) {
+  const drive_column all[] = {{"time", "s", s->time},
+                              {"strain_xx", "1", s->none},
+                              {"strain_xy", "1", s->shear},
+                              {"stress_xx", "Pa", s->small},
+                              {"stress_xy", "Pa", s->large}};
+  memcpy(columns, all, sizeof all);
+  return (drive_table){.of = DRIVE_OF_FAMILIES,
+                       .way = 1,
+                       .force = 3,
+                       .law_column = 5,
+                       .columns = columns,
+                       .column_count = 5,
+                       .rows = SHEARED_ROWS,
+                       .bad_row = -1};
+}
+
+static void said_of(sheared *answer, sheared *first, const char *wanted) {
+  drive_column columns[2][5];
+  const drive_table a = table_of(answer, columns[0]), r = table_of(first, columns[1]);
+  table_difference d;
+  char *text;
+  size_t length;
+  FILE *out = must_open_text(&text, &length);
+  table_difference_find(&d, &a, &r, 1e-6, NULL, true);
+  difference_say(&d, &a, "right", out);
+  must_close_text(out);
+  if (!strstr(text, wanted)) fail_msg("there is no `%s` in `%s`", wanted, text);
+  table_difference_free(&d);
+  free(text);
+}
+
+/* Stresses have one scale, and words are of what is large; a strain that is at rest is not what is
+   driven. */
+static void what_is_small_of_its_kind_says_little(void **state) {
+  (void)state;
+  sheared first, answer;
+  shear(&first, 3e9, 1e10, 0);
+  shear(&answer, 2e9, 2e10, 0);
+  said_of(&answer, &first, "stress_xy is twice right in all states");
+  shear(&answer, 2e9, 1.01e10, 0);
+  said_of(&answer, &first, "stress_xy is 1.01 times right in all states");
+  shear(&answer, 2e9, 1e10, 0);
+  said_of(&answer, &first,
+          "stress_xx, which is small beside the largest of its kind, first differs at 1 s, "
+          "strain_xy 0.000644218");
+  shear(&answer, 3e9 + 1, 1e10, 0); /* 1e-6 Pa beside 1e7 Pa */
+  said_of(&answer, &first, "equal within");
+  shear(&answer, 3e9, 1e10, 1);
+  said_of(&answer, &first, "stress_xy is one step late");
+}
+
+/* sqrt(3)/2 = 0.866025. */
+static void rounded_constants_are_told(void **state) {
+  variant v = right;
+  v.stiffness = "0.866*E*s*t";
+  differs(*state, &v, cycle,
+          "the force N is off by 0.0029 % in all states: is a constant rounded? write sqrt(3)/2");
+  v.stiffness = "0.87*E*s*t";
+  differs(*state, &v, cycle, "the force N is off by 0.46 % in all states: is a constant");
+  v.stiffness = "0.88*E*s*t";
+  differs(*state, &v, cycle, "the force N is 1.016 times that of the reference in all states");
+}
+
+static void said_ratio(double ratio, const char *wanted) {
+  char *text;
+  size_t length;
+  FILE *out = must_open_text(&text, &length);
+  ratio_say(ratio, "right", out);
+  must_close_text(out);
+  assert_string_equal(text, wanted);
+  free(text);
+}
+
+static void ratios_have_their_sign(void **state) {
+  (void)state;
+  said_ratio(2, "twice right");
+  said_ratio(-2, "minus twice right");
+  said_ratio(-0.0, "0");
+  said_ratio(-1e-12, "0");
+  said_ratio(0.7, "0.7 times right");
+  said_ratio(1 - 3e-5, "off by 0.003 %");
+}
+
 int main(void) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up_workplace, tear_down_workplace)
   const struct CMUnitTest tests[] = {TEST(an_equal_law_is_equal),
@@ -268,6 +371,9 @@ int main(void) {
                                      TEST(others_read_it),
                                      TEST(moments_points_and_families),
                                      cmocka_unit_test(ratios_have_names),
-                                     cmocka_unit_test(rounding_is_no_difference)};
+                                     cmocka_unit_test(rounding_is_no_difference),
+                                     TEST(rounded_constants_are_told),
+                                     cmocka_unit_test(what_is_small_of_its_kind_says_little),
+                                     cmocka_unit_test(ratios_have_their_sign)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -81,6 +81,11 @@ static void others_get_general_words(void **state) {
   says(w, "yours ");
   says(w, "E is 2e+10, twice what it should be");
   graded(w, RIGIDITY "-sqrt(3)/2*E*s*t|", "the force N has the wrong sign in all states");
+  graded(w, RIGIDITY "-sqrt(3)*E*s*t|", "minus twice what it should be in all states");
+  does_not_say(w, ", twice what");
+  graded(w, RIGIDITY "0.866*E*s*t|", "off by 0.0029 % in all states: is a constant rounded?");
+  says(w, "E is 9.9997e+09, off by 0.0029 %: is a constant rounded?");
+  does_not_say(w, "1 times");
   graded(w,
          "s|(S_u - kappa)|(2*S_u - kappa)|; s|/(S_u - S_t)|/(2*S_u - S_t)|; s|kappa < S_u|kappa "
          "< 2*S_u|",
@@ -104,6 +109,32 @@ static void errors_are_told_at_their_line(void **state) {
   graded(w, "s/parameter E /parameter Y /; s/\\*E\\*/*Y*/", "your law has no parameter `E`");
   expect(w, "grade memory memory/starter.plm", 2, "2 holes `?` are still to be written");
   says(w, "[hole]");
+}
+
+/* The file as it was given; warnings cost nothing. */
+static void messages_name_the_file_that_was_given(void **state) {
+  workplace *w = *state;
+  answer(w, "s/kappa, stretch/kappa, strech/");
+  assert_int_equal(shell(w, "mkdir try; mv answer.plm try/m04.plm"), 0);
+  expect(w, "grade memory try/m04.plm", 2, "try/m04.plm:13:22: error: there is no quantity");
+  does_not_say(w, "answer.plm");
+  expect(w, "grade memory try", 2, "try/m04.plm:13:22: error: there is no quantity");
+}
+
+static void warnings_are_shown(void **state) {
+  workplace *w = *state;
+  assert_int_equal(
+      shell(w, "sed 's/^  state kappa/  constant idle = E*t\\n&/' right.plm > idle.plm"), 0);
+  expect(w, "grade memory idle.plm", 0,
+         "  warnings of `perilat check`, which cost nothing:\n"
+         "  idle.plm:12:12: warning: no force and no output uses the constant `idle` [unused]\n");
+  says(w, "     90 of  90  points");
+  expect(w, "grade memory idle.plm --html a.html --json > a.json", 0, "");
+  assert_int_equal(shell(w, "cat a.html a.json"), 0);
+  says(w, "which cost nothing:</p><pre>idle.plm:");
+  says(w, "\"messages\": [],");
+  says(w, "\"advice\": [\n        \"idle.plm:");
+  says(w, "\"notes\": [],");
 }
 
 /* A default of the student's is not asked. */
@@ -147,13 +178,36 @@ static void publishing_refuses(void **state) {
   expect(w, "grade memory --publish memory", 1, "is not empty");
   expect(w, "grade memory --publish memory/given", 1, "lies in the exercise itself");
   assert_false(exists(w, "memory/given"));
-  assert_int_equal(shell(w, "cp memory/teacher/solution.plm memory/hint.plm"), 0);
+  assert_int_equal(shell(w,
+                         "cp memory/teacher/solution.plm memory/hint.plm; echo 'See `hint.plm`.' "
+                         ">> memory/task.md"),
+                   0);
   expect(w, "grade memory --publish given", 1, "is the same as a file of teacher/");
   assert_false(exists(w, "given/hint.plm"));
   assert_int_equal(shell(w, "rm -r given memory/hint.plm; ln -s teacher/solution.plm memory/a.plm"),
                    0);
   expect(w, "grade memory --publish given", 0, "written given/task.md");
   assert_false(exists(w, "given/a.plm"));
+}
+
+/* A teacher has tried the exercise out in its own folder. */
+static void what_nobody_names_is_not_published(void **state) {
+  workplace *w = *state;
+  assert_int_equal(shell(w,
+                         "cd memory; cp teacher/wrong/half.plm answer.plm; cp answer.plm old.plm; "
+                         "echo x | tee beam.h5 beam.xdmf loop.png shown.png marks.csv my.nml "
+                         "my.nml.bak side.plm > deep.plm; mkdir data; echo 'See deep.plm.' > "
+                         "data/outline.csv; echo \"model = 'side' file = 'data/outline.csv'\" > "
+                         "beam.nml; echo 'Save it as answer.plm: perilat run beam.nml; perilat "
+                         "plot beam.h5 -o loop.png ![a](shown.png) my.nml.bak' >> task.md"),
+                   0);
+  expect(w, "grade memory --publish given", 0, "left out answer.plm: it is an answer");
+  says(w, "left out beam.h5: it is a result");
+  says(w, "left out marks.csv: nothing that students get names it");
+  assert_int_equal(shell(w, "cd given; find . -type f | sort | tr '\\n' ' '"), 0);
+  assert_string_equal(w->said, "./beam.nml ./data/outline.csv ./deep.plm ./exercise.nml "
+                               "./my.nml.bak ./public.nml ./shown.png ./side.plm ./starter.plm "
+                               "./task.md ");
 }
 
 /* A constant of the student's may have any value. */
@@ -168,6 +222,26 @@ static void formulas_are_not_the_students(void **state) {
   assert_int_equal(shell(w, "sed 's/\\bEA\\b/rigidity/' right.plm > answer.plm"), 0);
   assert_int_equal(shell(w, "sed -i 's/\\bEA\\b/rigidity/g' answer.plm"), 0);
   expect(w, "grade memory answer.plm", 0, "20 of  20  Out and in");
+}
+
+/* --- runs ------------------------------------------------------------------------------------- */
+
+/* The deck of a run says `model = './answer.plm'`; another law of that name beside it is not the
+   one that is marked. */
+static void runs_are_of_the_law_that_is_marked(void **state) {
+  workplace *w = *state;
+  assert_int_equal(shell(w, "cp -r '" SOURCE_DIR "/examples/course/06_damping' run; mkdir class; "
+                            "cp run/teacher/solution.plm right.plm; cp right.plm class/ada.plm; "
+                            "cp run/teacher/wrong/half.plm class/bob.plm"),
+                   0);
+  for (int wrong = 0; wrong < 2; wrong++) {
+    assert_int_equal(shell(w, "cp %s run/answer.plm", wrong ? "class/bob.plm" : "right.plm"), 0);
+    assert_int_equal(shell(w, "$P grade run right.plm"), 0);
+    says(w, "     10 of  10  Two swings");
+    expect(w, "grade run class --csv marks.csv", 2, "");
+    assert_int_equal(shell(w, "cut -d, -f1,8 marks.csv"), 0);
+    says(w, "\"ada\",10\n\"bob\",0\n");
+  }
 }
 
 /* --- a class ---------------------------------------------------------------------------------- */
@@ -191,9 +265,27 @@ static void a_class_has_a_row_each(void **state) {
   says(w, "\"trouble\": \"there is no answer\"");
   assert_int_equal(shell(w, "cat marks.xml"), 0);
   says(w, "<testsuite name=\"memory bob\" tests=\"6\" failures=\"4\" skipped=\"1\"");
-  assert_int_equal(shell(w, "cat marks.html; grep -c '<svg' marks.html"), 0);
-  says(w, "\n1\n");
-  does_not_say(w, "<script");
+  /* of the public path, and of the hidden one that asks for it */
+  assert_int_equal(shell(w, "grep -c '<svg' marks.html; grep -c '<script' marks.html; grep -o "
+                            "pre-wrap marks.html"),
+                   0);
+  assert_string_equal(w->said, "2\n0\npre-wrap\n");
+}
+
+/* Curves are shown of public paths, where the exercise says no other thing. */
+static void public_paths_have_curves(void **state) {
+  workplace *w = *state;
+  assert_int_equal(shell(w, "sed -i \"s/show = 'curve'//\" memory/exercise.nml"), 0);
+  answer(w, RIGIDITY "sqrt(3)*E*s*t|");
+  expect(w, "grade memory answer.plm --html a.html", 2, "");
+  assert_int_equal(shell(w, "grep -c '<svg' a.html; sed -n '/Out and in/,/<svg/p' a.html | "
+                            "grep -c Cycles"),
+                   1);
+  assert_string_equal(w->said, "1\n0\n");
+  assert_int_equal(
+      shell(w, "sed -i \"s/file = 'public.nml'/& show = 'words'/\" memory/exercise.nml"), 0);
+  expect(w, "grade memory answer.plm --html a.html", 2, "");
+  assert_int_equal(shell(w, "! grep -q '<svg' a.html"), 0);
 }
 
 /* A student's own folder may hold further laws; what lies in the class's is others'. */
@@ -210,22 +302,38 @@ static void further_laws_are_their_owners(void **state) {
   says(w, "\"eve\",90\n\"flat\",0\n\"parts\",0\n");
 }
 
-/* Numbers vary from student to student, and not from one time to the next. */
-static void samples_are_the_students(void **state) {
+/* Numbers vary from answer to answer, and not with the place or the line ends of a file. */
+static void samples_are_the_answers(void **state) {
   workplace *w = *state;
-  assert_int_equal(shell(w, "sed -i '/vary/s/points = 10/points = 10  show = '\\''curve'\\''/' "
-                            "memory/exercise.nml; mkdir class; sed 's|sqrt(3)/2|0.9|' right.plm | "
-                            "tee class/ada.plm > class/bob.plm"),
+  assert_int_equal(
+      shell(w, "sed -i '/vary/s/points = 10/points = 10  show = '\\''curve'\\''/' "
+               "memory/exercise.nml; mkdir class other class/eve; sed 's|sqrt(3)/2|0.9|' right.plm "
+               "> class/ada.plm; (cat class/ada.plm; echo '! Bob') > class/bob.plm; sed "
+               "'s/$/\\r/' class/ada.plm > class/eve/answer.plm; cp class/ada.plm other/x.plm"),
+      0);
+  assert_int_equal(shell(w,
+                         "drawn() { $P grade memory $1 --html $2 $3 $4 > said; grep polyline $2 | "
+                         "tail -1; }; drawn class/ada.plm 1 > a; drawn class/bob.plm 2 > b; "
+                         "drawn class/eve/answer.plm 3 > c; drawn other/x.plm 4 > d; drawn "
+                         "class/ada.plm 5 --seed 4 > e; test -s a && cmp a c && cmp a d && "
+                         "! cmp -s a b && ! cmp -s a e"),
                    0);
-  assert_int_equal(shell(w, "$P grade memory class --html a.html > a; $P grade memory class "
-                            "--html b.html > b; cmp a b && cmp a.html b.html"),
-                   0);
-  assert_int_equal(shell(w, "$P grade memory class --html c.html --seed 4 > c; ! cmp -s c.html "
-                            "b.html"),
-                   0);
-  assert_int_equal(shell(w, "[ $(grep -c polyline a.html) = 4 ] && [ $(grep polyline a.html | sort "
-                            "-u | wc -l) = 3 ]"),
-                   0);
+  expect(w, "grade memory class/ada.plm", 2, "Any material: 0 of 4, all or nothing\n");
+}
+
+/* What is no law at all is told in the table of a class. */
+static void files_that_hold_nothing_are_told(void **state) {
+  workplace *w = *state;
+  assert_int_equal(
+      shell(w,
+            "mkdir -p class/dir/answer.plm; : > class/a.plm; printf ' \\n\\r\\n' > class/b.plm; "
+            "printf 'PK\\0\\1' > class/c.plm; ln -s a.plm class/d.plm; cp right.plm class/e.plm"),
+      0);
+  expect(w, "grade memory class --csv c.csv", 2, "not judged to the end: the file is empty");
+  assert_int_equal(shell(w, "sed -n '2,$s/,[^\"]*,/ /p' c.csv"), 0);
+  says(w, "\"a\" \"the file is empty\"\n\"b\" \"the file is empty\"\n"
+          "\"c\" \"it is not a text file\"\n\"d\" \"it is a link, not a file\"\n"
+          "\"dir\" \"it is no ordinary file\"\n\"e\" \"\"\n");
 }
 
 /* --- the exercise put to the test ------------------------------------------------------------- */
@@ -412,14 +520,20 @@ int main(void) {
                                      TEST(others_get_general_words),
                                      TEST(numbers_for_names_are_told),
                                      TEST(errors_are_told_at_their_line),
+                                     TEST(messages_name_the_file_that_was_given),
+                                     TEST(warnings_are_shown),
                                      TEST(defaults_are_the_exercises),
                                      TEST(cases_that_no_path_reaches_are_noted),
                                      TEST(hidden_items_stay_hidden),
                                      TEST(publishing_refuses),
+                                     TEST(what_nobody_names_is_not_published),
                                      TEST(formulas_are_not_the_students),
+                                     TEST(runs_are_of_the_law_that_is_marked),
                                      TEST(a_class_has_a_row_each),
+                                     TEST(public_paths_have_curves),
                                      TEST(further_laws_are_their_owners),
-                                     TEST(samples_are_the_students),
+                                     TEST(samples_are_the_answers),
+                                     TEST(files_that_hold_nothing_are_told),
                                      TEST(the_exercise_holds),
                                      TEST(what_does_not_hold_is_told),
                                      TEST(broken_exercises_are_errors_at_their_line),

@@ -91,11 +91,20 @@ static bool writes_in_its_own_alone(void) {
          !can_write("confined/mine/way_out") && !can_write("/tmp/perilat_out");
 }
 
+static bool reads_all_but_one(void) {
+  file_never_read("confined/mine/deeper/../law");
+  const bool one = !can_read("confined/mine/law") && !can_read("confined/mine/way") &&
+                   can_read("confined/models/shared");
+  file_never_read("confined/mine/none");
+  return one && can_read("confined/mine/law");
+}
+
 static void a_confined_process_keeps_to_its_folder(void **state) {
   (void)state;
   assert_int_equal(asked(reads_its_own), 0);
   assert_int_equal(asked(reads_nothing_else), 0);
   assert_int_equal(asked(writes_in_its_own_alone), 0);
+  assert_int_equal(asked(reads_all_but_one), 0);
   assert_false(files_are_confined());
   assert_true(can_read("confined/secret") && can_write("confined/out"));
 }
