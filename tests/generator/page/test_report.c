@@ -332,6 +332,42 @@ static void runs_speak(void **state) {
   }
 }
 
+/* A parameter that a formula, a file or a random field makes differ: the page tells one value, and
+   what the law answers with it, as of a deck that gives that value. */
+static void laws_that_differ_in_space(void **state) {
+  workplace *w = *state;
+  expect(w, "run beam.nml --set 'material.E=20 GPa' --set output.result=same.h5", 0, "written");
+  expect(w, "report same.h5", 0, "");
+  char *same = page_of(w, "same.html"),
+       *wanted = between(same, "<figcaption>One bond", "</figure>");
+  char *curve = strdup(strstr(wanted, "</figcaption>"));
+  assert_int_equal(shell(w, "$P export same.h5 --frame 0 | sed -n '1s/.*/x [m],y [m],E [GPa]/p; "
+                            "2,$s/^[^,]*,\\([^,]*,[^,]*\\).*/\\1,20/p' > E.csv && head -3 E.csv"),
+                   0);
+  static const char *const rows[][3] = {
+      {"run beam.nml --set 'material.E=20 [GPa] + 1 [GPa/m]*abs(x - 0.01905 [m])'",
+       "20 GPa in the middle of the bodies; differs", "20 GPa"},
+      {"run beam.nml --set material.E=E.csv", "30 GPa by default; differs", NULL},
+      {"run field.nml --set 'material.E=20 GPa'", "20 GPa of the material; differs", "20 GPa"}};
+  assert_int_equal(shell(w, "cat beam.nml > field.nml && echo \"&field parameter = 'E' "
+                            "distribution = 'normal' cv = 0.1 "
+                            "/\" >> field.nml"),
+                   0);
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+    expect(w, rows[k][0], 0, "written");
+    expect(w, "report beam.h5", 0, "written beam.html");
+    is_well_formed(w, "beam.html");
+    char *page = page_of(w, "beam.html");
+    assert_non_null(strstr(page, rows[k][1]));
+    assert_non_null(strstr(page, "with the values above, the same everywhere"));
+    if (rows[k][2]) assert_non_null(strstr(page, curve));
+    free(page);
+  }
+  free(curve);
+  free(wanted);
+  free(same);
+}
+
 /* A mesh, solved for at rest. */
 static void shows_meshes(void **state) {
   workplace *w = *state;
@@ -502,6 +538,7 @@ int main(void) {
       IN_WORKPLACE(leaves_what_is_there),
       IN_WORKPLACE(wrong_runs_stand_out),
       IN_WORKPLACE(runs_speak),
+      IN_WORKPLACE(laws_that_differ_in_space),
       IN_WORKPLACE(shows_meshes),
       IN_WORKPLACE(without_frames),
       IN_WORKPLACE(shows_studies),
