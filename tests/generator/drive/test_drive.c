@@ -495,6 +495,15 @@ static void a_particle_is_driven_by_strains(void **state) {
         "--compiled", 0, "1 of 1");
   drive(PARTICLE TO_MICRO, "", 1, "a law of families is not driven by this quantity");
   drive(ELASTIC STRETCHED, "", 1, "a law of bonds is not driven by this quantity");
+  /* what is missed is told by what is driven, and more steps are named where they may help */
+  const char sheared[] = PARTICLE
+      "&path quantity = 'strain_xy' value = 1e-6 rise = '1 s' /\n"
+      "&expect quantity = 'peak stress_xy' formula = '%s*E/(1 + nu)*1 [1]' tolerance = 1e-3 /\n";
+  char text[600];
+  snprintf(text, sizeof text, sheared, "3e-6");
+  drive(text, "", 2, "(at 1 s, strain_xy 1e-06)\n0 of 1");
+  snprintf(text, sizeof text, sheared, "1.1e-6");
+  drive(text, "", 2, "(at 1 s, strain_xy 1e-06)\n      the rows beside it are at");
   drive(PARTICLE "&path quantity = 'strain_zz' value = 1e-6 rise = '1 s' /\n", "", 1,
         "a law of families in the plane knows no such strain");
   drive("&material model = 'splm_elastic' /\n&particle lattice = 'kagome' /\n" STRETCHED, "", 1,
