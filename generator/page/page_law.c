@@ -52,7 +52,7 @@ typedef struct used_law {
   diagnostics said;
 } used_law;
 
-/* The material as one that is the same everywhere. A formula keeps its value in the middle; a file
+/* The material as one that is alone, and the same everywhere. A formula keeps its value in the middle; a file
    is not asked, it may be gone: the default stands for it. */
 static deck_material without_files(arena *a, const deck_material *m) {
   deck_material known = *m;
@@ -69,6 +69,7 @@ static deck_material without_files(arena *a, const deck_material *m) {
 
 static deck_material without_places(arena *a, const deck_material *m) {
   deck_material alone = *m;
+  alone.beside = false;
   alone.assignments = arena_alloc(a, ((size_t)m->assignment_count + 1) * sizeof *alone.assignments);
   for (int k = 0; k < m->assignment_count; k++) {
     alone.assignments[k] = m->assignments[k];
