@@ -130,7 +130,8 @@ enum { MOVES, FIXED };
     "largest of its arguments, or of x[j] over the family")                                        \
   X(NORM, "norm", 1, 1, norm, NO_VALUE, "\\left\\lVert #\\right\\rVert",                           \
     "x = norm(theta_i + theta_j)",                                                                 \
-    "magnitude of a bending quantity, vector, tensor or directed quantity")                        \
+    "magnitude of a bending quantity, vector or tensor; of a family's values, `norm(F)` or "       \
+    "`norm(deviator(F))` without [j], the root of the sum of their squares")                        \
   X(PREVIOUS, "previous", 1, 1, previous, NO_VALUE, "", "x = omega - previous(omega)",             \
     "value of a state or damage at the end of the last step")                                      \
   X(DIFF, "diff", 2, 2, derivative, NO_VALUE, "", "x = diff(stretch**2, stretch)",                 \

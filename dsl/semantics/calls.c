@@ -72,14 +72,36 @@ static value root(checker *ck, expr *e) {
   return BROKEN;
 }
 
+/* Carries [j]: has a value for each neighbour. */
+static bool varies_in_family(value v) {
+  return v.place == ON_BOND || v.place == ON_NEIGHBOUR;
+}
+
+/* Of `norm`, which goes over the whole family: how what carries [j] is written without it. */
+static void hint_at_whole(checker *ck, const expr *of) {
+  const bool deviates = of->kind == EXPR_CALL && of->builtin == FUNCTION_DEVIATOR;
+  const expr *inner = deviates ? of->arguments[0].value : of;
+  if (inner->kind == EXPR_NAME && !inner->primed)
+    diag_hint(ck->d,
+              "over the whole family, without [j]: `norm(%s%s%s)`; one value's size: `abs(...)`",
+              deviates ? "deviator(" : "", inner->name, deviates ? ")" : "");
+  else
+    diag_hint(ck->d, "over the whole family: give it a name first, `x[j] = ...`, and write "
+                     "`norm(x)`; one value's size: `abs(...)`");
+}
+
 static value norm(checker *ck, expr *e) {
   value v = check_family(ck, operand(e, 0));
   if (v.whole) v.place = ON_PARTICLE;
   const bool family = v.whole;
   v.whole = false;
   if (v.broken || v.unknown) return v;
-  if (!family && (v.shape == SHAPE_SCALAR || v.shape == SHAPE_LOGICAL))
-    return bad_shape(ck, e, v, "for the size of a number write `abs(...)`");
+  if (!family && (v.shape == SHAPE_SCALAR || v.shape == SHAPE_LOGICAL)) {
+    const bool indexed = !is_single(ck) && varies_in_family(v);
+    bad_shape(ck, e, v, indexed ? NULL : "for the size of a number write `abs(...)`");
+    if (indexed) hint_at_whole(ck, operand(e, 0));
+    return BROKEN;
+  }
   return with_shape(v, v.dim, SHAPE_SCALAR);
 }
 
@@ -92,11 +114,6 @@ static value arctangent(checker *ck, expr *e) {
   v.unknown = false;
   if (!expect_scalar(ck, operand(e, 0), v, function_name(ck, e))) return BROKEN;
   return with_shape(v, DIMENSIONLESS, SHAPE_SCALAR);
-}
-
-/* Carries [j]: has a value for each neighbour. */
-static bool varies_in_family(value v) {
-  return v.place == ON_BOND || v.place == ON_NEIGHBOUR;
 }
 
 static value reduced(checker *ck, expr *e, value v) {

@@ -349,6 +349,11 @@ static bool write_files(const driving *r) {
   return good;
 }
 
+/* So near that an extreme between two rows may be what is missed. */
+static bool is_near(const drive_verdict *v) {
+  return fabs(v->found - v->expected) <= 0.2 * fabs(v->expected);
+}
+
 static void print_verdict(const driving *r, const drive_expect *e, const drive_verdict *v) {
   place at = source_place(&r->sources, e->item.where.file, e->item.where.begin);
   const char *unit_text = unit_is_pure(v->unit) ? "" : v->unit;
@@ -358,9 +363,8 @@ static void print_verdict(const driving *r, const drive_expect *e, const drive_v
     printf(" (expected %.9g)\n", v->expected);
   else
     printf(", expected %.9g: off by %.3g, %.3g is allowed (at %.6g s, %s %.6g)\n", v->expected,
-           fabs(v->found - v->expected), v->allowed, v->time, r->table.columns[r->table.way].name,
-           v->way);
-  if (!v->passed && v->extreme)
+           fabs(v->found - v->expected), v->allowed, v->time, v->way_name, v->way);
+  if (!v->passed && v->extreme && is_near(v))
     printf("      the rows beside it are at %.6g s and %.6g s; an extreme between them is found by "
            "more steps: --set simulation.steps=%d\n",
            v->beside[0], v->beside[1], 10 * r->in->simulation.steps);

@@ -324,15 +324,32 @@ static double form_value(const judge *j, const double *parameters, const drive_t
   return value;
 }
 
+/* The column of what the path drives first: a bond's rotation, a component of strain. A rate drives
+   the stretch; of points the table says it. */
+static const drive_column *driven_column(const judge *j, const drive_table *t) {
+  static const char *const names[] = {
+#define X(code, name, unit) [DRIVE_##code] = name,
+      DRIVE_QUANTITIES(X)
+#undef X
+  };
+  for (int k = 0; t->of != DRIVE_OF_POINTS && j->in->piece_count && k < t->column_count; k++)
+    if (strcmp(t->columns[k].name, names[j->in->pieces[0].quantity]) == 0 &&
+        j->in->pieces[0].quantity != DRIVE_STRETCH_RATE)
+      return &t->columns[k];
+  return &t->columns[t->way];
+}
+
 static drive_verdict judge_one(const judge *j, const double *parameters, const drive_table *t,
                                const drive_expect *e, const asked *a) {
   const double *time = t->columns[DRIVE_COLUMN_TIME].values;
   const bool at_extreme = a->extreme_of >= 0;
   const long row = at_extreme ? extreme(t, a->extreme_of, a->sign) : row_at(t, a->time);
+  const drive_column *way = driven_column(j, t);
   drive_verdict v = {.found = t->columns[a->column].values[row],
                      .unit = t->columns[a->column].unit,
                      .time = time[row],
-                     .way = t->columns[t->way].values[row],
+                     .way = way->values[row],
+                     .way_name = way->name,
                      .extreme = at_extreme,
                      .beside = {time[row ? row - 1 : 0], time[row < t->rows - 1 ? row + 1 : row]}};
   v.expected = e->formula ? form_value(j, parameters, t, a->output, row) : a->value;

@@ -10,7 +10,8 @@ typedef struct drive_verdict {
   bool passed;
   double found, expected, allowed;
   const char *unit;
-  double time, way; /* of the row */
+  double time, way; /* of the row: `way` of what the path drives */
+  const char *way_name;
   bool extreme;     /* the row was chosen for a largest or smallest value */
   double beside[2]; /* times of the rows before and after it */
 } drive_verdict;

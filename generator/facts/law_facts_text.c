@@ -113,11 +113,13 @@ static void print_bond(const implied *i) {
     printf("  work of fracture      none: a bond never separates\n");
     return;
   }
-  printf("                        costs %.6g J: %.6g N/m on its share of a crack, sqrt(3)/2*s*t\n",
+  printf("                        costs %.6g J: %.6g N/m of a crack across it that cuts no other "
+         "bonds, one in sqrt(3)/2*s*t\n",
          b->energy, b->row_energy);
   printf("  work of fracture      %.6g N/m of a straight crack across the rows (opens along x), "
          "%.6g N/m along "
-         "them (along y),\n                        by all bonds that it cuts\n",
+         "them (along y),\n                        by all bonds that it cuts: two in "
+         "sqrt(3)/2*s*t across the rows, two in s*t along them\n",
          i->crack[0], i->crack[1]);
 }
 

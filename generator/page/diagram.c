@@ -12,7 +12,14 @@ typedef struct drawing {
   const diagram *d;
   FILE *out;
   axis x, y;
+  double more; /* room to the left, for long numbers */
 } drawing;
+
+enum {
+  LETTER = 30,
+  LETTER_WIDTH = 18,
+  NUMBER_GAP = 14
+}; /* of the numbers, where they are largest (page.css) */
 
 static void widen(const double *values, long count, double *low, double *high) {
   for (long k = 0; k < count; k++)
@@ -20,6 +27,43 @@ static void widen(const double *values, long count, double *low, double *high) {
       *low = pl_fmin(*low, values[k]);
       *high = pl_fmax(*high, values[k]);
     }
+}
+
+/* Only whole values without a unit: nothing stands between two counts. */
+static bool counts(const diagram *d, bool along_x) {
+  for (int k = 0; k < d->count; k++) {
+    const double *values = along_x ? d->curves[k].x : d->curves[k].y;
+    for (long n = 0; n < d->curves[k].count; n++)
+      if (isfinite(values[n]) && values[n] != floor(values[n])) return false;
+  }
+  return unit_is_pure(along_x ? d->x_unit : d->y_unit);
+}
+
+static void take_whole_steps(axis *a) {
+  if (a->factor != 1 || a->step >= 1) return;
+  a->step = 1;
+  a->low = floor(a->low);
+  a->high = ceil(a->high);
+}
+
+static int print_number(char *text, size_t size, const axis *a, long k) {
+  const double shown = a->low + (double)k * a->step;
+  return snprintf(text, size, "%.6g", fabs(shown) < 1e-9 * a->step ? 0 : shown);
+}
+
+static long step_count(const axis *a) {
+  return lround((a->high - a->low) / a->step);
+}
+
+/* The axis' name stands to the left of its longest number. */
+static void make_room(drawing *w) {
+  char text[40];
+  int most = 0;
+  for (long k = 0; k <= step_count(&w->y); k++) {
+    const int length = print_number(text, sizeof text, &w->y, k);
+    if (length > most) most = length;
+  }
+  w->more = pl_fmax(0, NUMBER_GAP + most * LETTER_WIDTH + 1.4 * LETTER - DIAGRAM_LEFT);
 }
 
 static bool choose_axes(drawing *w) {
@@ -31,21 +75,27 @@ static bool choose_axes(drawing *w) {
     widen(d->curves[k].x, d->curves[k].count, &low[0], &high[0]);
     widen(d->curves[k].y, d->curves[k].count, &low[1], &high[1]);
   }
-  return axis_set(&w->x, d->x_name, d->x_unit, NULL, low[0], high[0], none, sizeof none) &&
-         axis_set(&w->y, d->y_name, d->y_unit, NULL, low[1], high[1], none, sizeof none);
+  if (!axis_set(&w->x, d->x_name, d->x_unit, NULL, low[0], high[0], none, sizeof none) ||
+      !axis_set(&w->y, d->y_name, d->y_unit, NULL, low[1], high[1], none, sizeof none))
+    return false;
+  if (counts(d, true)) take_whole_steps(&w->x);
+  if (counts(d, false)) take_whole_steps(&w->y);
+  make_room(w);
+  return true;
 }
 
 /* --- axes ------------------------------------------------------------------------------------- */
 
-static void put_number(const drawing *w, const axis *a, double shown, double x, double y,
+static void put_number(const drawing *w, const axis *a, long k, double x, double y,
                        const char *side) {
-  fprintf(w->out, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">%.6g</text>\n", x, y, side,
-          fabs(shown) < 1e-9 * a->step ? 0 : shown);
+  char text[40];
+  print_number(text, sizeof text, a, k);
+  fprintf(w->out, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\">%s</text>\n", x, y, side, text);
 }
 
 static void put_grid(const drawing *w) {
   const axis *x = &w->x, *y = &w->y;
-  const long nx = lround((x->high - x->low) / x->step), ny = lround((y->high - y->low) / y->step);
+  const long nx = step_count(x), ny = step_count(y);
   fputs("<path class=\"grid\" d=\"", w->out);
   for (long k = 0; k <= nx; k++)
     fprintf(w->out, "M%.1f %dV%d", axis_along_x(x, (x->low + (double)k * x->step) / x->factor),
@@ -60,12 +110,12 @@ static void put_grid(const drawing *w) {
   for (long k = 0; k <= nx; k++) {
     const double shown = x->low + (double)k * x->step;
     if (nx <= 8 || k % 2 == 0)
-      put_number(w, x, shown, axis_along_x(x, shown / x->factor), DIAGRAM_BOTTOM + 34, "middle");
+      put_number(w, x, k, axis_along_x(x, shown / x->factor), DIAGRAM_BOTTOM + 34, "middle");
   }
   for (long k = 0; k <= ny; k++) {
     const double shown = y->low + (double)k * y->step;
     if (ny <= 8 || k % 2 == 0)
-      put_number(w, y, shown, DIAGRAM_LEFT - 14, axis_along_y(y, shown / y->factor) + 9, "end");
+      put_number(w, y, k, DIAGRAM_LEFT - NUMBER_GAP, axis_along_y(y, shown / y->factor) + 9, "end");
   }
 }
 
@@ -83,9 +133,9 @@ static void put_names(const drawing *w) {
           DIAGRAM_HEIGHT - 22);
   put_name(w, &w->x);
   fprintf(w->out,
-          "</text>\n<text class=\"name\" x=\"30\" y=\"%.0f\" text-anchor=\"middle\" "
-          "transform=\"rotate(-90 30 %.0f)\">",
-          middle, middle);
+          "</text>\n<text class=\"name\" x=\"%.0f\" y=\"%.0f\" text-anchor=\"middle\" "
+          "transform=\"rotate(-90 %.0f %.0f)\">",
+          LETTER - w->more, middle, LETTER - w->more, middle);
   put_name(w, &w->y);
   fputs("</text>\n", w->out);
 }
@@ -189,9 +239,9 @@ static void put_series(const drawing *w) {
 static void put_head(const drawing *w) {
   const axis *x = &w->x, *y = &w->y;
   fprintf(w->out,
-          "<svg class=\"diagram%s\" viewBox=\"0 %d %d %d\" role=\"img\" "
+          "<svg class=\"diagram%s\" viewBox=\"%.0f %d %.0f %d\" role=\"img\" "
           "data-x=\"%.17g %.17g %.17g\" data-y=\"%.17g %.17g %.17g\" data-x-unit=\"",
-          w->d->large ? " large" : "", DIAGRAM_TOP - 20, DIAGRAM_WIDTH,
+          w->d->large ? " large" : "", -w->more, DIAGRAM_TOP - 20, DIAGRAM_WIDTH + w->more,
           DIAGRAM_HEIGHT - DIAGRAM_TOP + 20, x->low, x->high, x->factor, y->low, y->high,
           y->factor);
   html_text(w->out, x->unit_text);

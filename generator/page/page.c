@@ -16,7 +16,7 @@
 #include "generator/page/shell.h"
 
 static const char *title_of(const page_result *p) {
-  return *p->title ? p->title : p->path;
+  return *p->title ? p->title : p->shown;
 }
 
 static void put_header(FILE *out, const page_result *results, int count) {
@@ -135,6 +135,7 @@ int page_of_results(FILE *out, const char *command, const char *const *paths, in
   bool good = true;
   for (int k = 0; k < count; k++)
     good = page_result_open(&results[k], command, paths[k], k ? "b" : "a") && good;
+  page_results_name(results, count);
   if (good) put_page(out, results, count);
   for (int k = 0; k < count; k++)
     good = page_result_close(&results[k], good);

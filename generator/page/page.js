@@ -131,7 +131,7 @@
     const tell = (c, k) => {
       const parts = [(overName ? c.run.names.get(overName) : data[c.run.key].timeName) + " " + withUnit(shown(c.over[k] * x.factor), svg.dataset.xUnit)];
       for (const of of stacked ? curves : [c])
-        parts.push(of.run.names.get(of.name).replace(/^energy\//, "") + " " + withUnit(shown(of.values[k] * y.factor), svg.dataset.yUnit));
+        parts.push(of.run.names.get(of.name) + " " + withUnit(shown(of.values[k] * y.factor), svg.dataset.yUnit));
       reading.textContent = (several ? data[c.run.key].path + ":  " : "") + parts.join(",  ");
     };
     const placeOf = (event) => {
@@ -419,7 +419,7 @@
     }
 
     function tell(field) {
-      when.textContent = `frame ${frames.numbers[frame]}, ${frames.moments[frame]}`;
+      when.textContent = `frame ${frames.numbers[frame]} of ${frames.last}, ${frames.moments[frame]}`;
       key.replaceChildren();
       if (!field) return;
       if (field.damage) {
@@ -478,5 +478,9 @@
     if (host) run.movie = movie(host, run);
   }
   for (const run of runs.values())
-    if (run.movie) run.movie.show(Math.round(0.6 * (run.movie.total - 1)), true);
+    if (run.movie) run.movie.show(run.movie.total - 1, true);
+  const first = document.querySelector(".main-curve svg.diagram[data-series]");
+  if (first && [...runs.values()].some((run) => run.movie))
+    element("p", first.closest("figure"), { className: "quiet",
+      textContent: "The ring: the frame that is seen below. A click on a curve goes to the frame there." });
 })();

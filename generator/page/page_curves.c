@@ -11,8 +11,8 @@
 
 static void put_caption(FILE *out, const char *y, const char *x) {
   fputs("<figcaption>", out);
-  html_text(out, y);
-  if (x) html_print(out, " over %s", x);
+  html_text(out, page_series_words(y));
+  if (x) html_print(out, " over %s", page_series_words(x));
   fputs("</figcaption>\n", out);
 }
 
@@ -36,12 +36,13 @@ static void put_curve(FILE *out, const page_result *results, int count, const ch
   }
   if (!first) return;
   char title[512];
-  snprintf(title, sizeof title, "%.200s over %.200s", y, x ? x : page_time_name(first));
+  snprintf(title, sizeof title, "%.200s over %.200s", page_series_words(y),
+           x ? page_series_words(x) : page_time_name(first));
   const diagram d = {.title = title,
-                     .x_name = x ? x : page_time_name(first),
+                     .x_name = x ? page_series_words(x) : page_time_name(first),
                      .x_unit =
                          x ? first->series[page_series_find(first, x)].unit : page_time_unit(first),
-                     .y_name = y,
+                     .y_name = page_series_words(y),
                      .y_unit = first->series[page_series_find(first, y)].unit,
                      .curves = curves,
                      .count = shown,
@@ -58,7 +59,7 @@ static void put_results_legend(FILE *out, const page_result *results, int count)
   fputs("<ul class=\"legend\">", out);
   for (int k = 0; k < count; k++) {
     fprintf(out, "<li><span class=\"ink%d\"></span>", k);
-    html_text(out, results[k].path);
+    html_text(out, results[k].shown);
     fputs("</li>", out);
   }
   fputs("</ul>\n", out);

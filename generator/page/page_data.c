@@ -67,7 +67,7 @@ void page_put_histories(json *w, const page_result *p) {
     packing_whole(&numbers, k - last);
     last = k;
   }
-  json_put_text(w, "path", p->path);
+  json_put_text(w, "path", p->shown);
   json_put_integer(w, "sampled", p->samples);
   page_put_packed(w, "samples", &numbers);
   json_put_text(w, "timeName", page_time_name(p));
@@ -76,6 +76,7 @@ void page_put_histories(json *w, const page_result *p) {
   for (int n = 0; n < p->series_count; n++) {
     json_object(w);
     json_put_text(w, "name", p->series[n].name);
+    json_put_text(w, "shown", page_series_words(p->series[n].name));
     json_put_text(w, "unit", p->series[n].unit);
     put_series(w, "values", p->series[n].values, kept, p->samples);
     json_object_end(w);

@@ -87,6 +87,7 @@ void page_put_frames(json *w, const page_result *p, const movie *m) {
     return;
   }
   json_put_object(w, "frames");
+  json_put_integer(w, "last", p->frames - 1);
   json_put_integer(w, "particles", m->particles);
   json_put_integer(w, "bonds", m->bonds);
   json_put_bool(w, "surface", m->surface);

@@ -52,17 +52,42 @@ typedef struct used_law {
   diagnostics said;
 } used_law;
 
+/* The material as one that is alone, and the same everywhere. A formula keeps its value in the middle; a file
+   is not asked, it may be gone: the default stands for it. */
+static deck_material without_files(arena *a, const deck_material *m) {
+  deck_material known = *m;
+  known.varying_count = 0;
+  known.regional_count = 0;
+  known.assignment_count = 0;
+  known.assignments = arena_alloc(a, ((size_t)m->assignment_count + 1) * sizeof *known.assignments);
+  for (int k = 0; k < m->assignment_count; k++) {
+    const deck_placed *by = m->assignments[k].placed;
+    if (!by || !by->path) known.assignments[known.assignment_count++] = m->assignments[k];
+  }
+  return known;
+}
+
+static deck_material without_places(arena *a, const deck_material *m) {
+  deck_material alone = *m;
+  alone.beside = false;
+  alone.assignments = arena_alloc(a, ((size_t)m->assignment_count + 1) * sizeof *alone.assignments);
+  for (int k = 0; k < m->assignment_count; k++) {
+    alone.assignments[k] = m->assignments[k];
+    alone.assignments[k].placed = NULL;
+  }
+  return alone;
+}
+
 /* Read from the result alone, with the deck's options and values. False: what is missing (a file
    that the law includes, say) is not told, the text stands in the page. */
 static bool open_law(used_law *u, char *text) {
   char error[4096];
   const char *note;
-  deck_material alone = *u->material;
-  alone.varying_count = 0;
-  alone.regional_count = 0;
+  const deck_material known = without_files(u->p->memory, u->material),
+                      alone = without_places(u->p->memory, &known);
   diag_begin(&u->said, (source_set *)&u->p->sources);
   if (!model_open_text(&u->m, u->material->model, text, strlen(text), NULL, 0) ||
-      !material_law_take_options(&alone, &u->m, &u->said) ||
+      !material_law_take_options(&known, &u->m, &u->said) ||
       !material_law_plan(&alone, NULL, &u->m, &u->said))
     return false;
   u->kernel = model_kernel(&u->m, true, &note, error, sizeof error);
@@ -92,7 +117,8 @@ static void put_equations(FILE *out, const used_law *u) {
 
 static const deck_assignment *given(const used_law *u, const char *name) {
   for (int k = 0; k < u->material->assignment_count; k++)
-    if (strcmp(u->material->assignments[k].name, name) == 0) return &u->material->assignments[k];
+    if (strcasecmp(u->material->assignments[k].name, name) == 0)
+      return &u->material->assignments[k];
   return NULL;
 }
 
@@ -120,14 +146,24 @@ static void put_value(FILE *out, double value, const char *unit_text) {
   html_unit(out, unit_text);
 }
 
-static bool varies(const used_law *u, const char *name) {
+/* Which value of a parameter that differs from place to place is told; NULL where it does not. */
+static const char *told_of(const used_law *u, const char *name, double value) {
   const deck_assignment *a = given(u, name);
+  if (a && a->placed)
+    return !a->placed->path && value == a->value ? "in the middle of the bodies" : "by default";
   for (int k = 0; k < u->material->varying_count; k++)
-    if (strcmp(u->material->varying[k], name) == 0) return true;
+    if (strcasecmp(u->material->varying[k], name) == 0) return "of the material";
   for (int k = 0; k < u->material->regional_count; k++)
     for (int n = 0; n < u->material->regional[k]->assignment_count; n++)
-      if (strcmp(u->material->regional[k]->assignments[n].name, name) == 0) return true;
-  return a && a->placed;
+      if (strcasecmp(u->material->regional[k]->assignments[n].name, name) == 0)
+        return "outside of its regions";
+  return NULL;
+}
+
+static bool varies(const used_law *u) {
+  for (int k = 0; k < u->kernel->parameter_count; k++)
+    if (told_of(u, u->kernel->parameters[k].name, u->parameters[k])) return true;
+  return false;
 }
 
 static void put_parameter(FILE *out, const used_law *u, int k) {
@@ -139,7 +175,8 @@ static void put_parameter(FILE *out, const used_law *u, int k) {
   html_text(out, q->name);
   fprintf(out, "</code></td><td class=\"number%s\">", set ? " changed" : "");
   put_value(out, u->parameters[k], q->unit);
-  if (varies(u, q->name)) fputs("; differs from place to place", out);
+  const char *told = told_of(u, q->name, u->parameters[k]);
+  if (told) fprintf(out, " %s; differs from place to place", told);
   fputs("</td><td class=\"number\">", out);
   if (q->has_default) put_value(out, q->initial, q->unit);
   fputs("</td><td>", out);
@@ -174,7 +211,7 @@ static void put_diagram(FILE *out, const drive_table *t, const char *title) {
   if (!diagram_svg(out, &d)) fputs("<p class=\"none\">nothing</p>", out);
 }
 
-static void put_curve_caption(FILE *out, const law_curve *c) {
+static void put_curve_caption(FILE *out, const law_curve *c, bool varied) {
   static const char *const things[] = {[DRIVE_OF_BONDS] = "One bond, spacing",
                                        [DRIVE_OF_FAMILIES] = "One particle, spacing",
                                        [DRIVE_OF_POINTS] = "One point, free across, cell size"};
@@ -182,13 +219,14 @@ static void put_curve_caption(FILE *out, const law_curve *c) {
   html_print(out, "%s %s: drawn out by a third of the way, let go, drawn out", things[c->of],
              html_quantity(c->size, "m", text));
   fputs(c->was_pressed ? "; beside it pressed in the same way" : "", out);
+  if (varied) fputs("; with the values above, the same everywhere", out);
 }
 
 static void put_curve(FILE *out, const used_law *u) {
   law_curve c;
   if (law_curve_read(&c, &u->m, u->kernel, u->parameters, u->lattice)) {
     fputs("<h3>What it answers by itself</h3>\n<figure class=\"curve alone\"><figcaption>", out);
-    put_curve_caption(out, &c);
+    put_curve_caption(out, &c, varies(u));
     fputs("</figcaption>\n", out);
     put_diagram(out, &c.drawn, "the answer when drawn");
     if (c.was_pressed) put_diagram(out, &c.pressed, "the answer when pressed");

@@ -21,6 +21,50 @@ static const char *keep(arena *a, char *text) {
   return kept;
 }
 
+static const char *file_name(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash && slash[1] ? slash + 1 : path;
+}
+
+const char *page_without_folders(const page_result *p, const char *text) {
+  static const char before[] = " \n\t('\"`=,", behind[] = " \n\t)'\"`,;";
+  char *out = arena_alloc(p->memory, strlen(text) + 1);
+  size_t to = 0;
+  for (const char *at = text; *at; at++) {
+    const size_t length = strcspn(at, behind);
+    size_t last = 0;
+    if (*at == '/' && (at == text || strchr(before, at[-1])))
+      for (size_t k = 0; k + 1 < length; k++)
+        if (at[k] == '/') last = k + 1;
+    at += last;
+    out[to++] = *at;
+  }
+  out[to] = 0;
+  return out;
+}
+
+/* One folder more than `name` has of `path`; the same where there is none. */
+static const char *with_folder(const char *path, const char *name) {
+  if (name == path || name - 1 == path) return name;
+  const char *at = name - 1;
+  while (at > path && at[-1] != '/')
+    at--;
+  return at;
+}
+
+void page_results_name(page_result *results, int count) {
+  for (int k = 0; k < count; k++)
+    results[k].shown = file_name(results[k].path);
+  while (count == 2 && strcmp(results[0].shown, results[1].shown) == 0) {
+    const char *longer[2];
+    for (int k = 0; k < 2; k++)
+      longer[k] = with_folder(results[k].path, results[k].shown);
+    if (longer[0] == results[0].shown || longer[1] == results[1].shown) return;
+    for (int k = 0; k < 2; k++)
+      results[k].shown = longer[k];
+  }
+}
+
 static void read_texts(page_result *p) {
   result_file *f = p->file;
   arena *a = p->memory;
@@ -36,6 +80,9 @@ static void read_texts(page_result *p) {
   p->said_begin = keep(a, result_read_text(f, "/said/begin"));
   p->said_end = keep(a, result_read_text(f, "/said/end"));
   p->said_warnings = keep(a, result_read_text(f, "/said/warnings"));
+  p->said_begin = page_without_folders(p, p->said_begin);
+  p->said_end = page_without_folders(p, p->said_end);
+  p->said_warnings = page_without_folders(p, p->said_warnings);
   p->status = result_read_number(f, "status");
   p->steps = result_read_number(f, "steps");
   p->step = result_read_number(f, "dt");
@@ -126,6 +173,21 @@ int page_series_find(const page_result *p, const char *name) {
   return -1;
 }
 
+const char *page_series_words(const char *name) {
+  static const char *const words[][2] = {
+      {"energy/external", "external work"},
+      {"energy/kinetic", "kinetic energy"},
+      {"energy/stored", "stored energy"},
+      {"energy/dissipated_damage", "dissipated by damage and states"},
+      {"energy/dissipated_damping", "dissipated by damping"},
+      {"energy/imbalance", "energy imbalance"},
+      {"relaxation_steps", "steps of relaxation"},
+      {"relaxation_unbalance", "unbalanced force"}};
+  for (size_t k = 0; k < sizeof words / sizeof *words; k++)
+    if (strcmp(name, words[k][0]) == 0) return words[k][1];
+  return name;
+}
+
 /* The first of the deck's monitors of that kind; -1. */
 static int monitor_of(const page_result *p, monitor_kind kind) {
   for (int k = 0; p->deck && k < p->deck->monitor_count; k++) {
@@ -207,7 +269,12 @@ static void read_frame_times(page_result *p) {
 }
 
 bool page_result_open(page_result *p, const char *command, const char *path, const char *key) {
-  *p = (page_result){.memory = arena_new(), .path = path, .key = key, .main = -1, .over = -1};
+  *p = (page_result){.memory = arena_new(),
+                     .path = path,
+                     .shown = file_name(path),
+                     .key = key,
+                     .main = -1,
+                     .over = -1};
   p->file = table_open(command, path);
   if (!p->file) return false;
   read_texts(p);

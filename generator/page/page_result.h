@@ -15,6 +15,7 @@ typedef struct page_series {
 typedef struct page_result {
   arena *memory;
   const char *path, *key; /* key: "a", "b" of a pair */
+  const char *shown;      /* the path as the page has it: the file's name */
   result_file *file;
   const char *title, *deck_name, *deck_text, *set; /* set: --set, one a line; all "" where none */
   const char *ended, *started, *version, *compiler, *flags;
@@ -39,6 +40,14 @@ typedef struct page_result {
 bool page_result_open(page_result *p, const char *command, const char *path, const char *key);
 /* What is `good` is so no longer, after a message, where something could not be read. */
 bool page_result_close(page_result *p, bool good);
+
+/* Two of one name are told apart by as many folders as that takes. */
+void page_results_name(page_result *results, int count);
+/* The text with the names of files alone where it has paths from the root: the folders of a machine
+   are nobody's business who gets the page. */
+const char *page_without_folders(const page_result *p, const char *text);
+/* How a series is called before people: "external work" of "energy/external". */
+const char *page_series_words(const char *name);
 
 /* -1: none of that name. */
 int page_series_find(const page_result *p, const char *name);

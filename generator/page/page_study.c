@@ -226,16 +226,17 @@ static char *data_of(const study_reading *r) {
 }
 
 int page_of_study(FILE *out, const char *path) {
+  const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
   arena *memory = arena_new();
   study_reading r;
   const bool good = study_read(memory, path, &r);
   if (good) {
     char *data = data_of(&r);
-    shell_begin(out, path);
+    shell_begin(out, name);
     fputs("<main>\n<header><h1>A study of ", out);
     fprintf(out, "%d case%s", r.table.rows, r.table.rows == 1 ? "" : "s");
     fputs("</h1></header>\n", out);
-    put_verdict(out, &r, path);
+    put_verdict(out, &r, name);
     put_curves(out, &r);
     put_tables(out, &r);
     fputs("</main>\n", out);

@@ -54,8 +54,8 @@ static void put_group(FILE *out, const page_result *p, const char *group, const 
 
 void page_inputs(FILE *out, const page_result *p) {
   fputs("<section><h2>What was asked</h2>\n", out);
-  if (*p->set) put_folded(out, "Set on the command line", "", p->set);
-  if (*p->deck_text) put_folded(out, "Deck", p->deck_name, p->deck_text);
+  if (*p->set) put_folded(out, "Set on the command line", "", page_without_folders(p, p->set));
+  if (*p->deck_text) put_folded(out, "Deck", page_without_folders(p, p->deck_name), p->deck_text);
   put_group(out, p, "/input/models", "Law");
   put_group(out, p, "/input/files", "Table");
   fputs("</section>\n", out);
@@ -90,10 +90,10 @@ static void put_word(FILE *out, const char *word, size_t length) {
 }
 
 static void put_command(FILE *out, const page_result *p) {
-  const char *name = *p->deck_name ? p->deck_name : "deck.nml";
+  const char *name = *p->deck_name ? page_without_folders(p, p->deck_name) : "deck.nml";
   fputs("<pre class=\"command\" tabindex=\"0\">perilat run ", out);
   put_word(out, name, strlen(name));
-  for (const char *line = p->set; *line;) {
+  for (const char *line = page_without_folders(p, p->set); *line;) {
     const size_t length = strcspn(line, "\n");
     if (length) fputs(" --set ", out);
     if (length) put_word(out, line, length);
@@ -108,7 +108,7 @@ static void put_command(FILE *out, const page_result *p) {
 void page_provenance(FILE *out, const page_result *p) {
   char text[64];
   fputs("<section class=\"provenance\"><h2>Where this comes from</h2>\n<table>\n", out);
-  put_row(out, "result", p->path);
+  put_row(out, "result", p->shown);
   put_row(out, "perilat", p->version);
   put_row(out, "begun", p->started);
   put_row(out, "compiler of the law", p->compiler);

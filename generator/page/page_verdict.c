@@ -8,8 +8,8 @@
 #include "generator/page/html.h"
 #include "generator/report/report_trust.h"
 
-typedef enum judgement { GOOD, DOUBTFUL, WRONG } judgement;
-static const char *const judgement_names[] = {"good", "doubtful", "wrong"};
+typedef enum judgement { GOOD, UNCHECKED, DOUBTFUL, WRONG } judgement;
+static const char *const judgement_names[] = {"good", "unchecked", "doubtful", "wrong"};
 
 /* The last imbalance in parts of the largest energy; NaN: not known. *why: it says nothing, or
    NULL. */
@@ -33,7 +33,9 @@ static bool is_unbalanced(const page_result *p) {
 static judgement judge(const page_result *p) {
   if (p->status != 0 && !isnan(p->status)) return WRONG;
   if (is_unbalanced(p)) return WRONG;
-  return *p->said_warnings ? DOUBTFUL : GOOD;
+  const char *why;
+  if (*p->said_warnings) return DOUBTFUL;
+  return isnan(imbalance_of(p, &why)) || why ? UNCHECKED : GOOD;
 }
 
 /* --- cards ------------------------------------------------------------------------------------ */
@@ -110,8 +112,9 @@ static void put_size(FILE *out, const page_result *p) {
 static const char *sentence(const page_result *p, judgement how) {
   if (p->status != 0 && !isnan(p->status)) return "This run did not come to its end.";
   if (how == WRONG) return "The energies of this run do not add up.";
-  return how == DOUBTFUL ? "Done, with <a href=\"#warnings\">warnings</a>."
-                         : "Done; nothing was found wrong.";
+  if (how == DOUBTFUL) return "Done, with <a href=\"#warnings\">warnings</a>.";
+  return how == UNCHECKED ? "Done; whether the energies add up was not checked."
+                          : "Done; nothing was found wrong.";
 }
 
 void page_verdict(FILE *out, const page_result *p) {
@@ -120,7 +123,7 @@ void page_verdict(FILE *out, const page_result *p) {
           "<section class=\"verdict %s\" aria-label=\"verdict\">\n<p class=\"sentence\">%s</p>\n",
           judgement_names[how], sentence(p, how));
   fputs("<p class=\"quiet\">", out);
-  html_text(out, p->path);
+  html_text(out, p->shown);
   fputs("</p>\n<dl>\n", out);
   put_peak(out, p);
   put_ending(out, p);

@@ -46,6 +46,8 @@ for starter in "$course"/*/starter.plm; do
   slips=0
   [ "$folder" = 02_patch_test ] && slips=4
   [ "$others" = "$slips" ] || fault "$folder: its starter has $others errors beside what is to be written: $(cat "$work/said")"
+  # what describes the law is true of a finished one, too
+  if grep '^!>' "$starter" | grep -q 'written'; then fault "$folder: its description says what is to be written"; fi
   grep -q '^model answer$' "$starter" || fault "$folder: the law of its starter is not called answer"
 done
 

@@ -76,10 +76,13 @@ static void laws_of_families_are_put_on_lattices(void **state) {
 static void what_a_law_implies_says_what_it_is_measured_on(void **state) {
   workplace *w = *state;
   expect(w, "info mplm_bilinear --spacing '6.35 mm' --thickness '152.4 mm'", 0,
-         "81.5872 N/m on its share of a crack, sqrt(3)/2*s*t");
+         "81.5872 N/m of a crack across it that cuts no other bonds, one in sqrt(3)/2*s*t");
   assert_non_null(strstr(w->said, "sides held"));
   expect(w, "info cohesive --set G_f='100 N/m'", 0,
          "115.47 N/m of a straight crack across the rows (opens along x), 100 N/m along them");
+  /* both by two bonds of 0.05 J: in sqrt(3)/2 s t and in s t, s = 10 mm, t = 100 mm */
+  assert_non_null(strstr(w->said, "costs 0.05 J: 57.735 N/m of a crack across it"));
+  assert_non_null(strstr(w->said, "two in sqrt(3)/2*s*t across the rows, two in s*t along them"));
   expect(w, "info cohesive --json", 0, "\"crack_energy\": [");
 }
 

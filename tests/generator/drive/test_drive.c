@@ -495,6 +495,15 @@ static void a_particle_is_driven_by_strains(void **state) {
         "--compiled", 0, "1 of 1");
   drive(PARTICLE TO_MICRO, "", 1, "a law of families is not driven by this quantity");
   drive(ELASTIC STRETCHED, "", 1, "a law of bonds is not driven by this quantity");
+  /* what is missed is told by what is driven, and more steps are named where they may help */
+  const char sheared[] = PARTICLE
+      "&path quantity = 'strain_xy' value = 1e-6 rise = '1 s' /\n"
+      "&expect quantity = 'peak stress_xy' formula = '%s*E/(1 + nu)*1 [1]' tolerance = 1e-3 /\n";
+  char text[600];
+  snprintf(text, sizeof text, sheared, "3e-6");
+  drive(text, "", 2, "(at 1 s, strain_xy 1e-06)\n0 of 1");
+  snprintf(text, sizeof text, sheared, "1.1e-6");
+  drive(text, "", 2, "(at 1 s, strain_xy 1e-06)\n      the rows beside it are at");
   drive(PARTICLE "&path quantity = 'strain_zz' value = 1e-6 rise = '1 s' /\n", "", 1,
         "a law of families in the plane knows no such strain");
   drive("&material model = 'splm_elastic' /\n&particle lattice = 'kagome' /\n" STRETCHED, "", 1,
@@ -509,7 +518,7 @@ static void info_says_what_a_law_implies(void **state) {
   const char *const lines[] = {
       "E = 30 GPa along x, 30 GPa along y; nu = 0.2, 0.2; G = 12.5 GPa",
       "largest force 2472.36 N at a stretch of 0.000118",
-      "81.5872 N/m on its share of a crack",              /* 36.91 EA S_t^2 s/((sqrt(3)/2) s t) */
+      "81.5872 N/m of a crack across it",                 /* 36.91 EA S_t^2 s/((sqrt(3)/2) s t) */
       "longitudinal 3667.76 m/s, transverse 2319.69 m/s", /* sqrt(E/(rho (1 - nu^2))), sqrt(G/rho)
                                                            */
       "rotation mode rules, 1.6337e+06 rad/s",            /* sqrt(20 (1 - 3 nu)/(1 - nu^2)) c/s */
@@ -517,9 +526,9 @@ static void info_says_what_a_law_implies(void **state) {
   for (size_t k = 0; k < sizeof lines / sizeof *lines; k++)
     expect("info mplm_bilinear --spacing '6.35 mm' --thickness '152.4 mm'", 0, lines[k]);
   expect("info mplm_bilinear --spacing=12.7e-3 --set S_t=8.0e-5", 0,
-         "75.0011 N/m on its share of a crack");
+         "75.0011 N/m of a crack across it");
   expect("info mplm_bilinear --spacing='3.175 mm' --set S_t=1.5e-4", 0,
-         "65.919 N/m on its share of a crack");
+         "65.919 N/m of a crack across it");
   expect("info elastic_central --json", 0, "\"separates\": false");
   expect("info cohesive --set softening=exponential --json", 0, "\"chosen\": \"exponential\"");
   expect("info elastic_central", 0, "none: a bond never separates");

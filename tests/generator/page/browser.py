@@ -44,6 +44,11 @@ def try_page(browser, folder, result):
     frames = browser.value("document.querySelector('input[type=range]').max")
     check(int(frames) >= 3, "there are frames to choose from")
     dot = "document.querySelector('svg.diagram .dot:not(.read)').getAttribute('cx')"
+    check(browser.value("document.querySelector('.movie').dataset.frame") == frames and
+          browser.value("document.querySelector('.main-curve').textContent.includes('The ring')"),
+          "the last frame is seen first, and the ring on the curve is explained")
+    check(browser.value("document.querySelector('.movie .when').textContent").startswith(
+        "frame %s of %s, t = " % (frames, frames)), "which frame of how many is told")
     seen = []
     for frame in (0, int(frames)):
         move_slider(browser, frame)

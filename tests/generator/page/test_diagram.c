@@ -75,6 +75,46 @@ static void gaps_are_gaps(void **state) {
   free(text);
 }
 
+/* Two breaks: nothing stands between 0, 1 and 2; other values do where they are no counts. */
+static void counts_have_whole_ticks(void **state) {
+  (void)state;
+  const double x[] = {0, 1, 2}, y[] = {0, 1, 2}, half[] = {0, 1.5, 2};
+  const diagram_curve curve = {.x = x, .y = y, .count = 3},
+                      other = {.x = half, .y = half, .count = 3};
+  const diagram d = of(&curve, 1), e = of(&other, 1);
+  char *text = drawn(&d, true);
+  assert_null(strstr(text, ">0.4</text>"));
+  assert_int_equal(occurrences(text, ">1</text>"), 2);
+  free(text);
+  text = drawn(&e, true);
+  assert_int_equal(occurrences(text, ">0.4</text>"), 2);
+  free(text);
+}
+
+/* The axis' name is to the left of the longest number, which has that many characters; letters are
+   30 high, digits 17 wide. */
+static void name_leaves_room(const double *y, int characters) {
+  const double x[] = {0, 1};
+  const diagram_curve curve = {.x = x, .y = y, .count = 2};
+  const diagram d = of(&curve, 1);
+  char *text = drawn(&d, true), seen[20000];
+  snprintf(seen, sizeof seen, "%s", text);
+  free(text);
+  const char *name = strstr(seen, "rotate(-90 "), *view = strstr(seen, "viewBox=");
+  double at = NAN, left = NAN;
+  if (name) assert_int_equal(sscanf(name, "rotate(-90 %lf", &at), 1);
+  if (view) assert_int_equal(sscanf(view, "viewBox=\"%lf", &left), 1);
+  assert_true(at - 30 >= left);
+  assert_true(at + 10 <= 120 - 14 - 17 * characters);
+}
+
+static void names_leave_room_for_numbers(void **state) {
+  (void)state;
+  const double small[] = {0, 1}, large[] = {-12000, -20000};
+  name_leaves_room(small, 3); /* 0.2 */
+  name_leaves_room(large, 6); /* -20000 */
+}
+
 static void areas_lie_on_each_other(void **state) {
   (void)state;
   const double x[] = {0, 1}, first[] = {0, 0.5}, second[] = {0, 1};
@@ -118,6 +158,7 @@ static void names_are_text(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(needles_are_seen),        cmocka_unit_test(gaps_are_gaps),
+      cmocka_unit_test(counts_have_whole_ticks), cmocka_unit_test(names_leave_room_for_numbers),
       cmocka_unit_test(areas_lie_on_each_other), cmocka_unit_test(nothing_is_not_drawn),
       cmocka_unit_test(names_are_text),
   };

@@ -287,6 +287,53 @@ static void wrong_runs_stand_out(void **state) {
   free(page);
 }
 
+/* Whose energies could not be checked is not called right. */
+static void unchecked_is_not_good(void **state) {
+  workplace *w = *state;
+  static const char *const rows[][2] = {
+      {"", "verdict good"}, {"a reason", "verdict unchecked"}, {NULL, "verdict unchecked"}};
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+    char path[400], error[500] = "";
+    snprintf(path, sizeof path, "%s", in_workplace(w, "small.h5"));
+    const result_header h = small_header(path);
+    result *r = small_begin(&h, error, sizeof error);
+    assert_non_null(r);
+    const double time[2] = {0, 1}, energy[2] = {0, 4}, none[2] = {0, 0};
+    const result_series series[] = {{"energy/external", "J", NULL, energy, false, NULL},
+                                    {"energy/kinetic", "J", NULL, energy, false, NULL},
+                                    {"energy/imbalance", "J", NULL, none, true, rows[k][0]}};
+    assert_true(small_finish(r, time, 2, series, rows[k][0] ? 3 : 2, error, sizeof error));
+    result_close(r);
+    expect(w, "report small.h5 -o small.html", 0, "");
+    char *page = page_of(w, "small.html");
+    assert_non_null(strstr(page, rows[k][1]));
+    assert_int_equal(strstr(page, "nothing was found wrong") != NULL, k == 0);
+    assert_non_null(strstr(page, "<figcaption>external work</figcaption>"));
+    free(page);
+  }
+}
+
+/* Whose machine it was is nobody's business: of paths from the root the file's name stands. Two
+   results of one name are told apart by a folder. */
+static void folders_of_the_machine_are_left_out(void **state) {
+  workplace *w = *state;
+  assert_int_equal(
+      shell(w, "mkdir one two && $P run $PWD/beam.nml --set output.result=$PWD/one/beam.h5 && "
+               "cp one/beam.h5 two/ && $P report $PWD/one/beam.h5 -o one.html && "
+               "$P report $PWD/one/beam.h5 two/beam.h5 -o pair.html"),
+      0);
+  static const char *const names[] = {"one.html", "pair.html"};
+  for (int k = 0; k < 2; k++) {
+    is_well_formed(w, names[k]);
+    char *page = page_of(w, names[k]);
+    assert_null(strstr(page, w->folder));
+    assert_non_null(strstr(page, "perilat run beam.nml --set output.result=beam.h5"));
+    assert_int_equal(strstr(page, ">one/beam.h5<") != NULL, k);
+    assert_int_equal(strstr(page, ">two/beam.h5<") != NULL, k);
+    free(page);
+  }
+}
+
 /* What a run has said stands in its page; one that warned, or failed, does not look good. */
 static void runs_speak(void **state) {
   workplace *w = *state;
@@ -330,6 +377,42 @@ static void runs_speak(void **state) {
     if (k == 1) assert_non_null(strstr(page, "exit status 2"));
     free(page);
   }
+}
+
+/* A parameter that a formula, a file or a random field makes differ: the page tells one value, and
+   what the law answers with it, as of a deck that gives that value. */
+static void laws_that_differ_in_space(void **state) {
+  workplace *w = *state;
+  expect(w, "run beam.nml --set 'material.E=20 GPa' --set output.result=same.h5", 0, "written");
+  expect(w, "report same.h5", 0, "");
+  char *same = page_of(w, "same.html"),
+       *wanted = between(same, "<figcaption>One bond", "</figure>");
+  char *curve = strdup(strstr(wanted, "</figcaption>"));
+  assert_int_equal(shell(w, "$P export same.h5 --frame 0 | sed -n '1s/.*/x [m],y [m],E [GPa]/p; "
+                            "2,$s/^[^,]*,\\([^,]*,[^,]*\\).*/\\1,20/p' > E.csv && head -3 E.csv"),
+                   0);
+  static const char *const rows[][3] = {
+      {"run beam.nml --set 'material.E=20 [GPa] + 1 [GPa/m]*abs(x - 0.01905 [m])'",
+       "20 GPa in the middle of the bodies; differs", "20 GPa"},
+      {"run beam.nml --set material.E=E.csv", "30 GPa by default; differs", NULL},
+      {"run field.nml --set 'material.E=20 GPa'", "20 GPa of the material; differs", "20 GPa"}};
+  assert_int_equal(shell(w, "cat beam.nml > field.nml && echo \"&field parameter = 'E' "
+                            "distribution = 'normal' cv = 0.1 "
+                            "/\" >> field.nml"),
+                   0);
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+    expect(w, rows[k][0], 0, "written");
+    expect(w, "report beam.h5", 0, "written beam.html");
+    is_well_formed(w, "beam.html");
+    char *page = page_of(w, "beam.html");
+    assert_non_null(strstr(page, rows[k][1]));
+    assert_non_null(strstr(page, "with the values above, the same everywhere"));
+    if (rows[k][2]) assert_non_null(strstr(page, curve));
+    free(page);
+  }
+  free(curve);
+  free(wanted);
+  free(same);
 }
 
 /* A mesh, solved for at rest. */
@@ -501,7 +584,10 @@ int main(void) {
       cmocka_unit_test(says_what_a_text_would_command),
       IN_WORKPLACE(leaves_what_is_there),
       IN_WORKPLACE(wrong_runs_stand_out),
+      IN_WORKPLACE(unchecked_is_not_good),
+      IN_WORKPLACE(folders_of_the_machine_are_left_out),
       IN_WORKPLACE(runs_speak),
+      IN_WORKPLACE(laws_that_differ_in_space),
       IN_WORKPLACE(shows_meshes),
       IN_WORKPLACE(without_frames),
       IN_WORKPLACE(shows_studies),
