@@ -333,7 +333,7 @@ typedef void (*pl_point_function)(const struct pl_law *law, const double *unifor
 /* Rectangles of 2 x 2 points side by side along x, all alike (rectangle.h): from displacements of
    their nodes to forces on them in one loop. `points` are theirs, [count/PL_LANES][4][PL_LANES];
    its strains and stress are neither read nor written, nor are new fields that always have their
-   initial value. */
+   initial value, which the host has put there. */
 typedef struct pl_rectangles {
   uint32_t size;
   long count;                        /* of rectangles, a multiple of PL_LANES */

@@ -76,7 +76,7 @@ void check_initial_value(checker *ck, stmt *s) {
   if (s->tensor && !v.broken) v.shape = SHAPE_TENSOR;
   v.deviator = s->deviator;
   if (v.zero || v.unknown) {
-    e->infer = !e->known;
+    e->infer = true; /* in every pass: what one has found stays until its rule says it again */
     return;
   }
   v.place = e->symbol.place;

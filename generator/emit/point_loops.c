@@ -293,6 +293,7 @@ enum { CORNERS = 4, AXES = 2 };
 static void write_rectangles(emitter *e, const segment *of, const char *name) {
   const segment a = of_rectangle(e, of);
   expression_open_segment(e, &of_rectangles, &a);
+  e->form = NULL; /* no searches */
   bool rates = false;
   for (ir_node n = 0; n < e->node_count; n++)
     rates = rates || (e->needed[n] && is_strain(e, n) && is_rate(ir_input_index(e->graph, n)));

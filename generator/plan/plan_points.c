@@ -509,7 +509,8 @@ bool plan_points(kernel_plan *plan, diagnostics *d) {
 bool plan_has_rectangles(const kernel_plan *p) {
   static const double MOST = 128; /* operations of a point: the loop keeps four in registers */
   if (p->form != FORM_POINTS || p->dimensions != 2 || p->flops_per_bond > MOST) return false;
-  unsigned char *needed = segment_needed(p->graph, plan_segment(p, PROGRAM_STEP));
+  unsigned char *needed =
+      segment_needed(p->graph, plan_segment(p, PROGRAM_LEDGER)); /* the step's and more */
   bool searches = false;
   for (ir_node n = 0; n < ir_count(p->graph); n++)
     searches = searches || (needed[n] && ir_operation(p->graph, n) == IR_SEARCH);

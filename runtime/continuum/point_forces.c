@@ -496,8 +496,8 @@ static void step_rectangles(const point_forces *p, const strip *s, point_scratch
   gather(p, s, own);
 }
 
-/* Whether the law has that loop for a strip: of whole rectangles whose points are not asked whether
-   they have failed. */
+/* Whether the law has that loop for a strip: of full groups, since lanes that fill up would strain,
+   whose points are not asked whether they have failed. */
 static bool steps_rectangles(const point_forces *p, const strip *s) {
   return s->rectangles && is_full(&p->strips.groups[s->first]) && p->failed < 0 &&
          PL_HAS(p->law, rectangle_ledger) && p->law->rectangle_ledger;

@@ -105,6 +105,10 @@ static const char everything[] =
     "  output directed   = principal_direction(a, 1) : c\n"
     "  output both       = a : b\n"
     "  output mixed      = c : strain\n"
+    "  w = | 2*(strain - a)  when strain[x,x] > 0\n"
+    "      | strain - 3*b    otherwise\n"
+    "  output turned     = trace(-(strain - a))\n"
+    "  output of_cases   = trace(w)\n"
     "  output squares    = trace(product(a, c))\n"
     "  output slope      = norm(dev(diff((c : c)/2 + 3*(c : strain) + c[x,y]*c[z,z], c)))\n"
     "end model\n";

@@ -71,6 +71,90 @@ static void same_bits(void **state) {
 #endif
 }
 
+/* Rows of whole rectangles, which a kernel takes from nodes to nodes in one loop, a group that is
+   not full, and a hole and another material in the rows. */
+static void write_rectangles(const workplace *w, const char *energy) {
+  static const char law[] =
+      "model fading\n"
+      "  law continuum\n"
+      "  for plane_strain\n"
+      "  parameter E = 2 [GPa]  in (0, inf)\n"
+      "  parameter nu = 0.3  in [0, 0.5)\n"
+      "  parameter rho = 1000 [kg/m^3]  in (0, inf)\n"
+      "  parameter tau = 0.2 [us]  in [0, inf)\n"
+      "  state k on point = 0\n"
+      "  state e on point = deviator 0\n"
+      "  damage D on point\n"
+      "  k = max(previous(k), norm(strain))\n"
+      "  e = previous(e) + 0.001*(dev(strain) - previous(e))\n"
+      "  D = 1 - exp(-k/0.05)\n"
+      "  stress sigma = (1 - D)*hooke(strain - e, E, nu) + hooke(tau*strain_rate, E, nu)\n"
+      "end model\n";
+  static const char deck[] =
+      "&simulation end_time = '20 us' /\n"
+      "&mesh name = 'm' size = '100 mm', '5 mm' nodes = 101, 6 thickness = '10 mm'\n"
+      "      method = 'finite_elements' setting = 'plane_strain' /\n"
+      "&notch mesh = 'm' shape = 'disc' centre = '60.3 mm', '2.4 mm' radius = '1.4 mm' /\n"
+      "&region name = 'part' shape = 'rectangle' corner = '8.01 mm', '-1 mm'\n"
+      "        size = '7.98 mm', '7 mm' /\n"
+      "&region name = 'left' shape = 'segment' from = 0, 0 to = 0, '5 mm' /\n"
+      "&region name = 'right' shape = 'segment' from = '100 mm', 0 to = '100 mm', '5 mm' /\n"
+      "&material mesh = 'm' model = './fading.plm' /\n"
+      "&material mesh = 'm' model = './fading.plm' region = 'part' E = '1 GPa' /\n"
+      "&drive region = 'right' component = 'x' velocity = '20 m/s' rise = '5 us' /\n"
+      "&drive region = 'left' component = 'y' velocity = '20 m/s' rise = '5 us' /\n"
+      "&output result = 'one.h5' frames = 2 sample = '20 us' energy = %s\n"
+      "        fields = 'displacement', 'D', 'k', 'e_xx' /\n";
+  char text[4000];
+  snprintf(text, sizeof text, deck, energy);
+  write_text(w, "fading.plm", law);
+  write_text(w, "m.nml", text);
+}
+
+static void same_end(result_file *const file[2], const char *field) {
+  double *values[2], most = 0;
+  char text[64], error[1000];
+  long count[2];
+  int components;
+  for (int k = 0; k < 2; k++) {
+    values[k] = result_read_frame(file[k], field, 1, &count[k], &components, text, sizeof text,
+                                  error, sizeof error);
+    assert_non_null(values[k]);
+  }
+  assert_int_equal(count[0], count[1]);
+  assert_memory_equal(values[0], values[1], (size_t)count[0] * (size_t)components * sizeof(double));
+  for (long n = 0; n < count[0] * components; n++)
+    if (fabs(values[0][n]) > most) most = fabs(values[0][n]);
+  assert_true(most > 0);
+  free(values[0]);
+  free(values[1]);
+}
+
+static void expect_same_end(workplace *w, const char *options, bool energies) {
+  static const char *const fields[] = {"displacement", "D", "k", "e_xx"};
+  char line[200];
+  snprintf(line, sizeof line, "run m.nml --set output.result=other.h5 %s", options);
+  expect(w, line, 0, "other.h5");
+  result_file *file[] = {open_result_of(w, "one.h5"), open_result_of(w, "other.h5")};
+  for (int f = 0; f < 4; f++)
+    same_end(file, fields[f]);
+  if (energies) same_series(file[0], file[1], "energy/imbalance");
+  result_read_close(file[0]);
+  result_read_close(file[1]);
+}
+
+/* Whoever finds forces of them, and however often they are looked at. */
+static void rectangles_give_the_same_bits(void **state) {
+  workplace *w = *state;
+  for (int energies = 0; energies < 2; energies++) {
+    write_rectangles(w, energies ? ".true." : ".false.");
+    expect(w, "run m.nml --threads 1", 0, "one.h5");
+    expect_same_end(w, "--threads 2", energies);
+    expect_same_end(w, "--interpret", energies);
+    expect_same_end(w, "--set output.sample='1 us'", false);
+  }
+}
+
 /* Nodes between broken points are broken; what all have lost is the ledger's. */
 /* Two laws side by side, of which both have the field, or the first alone. */
 static void write_block(const workplace *w, const char *second, const char *fields) {
@@ -352,6 +436,8 @@ static void a_step_that_is_too_long_is_told(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(same_bits, set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(rectangles_give_the_same_bits, set_up_workplace,
+                                      tear_down_workplace),
       cmocka_unit_test_setup_teardown(nodes_tell, set_up_workplace, tear_down_workplace),
       cmocka_unit_test_setup_teardown(monitors_tell, set_up_workplace, tear_down_workplace),
       cmocka_unit_test_setup_teardown(losses_are_of_second_order, set_up_workplace,
