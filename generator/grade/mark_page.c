@@ -25,6 +25,7 @@ static const char head[] =
     "\n.say{border-left:4px solid #d98200;padding:.3rem .8rem;background:#fff7e8}\n"
     "pre{background:#f4f4f4;padding:.5rem;white-space:pre-wrap;overflow-wrap:anywhere}section{"
     "margin-top:2.5rem}\n"
+    ".rows{font-size:.8rem;font-variant-numeric:tabular-nums}.rows td{padding:.1rem .5rem}\n"
     "svg{width:30rem;max-width:100%;display:block}td pre{max-width:44rem}\n</style>\n<title>";
 
 /* "<TAG>text</TAG>", the text written out. */
@@ -62,6 +63,24 @@ static void put_class(const exercise *e, const marks *all, int count, FILE *out)
 
 /* --- one answer ------------------------------------------------------------------------------- */
 
+/* Rows of a state as a table: two blanks or more end a column. */
+static void put_rows(arena *a, const char *text, FILE *out) {
+  fputs("<table class=\"rows\">", out);
+  while (*text) {
+    const char *end = text + strcspn(text, "\n");
+    fputs("<tr>", out);
+    while (text < end) {
+      const char *next = strstr(text, "  ");
+      if (!next || next > end) next = end;
+      put(out, "td", "", arena_text(a, text, (size_t)(next - text)));
+      text = next + strspn(next, " ");
+    }
+    fputs("</tr>", out);
+    text = end + (*end == '\n');
+  }
+  fputs("</table>", out);
+}
+
 static void put_item(const exercise_item *item, const item_mark *i, const marks *m, FILE *out) {
   fputs("<tr>", out);
   if (i->judged || (m->trouble && item->kind != ITEM_HAND))
@@ -74,7 +93,7 @@ static void put_item(const exercise_item *item, const item_mark *i, const marks 
   if (i->of > 1 && i->passed < i->of)
     fprintf(out, ": %d of %d%s", i->passed, i->of, all_or_nothing(item));
   if (i->words && !m->sentence) put(out, "pre", "", i->words);
-  if (i->state && !m->sentence) put(out, "pre", "", i->state);
+  if (i->state && !m->sentence) put_rows(m->memory, i->state, out);
   if (i->curve) curve_svg(i->curve, out);
   fputs("</td></tr>\n", out);
 }

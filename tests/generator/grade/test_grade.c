@@ -282,6 +282,9 @@ static void public_paths_have_curves(void **state) {
                             "grep -c Cycles"),
                    1);
   assert_string_equal(w->said, "1\n0\n");
+  assert_int_equal(shell(w, "grep -o '<table class=.rows.*</table>' a.html"), 0);
+  says(w, "<tr><td>first differs</td><td>time [s]</td><td>stretch</td><td>N [N]</td>");
+  says(w, "</tr><tr><td>right</td><td>");
   assert_int_equal(
       shell(w, "sed -i \"s/file = 'public.nml'/& show = 'words'/\" memory/exercise.nml"), 0);
   expect(w, "grade memory answer.plm --html a.html", 2, "");
