@@ -62,8 +62,8 @@ enum pl_law_kind {
   PL_CRACK = 4
 };
 enum pl_field_kind { PL_FIELD_STATE = 0, PL_FIELD_DAMAGE = 1, PL_FIELD_OUTPUT = 2 };
-/* Where a field lives: one value a bond; one a particle; one for each neighbour of a particle; one a
-   point of a continuum. */
+/* Where a field lives: one value a bond; one a particle; one for each neighbour of a particle; one
+   a point of a continuum. */
 enum pl_place {
   PL_ON_BOND = 0,
   PL_ON_PARTICLE = 1,
@@ -318,10 +318,11 @@ typedef struct pl_points {
   /* Of point_tangent: [strains][strains][count] Pa, written: the stress by the strain, where shears
      are those of engineers (twice the tensor's). In plane stress it is that of the plane alone. */
   double *const *tangent;
-  /* Of point_observe: [1 + output_count][count], written: stored energy (J/m^3), then each output */
+  /* Of point_observe: [1 + output_count][count], written: stored energy (J/m^3), then each
+     output */
   double *const *observed;
-  /* Of point_ledger: [PL_LOSSES][count] J/m^3, added to. What states take is that halfway of the way
-     strain_rate time_step that led here (ledger.h): laws with fields read rates for it, too */
+  /* Of point_ledger: [PL_LOSSES][count] J/m^3, added to. What states take is that halfway of the
+     way strain_rate time_step that led here (ledger.h): laws with fields read rates for it, too */
   double *const *lost;
   double time, time_step; /* s */
 } pl_points;

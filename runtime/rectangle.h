@@ -1,8 +1,8 @@
 /* A bilinear rectangle with 2 x 2 points by what its edges do: strains at the points are blends of
    differences of displacements along two edges, and forces follow by the transpose. Read by the
-   host and, as text, by every kernel, so that both find the same bits. Points and nodes stand in the
-   order low left, low right, high left, high right. Local arrays and constant indices only: where
-   this is inlined and unrolled, all of it is in registers. */
+   host and, as text, by every kernel, so that both find the same bits. Points and nodes stand in
+   the order low left, low right, high left, high right. Local arrays and constant indices only:
+   where this is inlined and unrolled, all of it is in registers. */
 #ifndef PERILAT_RUNTIME_RECTANGLE_H
 #define PERILAT_RUNTIME_RECTANGLE_H
 

@@ -141,8 +141,8 @@ static void put_escaped(const char *text, size_t length, FILE *out) {
     }
 }
 
-/* {words}, where signs of LaTeX have a backslash; blanks at the ends are kept by browsers alone when
-   they cannot be broken. */
+/* {words}, where signs of LaTeX have a backslash; blanks at the ends are kept by browsers alone
+   when they cannot be broken. */
 static void put_words(reader *r, const char *open, const char *close, FILE *out) {
   static const char blank[] = "\xC2\xA0";
   fputs(open, out);
@@ -211,7 +211,8 @@ static void put_root(reader *r, FILE *out) {
     fputs("</msqrt>", out);
 }
 
-/* value & condition \\ ... The brace is the left border of the table: few fonts have one that grows. */
+/* value & condition \\ ... The brace is the left border of the table: few fonts have one that
+   grows. */
 static void put_cases(reader *r, FILE *out) {
   static const char *const stops[] = {"&", "\\\\", "\\end{cases}", NULL};
   fputs("<mtable class=\"cases\" displaystyle=\"true\">", out);

@@ -1,5 +1,6 @@
 /* Formulas for browsers: the LaTeX that laws are explained in (explain_math.h, the formulas of
-   builtins.h) as MathML Core. Not for LaTeX from elsewhere: what it does not know stands as text. */
+   builtins.h) as MathML Core. Not for LaTeX from elsewhere: what it does not know stands as
+   text. */
 #ifndef PERILAT_DSL_MATHML_H
 #define PERILAT_DSL_MATHML_H
 

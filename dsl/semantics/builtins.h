@@ -131,7 +131,7 @@ enum { MOVES, FIXED };
   X(NORM, "norm", 1, 1, norm, NO_VALUE, "\\left\\lVert #\\right\\rVert",                           \
     "x = norm(theta_i + theta_j)",                                                                 \
     "magnitude of a bending quantity, vector or tensor; of a family's values, `norm(F)` or "       \
-    "`norm(deviator(F))` without [j], the root of the sum of their squares")                        \
+    "`norm(deviator(F))` without [j], the root of the sum of their squares")                       \
   X(PREVIOUS, "previous", 1, 1, previous, NO_VALUE, "", "x = omega - previous(omega)",             \
     "value of a state or damage at the end of the last step")                                      \
   X(DIFF, "diff", 2, 2, derivative, NO_VALUE, "", "x = diff(stretch**2, stretch)",                 \
@@ -158,7 +158,7 @@ enum { MOVES, FIXED };
     "x = principal(fit(stretch), 1)", "principal value 1, 2 or 3 of a tensor, largest first")      \
   X(TRACE, "trace", 1, 1, tensor_to_scalar, NO_VALUE, "\\operatorname{tr}",                        \
     "x = trace(fit(stretch))", "trace of a tensor")                                                \
-  X(DEV, "dev", 1, 1, deviator_of_tensor, NO_VALUE, "\\operatorname{dev}",                            \
+  X(DEV, "dev", 1, 1, deviator_of_tensor, NO_VALUE, "\\operatorname{dev}",                         \
     "x = norm(dev(fit(stretch)))", "deviator of a tensor")                                         \
   X(J2, "J2", 1, 1, tensor_to_scalar, NO_VALUE, "J_{2}", "x = J2(virtual_work(F))",                \
     "second invariant of a stress deviator")                                                       \

@@ -343,7 +343,8 @@ static double share_of(const search *s, const bool *in) {
   return agreeing >= 2 && inside ? (double)differing / (double)inside : 0;
 }
 
-/* A strain along an axis or a stretch has a side on which it is stretched; a shear or a turn has none.
+/* A strain along an axis or a stretch has a side on which it is stretched; a shear or a turn has
+   none.
  */
 static bool has_length(const search *s, difference_side side) {
   const char *name = s->reference->columns[s->way].name;

@@ -7,8 +7,8 @@
 #include "dsl/semantics/law.h"
 #include "runtime/kernel.h"
 
-/* Of the work done: laws that are conservative only while whole, as they say with `nonconservative`, may
-   gain it on a way around, again and again; more is an error. */
+/* Of the work done: laws that are conservative only while whole, as they say with
+   `nonconservative`, may gain it on a way around, again and again; more is an error. */
 static const double GAIN_OF_NONCONSERVATIVE = 0.1;
 
 typedef struct physics_options {

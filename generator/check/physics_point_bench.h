@@ -31,7 +31,8 @@ typedef struct point_bench {
   double *stress_at[POINT_MOST], *tangent_at[POINT_MOST * POINT_MOST], *lost_at[PL_LOSSES];
 } point_bench;
 
-/* Of b->law in a setting; false when it cannot be compiled there (said). To be closed either way. */
+/* Of b->law in a setting; false when it cannot be compiled there (said). To be closed either
+   way. */
 bool point_bench_open(point_bench *b, law_setting setting);
 void point_bench_close(point_bench *b);
 /* The parameters that the options give, else the defaults, else drawn ones. */

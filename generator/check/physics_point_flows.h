@@ -9,8 +9,8 @@
 typedef struct point_flows point_flows;
 point_flows *point_flows_open(point_bench *b);
 void point_flows_close(point_flows *f);
-/* The virgin point under a drawn strain, beyond its limit: one that is returned must be at the limit
-   afterwards, any other must have come nearer. The strain along z is one more to draw. */
+/* The virgin point under a drawn strain, beyond its limit: one that is returned must be at the
+   limit afterwards, any other must have come nearer. The strain along z is one more to draw. */
 void physics_check_flows(point_bench *b, point_flows *f);
 
 #endif

@@ -1,6 +1,6 @@
 /* Objectivity of a law of a continuum: turned with its strain, a point has the turned stress. Of a
-   law that says that it is anisotropic nothing is asked: its axes stay with the material, which small
-   strains do not turn. */
+   law that says that it is anisotropic nothing is asked: its axes stay with the material, which
+   small strains do not turn. */
 #ifndef PERILAT_GENERATOR_PHYSICS_POINT_TURNS_H
 #define PERILAT_GENERATOR_PHYSICS_POINT_TURNS_H
 

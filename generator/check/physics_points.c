@@ -352,7 +352,8 @@ static double change_of(const point_bench *b, const double *one, const double *o
   return most;
 }
 
-/* Between two strains, always into the half with the larger change: what is left of it is a jump. */
+/* Between two strains, always into the half with the larger change: what is left of it is a
+   jump. */
 static void check_continuity(point_bench *b, bool meant) {
   enum { PIECES = 32, HALVES = 36 };
   double from[MOST], to[MOST], here[MOST], low[MOST], high[MOST], next[MOST], scale = 0;

@@ -1,5 +1,5 @@
-/* Does a law of cracks make sense? It is asked at many tips, of any K from 1e3 to 1e9 Pa m^(1/2), of
-   any mixture of modes, at rest and running.
+/* Does a law of cracks make sense? It is asked at many tips, of any K from 1e3 to 1e9 Pa m^(1/2),
+   of any mixture of modes, at rest and running.
 
        rest-force   a tip without stress does not grow
        mirror       with -K_II it does the same, mirrored: `toward` changes its sign, nothing else does

@@ -16,8 +16,8 @@
   X(THETA_J, "theta_j", "1")                                                                       \
   X(TWIST, "twist", "1")                                                                           \
   X(N, "N", "N") X(M_I, "M_i", "N*m") X(M_J, "M_j", "N*m") X(T, "T", "N*m")
-/* Energies in J, of points in J/m^3. `dissipated` is the sum of its two parts; `external` counts from what the first
-   row holds; `imbalance` is external less stored less dissipated. */
+/* Energies in J, of points in J/m^3. `dissipated` is the sum of its two parts; `external` counts
+   from what the first row holds; `imbalance` is external less stored less dissipated. */
 #define DRIVE_LAST_COLUMNS(X)                                                                      \
   X(STORED, "stored")                                                                              \
   X(DISSIPATED_DAMAGE, "dissipated_damage")                                                        \

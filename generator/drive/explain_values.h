@@ -1,5 +1,5 @@
-/* The values that a law names, one after the other, where something went wrong; what lines are named
-   by. */
+/* The values that a law names, one after the other, where something went wrong; what lines are
+   named by. */
 #ifndef PERILAT_GENERATOR_EXPLAIN_VALUES_H
 #define PERILAT_GENERATOR_EXPLAIN_VALUES_H
 

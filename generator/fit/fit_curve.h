@@ -17,7 +17,8 @@ typedef struct fit_curve {
   long count;             /* of residuals: points that are numbers */
 } fit_curve;
 
-/* Points count whose x goes farther than that of all before. False, with nothing to free, where no point is a number or all are 0. */
+/* Points count whose x goes farther than that of all before. False, with nothing to free, where no
+   point is a number or all are 0. */
 bool fit_curve_begin(fit_curve *c, const curve_points *measured, double weight);
 void fit_curve_free(fit_curve *c);
 

@@ -50,7 +50,8 @@ static const drive_input *first_public(const grade_basis *b) {
   return b->case_count ? b->cases[0].in : NULL;
 }
 
-/* What the solution makes of closed forms takes their place: those of an answer may not be asked. */
+/* What the solution makes of closed forms takes their place: those of an answer may not be
+   asked. */
 static bool fix_expectations(grade_basis *b, path_case *c) {
   drive_input *in = c->in;
   drive_table columns;

@@ -1,4 +1,5 @@
-/* One exercise opened for grading: what its answers are measured by, and one answer judged by it. */
+/* One exercise opened for grading: what its answers are measured by, and one answer judged by
+   it. */
 #ifndef PERILAT_GENERATOR_GRADING_H
 #define PERILAT_GENERATOR_GRADING_H
 

@@ -1,4 +1,5 @@
-/* An exercise put to the test: does it give right answers all points, and does it know wrong ones? */
+/* An exercise put to the test: does it give right answers all points, and does it know wrong
+   ones? */
 #ifndef PERILAT_GENERATOR_SELF_TEST_H
 #define PERILAT_GENERATOR_SELF_TEST_H
 

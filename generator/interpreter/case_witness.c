@@ -13,8 +13,8 @@ struct case_witness {
   const ir *graph;
   int count;            /* nodes */
   unsigned char *marks; /* [count] */
-  /* [count] of a choice that is a branch of one other choice alone, and nothing else: that one; else
-     IR_NONE */
+  /* [count] of a choice that is a branch of one other choice alone, and nothing else: that one;
+     else IR_NONE */
   ir_node *above;
   ir_node *user; /* [count] the first node that needs it, or IR_NONE */
 };

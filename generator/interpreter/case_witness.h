@@ -1,5 +1,5 @@
-/* Which cases of a law were reached while it was driven on the interpreter. A condition counts where
-   it is asked: one behind other cases only in states that these leave to it. */
+/* Which cases of a law were reached while it was driven on the interpreter. A condition counts
+   where it is asked: one behind other cases only in states that these leave to it. */
 #ifndef PERILAT_GENERATOR_CASE_WITNESS_H
 #define PERILAT_GENERATOR_CASE_WITNESS_H
 

@@ -4,8 +4,8 @@
 
 #include "generator/interpreter/runner.h"
 
-/* As a pl_strip_function, a pl_states_function, a pl_point_function, pl_law.prepare and the values of pl_law.bounds. No
-   allocation. */
+/* As a pl_strip_function, a pl_states_function, a pl_point_function, pl_law.prepare and the values
+   of pl_law.bounds. No allocation. */
 void interpreted_strip(runner *r, program_task task, const double *uniforms, const pl_strip *s);
 void interpreted_states(runner *r, program_task task, const double *uniforms, const pl_states *s);
 void interpreted_points(runner *r, program_task task, const double *uniforms, const pl_points *s);

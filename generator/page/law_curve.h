@@ -1,5 +1,5 @@
-/* What a law of a deck answers by itself: one bond drawn apart and pressed, one particle or one point
-   strained, on the interpreter. */
+/* What a law of a deck answers by itself: one bond drawn apart and pressed, one particle or one
+   point strained, on the interpreter. */
 #ifndef PERILAT_GENERATOR_PAGE_LAW_CURVE_H
 #define PERILAT_GENERATOR_PAGE_LAW_CURVE_H
 

@@ -126,8 +126,8 @@ static void take_displacements(movie *m, long frame, const double *u) {
   packing_steps(&m->moved[frame], u, 2 * m->particles, low, high);
 }
 
-/* As maps choose theirs: the largest displacement against the mean is a twentieth of the body in the
-   frame where it is largest. */
+/* As maps choose theirs: the largest displacement against the mean is a twentieth of the body in
+   the frame where it is largest. */
 static double factor_for(const movie *m, const double *u) {
   double mean[2] = {0, 0}, largest = 0;
   for (long k = 0; k < 2 * m->particles; k++)

@@ -1,5 +1,5 @@
-/* The frames of a result as the script of a page draws them: places, bonds, cells, displacements and
-   fields, as maps show them (plot_frame.h), in as few bytes as can be seen.
+/* The frames of a result as the script of a page draws them: places, bonds, cells, displacements
+   and fields, as maps show them (plot_frame.h), in as few bytes as can be seen.
 
    What is lost: places at the beginning are steps of 1/65535 of the body's extent, displacements
    steps of 1/65535 of what the frame has between its least and its largest, values of fields steps

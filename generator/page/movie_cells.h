@@ -1,5 +1,5 @@
-/* Of a page's frames the cells of meshes: which are there, and those that a crack cuts, in parts that
-   come apart; the faces of cracks. */
+/* Of a page's frames the cells of meshes: which are there, and those that a crack cuts, in parts
+   that come apart; the faces of cracks. */
 #ifndef PERILAT_GENERATOR_PAGE_MOVIE_CELLS_H
 #define PERILAT_GENERATOR_PAGE_MOVIE_CELLS_H
 

@@ -22,8 +22,8 @@ void packing_floats(packing *p, const double *values, long count);
 void packing_steps(packing *p, const double *values, long count, double low, double high);
 /* Small numbers in one byte, sign and all: 0, -1, 1, -2, ... */
 void packing_whole(packing *p, long number);
-/* What differs from `before` (NULL: from 0), as runs: how many bytes are the same, how many are not,
-   and the differences of these. */
+/* What differs from `before` (NULL: from 0), as runs: how many bytes are the same, how many are
+   not, and the differences of these. */
 void packing_runs(packing *p, const unsigned char *now, const unsigned char *before, long count);
 /* Value as one of 254 steps from 1 to 255; 0 for what is no number. */
 unsigned char packing_step(double value, double low, double high);

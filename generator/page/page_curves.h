@@ -6,7 +6,8 @@
 
 #include "generator/page/page_result.h"
 
-/* The monitor that the verdict tells of, over what it is usually drawn over; of two results both. */
+/* The monitor that the verdict tells of, over what it is usually drawn over; of two results
+   both. */
 void page_main_curve(FILE *out, const page_result *results, int count, bool large);
 /* All monitors over time, one diagram each; of two results those of both. */
 void page_monitors(FILE *out, const page_result *results, int count);

@@ -1,5 +1,5 @@
-/* The numbers of a result for the script of its page: histories to the last bit, with which readings
-   are told; frames are page_frames.h's. */
+/* The numbers of a result for the script of its page: histories to the last bit, with which
+   readings are told; frames are page_frames.h's. */
 #ifndef PERILAT_GENERATOR_PAGE_DATA_H
 #define PERILAT_GENERATOR_PAGE_DATA_H
 

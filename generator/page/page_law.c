@@ -52,8 +52,8 @@ typedef struct used_law {
   diagnostics said;
 } used_law;
 
-/* The material as one that is alone, and the same everywhere. A formula keeps its value in the middle; a file
-   is not asked, it may be gone: the default stands for it. */
+/* The material as one that is alone, and the same everywhere. A formula keeps its value in the
+   middle; a file is not asked, it may be gone: the default stands for it. */
 static deck_material without_files(arena *a, const deck_material *m) {
   deck_material known = *m;
   known.varying_count = 0;

@@ -98,7 +98,8 @@ typedef struct kernel_plan {
   arena *memory;
 } kernel_plan;
 
-/* PL_CONTINUUM over points; PL_CRACK over tips; PL_CENTRAL, PL_MICROPOLAR over strips; else PL_STATE, of families. */
+/* PL_CONTINUUM over points; PL_CRACK over tips; PL_CENTRAL, PL_MICROPOLAR over strips; else
+   PL_STATE, of families. */
 static inline int plan_kind(const kernel_plan *p) {
   if (p->form == FORM_POINTS) return PL_CONTINUUM;
   if (p->form == FORM_TIPS) return PL_CRACK;

@@ -365,8 +365,8 @@ static void plan_step(planner *p, const seen_points *t, segment *a) {
     want(p, a, p->step.fields[k], TO_FIELD, k);
 }
 
-/* What is stored with the old fields less what is with the new ones, both at the present strain; and
-   what that difference is halfway instead, where the step's stress works (plan_losses.h). */
+/* What is stored with the old fields less what is with the new ones, both at the present strain;
+   and what that difference is halfway instead, where the step's stress works (plan_losses.h). */
 static ir_node lost_to_states(planner *p, const seen_points *t) {
   ir *g = p->graph;
   const ir_node kept = with_new_fields(p, t->stored), after = with_new_fields(p, t->still_power);

@@ -7,8 +7,8 @@
                       by a search (ir_search)
                       tangent D_ab - D_az D_zb/D_zz, rate of z: -sum_b D_zb/D_zz rate_b
 
-   A law that gives no energy stores sigma : strain/2 where the stress is homogeneous of degree one in
-   the strain (linear, also piecewise); else the work of the straight path from rest (Gauss, 4
+   A law that gives no energy stores sigma : strain/2 where the stress is homogeneous of degree one
+   in the strain (linear, also piecewise); else the work of the straight path from rest (Gauss, 4
    points: exact for stresses up to degree 7). */
 #ifndef PERILAT_GENERATOR_PLAN_POINTS_H
 #define PERILAT_GENERATOR_PLAN_POINTS_H
@@ -20,8 +20,8 @@ bool plan_points(kernel_plan *plan, diagnostics *d);
 /* The same of tips of cracks: what they do, new fields, outputs. */
 bool plan_tips(kernel_plan *plan, diagnostics *d);
 
-/* Whether a kernel has RECTANGLE_PROGRAMS: laws of the plane that cost little, so that moving strains
-   and stress through memory counts, and search for nothing. */
+/* Whether a kernel has RECTANGLE_PROGRAMS: laws of the plane that cost little, so that moving
+   strains and stress through memory counts, and search for nothing. */
 bool plan_has_rectangles(const kernel_plan *p);
 
 #endif

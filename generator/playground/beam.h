@@ -15,7 +15,8 @@ double beam_time(void);     /* s */
 double beam_progress(void); /* part of the run that is done, 0 to 1 */
 int beam_count(void);       /* particles */
 /* [count][2] m: reference places, and how far each has moved; [count] 0 to 1, the mean
-   damage of the bonds it began with; 0 where the deck's frames hold none. Until the next call of this module. */
+   damage of the bonds it began with; 0 where the deck's frames hold none. Until the next call of
+   this module. */
 const double *beam_places(void);
 const double *beam_moved(void);
 const double *beam_damage(void);

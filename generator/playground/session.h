@@ -3,8 +3,8 @@
 #ifndef PERILAT_PLAYGROUND_SESSION_H
 #define PERILAT_PLAYGROUND_SESSION_H
 
-/* `line`: the command and its arguments, a line each, such as "check\nlaw.plm". What it says goes to
-   the standard output and error stream. Returns its exit status. */
+/* `line`: the command and its arguments, a line each, such as "check\nlaw.plm". What it says goes
+   to the standard output and error stream. Returns its exit status. */
 int play_command(const char *line);
 
 /* The words of the language, for colours: a line for each kind, its name and then the words. Until

@@ -7,8 +7,8 @@
 /* Opens and compiles the law of an interaction and reads its parameters; what is wrong with them
    leaves them NULL. 0, or an exit status. What a law's own file has to answer for stays in
    models[].said. */
-/* The law of a crack of the deck that grows, which stands behind those of the interactions. 0, or an
-   exit status. */
+/* The law of a crack of the deck that grows, which stands behind those of the interactions. 0, or
+   an exit status. */
 int load_crack_law(run *r, int crack);
 int load_law(run *r, int interaction);
 /* Of the simulation_law that it filled in. */

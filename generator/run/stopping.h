@@ -1,4 +1,5 @@
-/* Ctrl-C, the end of a batch job, a closed terminal: a run, or a study of many, is asked to stop. */
+/* Ctrl-C, the end of a batch job, a closed terminal: a run, or a study of many, is asked to
+   stop. */
 #ifndef PERILAT_GENERATOR_STOPPING_H
 #define PERILAT_GENERATOR_STOPPING_H
 

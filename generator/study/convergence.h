@@ -11,9 +11,9 @@
    sigma the standard deviation from the fit; above 2.1 the limit is that of order 2. Here they
    answer a scatter of sigma >= (largest - smallest)/(sizes - 1) with a wider bar, and this does
    with "not converged". Each orientation or seed has a limit of its own, linearised about the mean
-   one; the 95 % interval of their mean (Student's t) joins U as a sum of squares. Where several keys
-   are crossed, runs that share a value of one are no independent draws: the means over its values
-   are, and the widest of these intervals counts. */
+   one; the 95 % interval of their mean (Student's t) joins U as a sum of squares. Where several
+   keys are crossed, runs that share a value of one are no independent draws: the means over its
+   values are, and the widest of these intervals counts. */
 #ifndef PERILAT_GENERATOR_CONVERGENCE_H
 #define PERILAT_GENERATOR_CONVERGENCE_H
 

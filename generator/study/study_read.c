@@ -18,8 +18,8 @@ typedef struct table_file {
   bool good;
 } table_file;
 
-/* A pipe would keep HDF5 waiting. What is sealed is a result: whether it is whole its own reader asks,
-   before the library reads anything. */
+/* A pipe would keep HDF5 waiting. What is sealed is a result: whether it is whole its own reader
+   asks, before the library reads anything. */
 static bool may_be_table(const char *path) {
   const char *why;
   const int handle = ordinary_file_open(path, O_RDONLY, &why);

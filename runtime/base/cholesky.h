@@ -22,8 +22,8 @@ void cholesky_free(cholesky *f);
 
 /* Of a + shift times 1. */
 cholesky_end cholesky_factorise(cholesky *f, const sparse_upper *a, double shift);
-/* Where the factors are of no use, in the order of elimination: the row that is not positive, or the
-   first whose squared pivot is no more than that part of diagonal[order]; -1: nowhere. */
+/* Where the factors are of no use, in the order of elimination: the row that is not positive, or
+   the first whose squared pivot is no more than that part of diagonal[order]; -1: nowhere. */
 long cholesky_lost_row(const cholesky *f, const double *diagonal, double part);
 /* x[order]: the right side; y[order]: the solution, or x itself. False without memory. */
 bool cholesky_solve(cholesky *f, const double *x, double *y);

@@ -1,5 +1,5 @@
-/* The text of a file that messages point into: read whole, and among their sources once the first of
-   them does so. */
+/* The text of a file that messages point into: read whole, and among their sources once the first
+   of them does so. */
 #ifndef PERILAT_RUNTIME_FILE_TEXT_H
 #define PERILAT_RUNTIME_FILE_TEXT_H
 
@@ -16,8 +16,8 @@ typedef struct file_text {
   int source;  /* among the sources, -1 until a message has pointed into it */
 } file_text;
 
-/* Takes over `path` (malloc'ed); a source of that name stands for the file. False after a message at
-   `where`. To be closed in either case. */
+/* Takes over `path` (malloc'ed); a source of that name stands for the file. False after a message
+   at `where`. To be closed in either case. */
 bool file_text_open(file_text *f, char *path, span where, diagnostics *d);
 void file_text_close(file_text *f);
 /* "cannot read `PATH`: WHY" at `where`; false. */

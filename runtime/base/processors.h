@@ -3,7 +3,8 @@
 #define PERILAT_RUNTIME_PROCESSORS_H
 
 /* Processors that this process may use, at least 1: fewer than the machine has where `taskset`, a
-   batch system or the cpuset of a container says so. A container's share of time is not looked at. */
+   batch system or the cpuset of a container says so. A container's share of time is not looked
+   at. */
 int usable_processors(void);
 
 #endif

@@ -14,8 +14,8 @@
 #include "runtime/continuum/tips.h"
 #include "runtime/deck/deck.h"
 
-/* How many times as stiff as at rest the stiffest point is: in the state observed last, and at most so
-   far; 1 of linear laws. */
+/* How many times as stiff as at rest the stiffest point is: in the state observed last, and at most
+   so far; 1 of linear laws. */
 typedef struct cells_stiffened {
   double now, most;
   double since; /* s: the step is longer than is safe for that; -1: never so far */
@@ -72,8 +72,9 @@ void cells_mean_dilatation(const cells *c, int cell, const double *const displac
    themselves. */
 void cells_step_limit(const cells *c, const unsigned char *held, step_limit *limit);
 
-/* After a state was observed, at that time: how stiff points are. `part` of the longest step at rest
-   is taken. No frequency of the mesh is above the root of `stiffened.now` times the highest at rest. */
+/* After a state was observed, at that time: how stiff points are. `part` of the longest step at
+   rest is taken. No frequency of the mesh is above the root of `stiffened.now` times the highest at
+   rest. */
 void cells_watch_stiffness(cells *c, double part, double time);
 /* Of the state observed last, with a law that is not linear; false with one that is, whose points
    keep nothing. Stress xx, yy, xy, zz (Pa) at a node: the mean of the points in the law's cells

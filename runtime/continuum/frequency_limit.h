@@ -1,5 +1,6 @@
-/* The highest natural frequency of a mesh, by power iteration on M^-1 K over its free freedoms. It is
-   found from below: Rayleigh's quotient after `FREQUENCY_PRODUCTS` products lies a little under it. */
+/* The highest natural frequency of a mesh, by power iteration on M^-1 K over its free freedoms. It
+   is found from below: Rayleigh's quotient after `FREQUENCY_PRODUCTS` products lies a little under
+   it. */
 #ifndef PERILAT_RUNTIME_FREQUENCY_LIMIT_H
 #define PERILAT_RUNTIME_FREQUENCY_LIMIT_H
 

@@ -6,8 +6,8 @@
 #include "runtime/deck/deck.h"
 #include "runtime/mesh/mesh.h"
 
-/* Of the deck's lattice of that number, which is a &mesh. False with a diagnostic where a zone holds
-   no node; the mesh is to be closed in any case. */
+/* Of the deck's lattice of that number, which is a &mesh. False with a diagnostic where a zone
+   holds no node; the mesh is to be closed in any case. */
 bool mesh_build(const deck *k, int lattice, mesh *out, diagnostics *d);
 
 #endif

@@ -5,8 +5,8 @@
 #include "runtime/base/cholesky.h"
 #include "runtime/continuum/node_matrix.h"
 
-/* Freedom 2 n + d: direction d of node n; fixed[2 nodes]. NULL where the matrix is not positive, *loose
-   being a freedom without stiffness; -1: there is not enough memory. */
+/* Freedom 2 n + d: direction d of node n; fixed[2 nodes]. NULL where the matrix is not positive,
+   *loose being a freedom without stiffness; -1: there is not enough memory. */
 cholesky *node_factors_new(const node_matrix *k, const unsigned char *fixed, long *loose);
 
 #endif

@@ -8,8 +8,8 @@
 
 /* Of planes as node_layout.h has them: values[particles][2] of the nodes that are there. */
 void node_field_values(const cells *c, const double *const planes[2], double *values);
-/* Strain xx, yy, xy (of a tensor) of displacements, and the law's stress at it, Pa; with a law that is
-   not linear the mean stress of the points around: planes of the body. Between several laws the
+/* Strain xx, yy, xy (of a tensor) of displacements, and the law's stress at it, Pa; with a law that
+   is not linear the mean stress of the points around: planes of the body. Between several laws the
    mean of what they have there, by the areas of their cells around. NaN at nodes without a cell. */
 void node_field_strain(const cells *c, const double *const displacement[2],
                        double *const strain[3]);

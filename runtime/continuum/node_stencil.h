@@ -1,5 +1,5 @@
-/* This room: what a mesh resists, weighs and bears. Here the stiffness matrix of a linear law, as 2 x 2
-   blocks from every node to those around it.
+/* This room: what a mesh resists, weighs and bears. Here the stiffness matrix of a linear law, as 2
+   x 2 blocks from every node to those around it.
 
    Two nodes interact when both act at some point: where they are at most m = ceil(2 d_max) - 1
    spacings apart along both axes (of bilinear elements alone m = 1). So each node has (2m + 1)^2
@@ -24,7 +24,8 @@
 #include "runtime/mesh/moving_least_squares.h"
 #include "runtime/mesh/node_layout.h"
 
-/* Tangent of a cell's law in the plane, Pa: xx yy xy by xx yy xy, shears being those of engineers. */
+/* Tangent of a cell's law in the plane, Pa: xx yy xy by xx yy xy, shears being those of
+   engineers. */
 typedef struct plane_stiffness {
   double D[3][3];
 } plane_stiffness;

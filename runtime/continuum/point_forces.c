@@ -527,8 +527,8 @@ static void step_strip(const point_forces *p, const strip *s, point_scratch *own
 
 /* --- looking at a state ----------------------------------------------------------------------- */
 
-/* L^-1 D L^-T of the symmetric part of a point's tangent: its eigenvalues are those of the tangent by
-   that at rest. */
+/* L^-1 D L^-T of the symmetric part of a point's tangent: its eigenvalues are those of the tangent
+   by that at rest. */
 static inline __attribute__((always_inline)) void relative_tangent(const point_forces *p,
                                                                    double *const tangent[TANGENTS],
                                                                    long at,

@@ -53,8 +53,8 @@ typedef struct point_forces {
   long doubles; /* of arrays */
 } point_forces;
 
-/* Tangent at rest (Pa), or how the stress there follows the strain rate (Pa s), xx, yy, xy by xx, yy,
-   xy; of a law that reads the size of a cell that of the cell where its trace is largest.
+/* Tangent at rest (Pa), or how the stress there follows the strain rate (Pa s), xx, yy, xy by xx,
+   yy, xy; of a law that reads the size of a cell that of the cell where its trace is largest.
    own[cells] marks cells of the law; NULL: all are. */
 void point_forces_rest(const mesh *m, const unsigned char *own, const pl_law *law,
                        const double *parameters, bool viscous, double tangent[3][3]);
@@ -96,8 +96,8 @@ static inline bool point_forces_has(const point_forces *p, int cell) {
 double point_forces_mean(const point_forces *p, const double *plane, int node);
 /* Over the points of a cell; NaN of a cell that is not of the law. */
 double point_forces_cell_mean(const point_forces *p, const double *plane, int cell);
-/* The node's part of what the cells around it hold, a plane [strips.count] per m^3: their corners that
-   are there have equal parts. What a cell without any holds is no node's. */
+/* The node's part of what the cells around it hold, a plane [strips.count] per m^3: their corners
+   that are there have equal parts. What a cell without any holds is no node's. */
 double point_forces_share(const point_forces *p, const double *plane, int node);
 
 /* How a point is. */

@@ -1,5 +1,5 @@
-/* A law of a continuum at a single point in the plane: stress, stored energy, tangent. Points in strips
-   are what steps use; this is for what is asked now and then. */
+/* A law of a continuum at a single point in the plane: stress, stored energy, tangent. Points in
+   strips are what steps use; this is for what is asked now and then. */
 #ifndef PERILAT_RUNTIME_POINT_LAW_H
 #define PERILAT_RUNTIME_POINT_LAW_H
 

@@ -198,7 +198,8 @@ static void warn_of_box(const tips *t, const mesh_tip *p, const mesh *m, diagnos
             1e3 * b.across);
 }
 
-/* A crack that ends at a hole parts its two sides up to the middle: lines that graze the hole pass. */
+/* A crack that ends at a hole parts its two sides up to the middle: lines that graze the hole
+   pass. */
 static void add_mouth(const deck_crack *c, mesh *m, int end, int before) {
   double middle[2];
   if (holes_beyond(&m->holes, c->points + 2 * before, c->points + 2 * end, middle))
@@ -380,8 +381,8 @@ void tips_before(tips *t, const body *w, const node_stencil *k) {
       t->kept[d][n] = w->velocity[d][node_layout_at(&k->layout, n)];
 }
 
-/* Velocities of the nodes at the present instant, and accelerations less gravity, which are what the
-   stresses give: div sigma = rho (u'' - g). Their places are there. */
+/* Velocities of the nodes at the present instant, and accelerations less gravity, which are what
+   the stresses give: div sigma = rho (u'' - g). Their places are there. */
 static void find_motion(tips *t, const body *w, double *const last_resistance[2],
                         const node_stencil *k) {
   pool *memory = pool_new();
@@ -606,8 +607,8 @@ static double until_met_ahead(const double u[2], const double c[2], const double
   return nearer > MET ? pl_min(nearer, 1) : 0;
 }
 
-/* Part of a -> b until it meets the other piece; 1: it does not. Both are on one line where they are
-   nearer than `hardly`. */
+/* Part of a -> b until it meets the other piece; 1: it does not. Both are on one line where they
+   are nearer than `hardly`. */
 static double until_met(const double a[2], const double b[2], const crack_piece *other,
                         double hardly) {
   const double u[2] = {b[0] - a[0], b[1] - a[1]}, c[2] = {other->a[0] - a[0], other->a[1] - a[1]},

@@ -18,9 +18,10 @@
    which the discrete balance of energies wants, and is u.(K - K_after) u/2 up to the length of a
    step.
 
-   An end of a crack inside the mesh is a tip; one on its border, or on or in a hole, is not. A crack
-   on an edge of the mesh, where this is half of a body and its mirror image, hides nothing: it is a free face, and its tip has
-   the half of the box that lies in the mesh, which counts twice for K_I; K_II is 0. */
+   An end of a crack inside the mesh is a tip; one on its border, or on or in a hole, is not. A
+   crack on an edge of the mesh, where this is half of a body and its mirror image, hides nothing:
+   it is a free face, and its tip has the half of the box that lies in the mesh, which counts twice
+   for K_I; K_II is 0. */
 #ifndef PERILAT_RUNTIME_TIPS_H
 #define PERILAT_RUNTIME_TIPS_H
 
@@ -122,8 +123,8 @@ void tips_take(tips *t, const deck *k, const plane_stiffness *law, double densit
 
 /* Before a step moves the nodes: what a look will need. */
 void tips_before(tips *t, const body *w, const node_stencil *k);
-/* When the step n-1 -> n has moved them: the advance that was due at t_(n-1), then a look at t_n, if it
-   is time for one. `m` and `k` are the mesh and its stiffness, which growth changes;
+/* When the step n-1 -> n has moved them: the advance that was due at t_(n-1), then a look at t_n,
+   if it is time for one. `m` and `k` are the mesh and its stiffness, which growth changes;
    last_resistance[2][layout.size]: K u at t_(n-1), N. */
 void tips_after(tips *t, const body *w, double *const last_resistance[2], mesh *m, node_stencil *k);
 /* A look at a body that stands still (static_solution.h). */

@@ -1,5 +1,6 @@
-/* Where the hoop stress around a tip is largest, and how large (Erdogan and Sih 1963): the direction,
-   in radians from the crack's own, and the stress intensity of pure mode I that has the same. */
+/* Where the hoop stress around a tip is largest, and how large (Erdogan and Sih 1963): the
+   direction, in radians from the crack's own, and the stress intensity of pure mode I that has the
+   same. */
 #ifndef PERILAT_RUNTIME_HOOP_STRESS_H
 #define PERILAT_RUNTIME_HOOP_STRESS_H
 

@@ -1,7 +1,7 @@
 /* Fields near the tip of a crack that runs steadily, in axes 1 along the crack and 2 across it, the
-   tip at the origin (Freund 1990, 4.3; Karlsson 2006, 3.4 and appendix A, with A.14 as +2 a_s a_d and
-   A.17, A.18 derived anew). With S_b = sqrt(x + i a_b y) and C = 2/(mu D(v) sqrt(2 pi)), of a unit
-   stress intensity factor:
+   tip at the origin (Freund 1990, 4.3; Karlsson 2006, 3.4 and appendix A, with A.14 as +2 a_s a_d
+   and A.17, A.18 derived anew). With S_b = sqrt(x + i a_b y) and C = 2/(mu D(v) sqrt(2 pi)), of a
+   unit stress intensity factor:
 
      I    u_1 = C Re[(1 + a_s^2) S_d - 2 a_d a_s S_s]   u_2 = C Im[-a_d (1 + a_s^2) S_d + 2 a_d S_s]
      II   u_1 = C Im[2 a_s S_d - a_s (1 + a_s^2) S_s]   u_2 = C Re[2 a_s a_d S_d - (1 + a_s^2) S_s]

@@ -1,5 +1,5 @@
-/* What is known of the tip of a crack at a look: names in decks and histories, units, words. Angles are
-   in radians. */
+/* What is known of the tip of a crack at a look: names in decks and histories, units, words. Angles
+   are in radians. */
 #ifndef PERILAT_RUNTIME_TIP_VALUES_H
 #define PERILAT_RUNTIME_TIP_VALUES_H
 

@@ -466,7 +466,8 @@ typedef struct deck_file { /* a table that a load was read from */
 
 /* The groups of a deck, in the order in which they are read, so that names are known before they
    are used: ONE is there once at most, LIST any number of times, MORE too, as more items of another
-   list (`static`, which C lets no field be called, once: it is `at_rest`). Each has its structure above, its keys and its check in a group_*.c. */
+   list (`static`, which C lets no field be called, once: it is `at_rest`). Each has its structure
+   above, its keys and its check in a group_*.c. */
 #define DECK_GROUPS(ONE, LIST, MORE)                                                               \
   ONE(simulation)                                                                                  \
   ONE(relaxation)                                                                                  \

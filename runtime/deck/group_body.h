@@ -1,5 +1,5 @@
-/* Groups that have a shape: bodies, notches, the regions that name particles, zones of meshes; masses
-   that regions carry. */
+/* Groups that have a shape: bodies, notches, the regions that name particles, zones of meshes;
+   masses that regions carry. */
 #ifndef PERILAT_RUNTIME_GROUP_BODY_H
 #define PERILAT_RUNTIME_GROUP_BODY_H
 

@@ -1,5 +1,5 @@
-/* The nodes of a &mesh as rows of particles without bonds, which stand in memory as node_layout.h has
-   it. Without holes node (i, j) is particle j*nodes_x + i; nodes in holes are no particles. */
+/* The nodes of a &mesh as rows of particles without bonds, which stand in memory as node_layout.h
+   has it. Without holes node (i, j) is particle j*nodes_x + i; nodes in holes are no particles. */
 #ifndef PERILAT_RUNTIME_MESH_ROWS_H
 #define PERILAT_RUNTIME_MESH_ROWS_H
 
@@ -12,8 +12,8 @@
    yet. */
 rows *mesh_rows(const deck *k, int lattice, diagnostics *d);
 
-/* Gives a mesh the deck's background rule and cuts its holes by it, before it is settled. Returns how
-   many nodes are left. */
+/* Gives a mesh the deck's background rule and cuts its holes by it, before it is settled. Returns
+   how many nodes are left. */
 int mesh_rows_cut(const deck *k, const deck_mesh *l, mesh *m);
 
 #endif

@@ -4,8 +4,8 @@
 #ifndef PERILAT_RUNTIME_QUADRILATERAL_H
 #define PERILAT_RUNTIME_QUADRILATERAL_H
 
-/* m^2: the map's Jacobian at corner k; all four are positive where the quadrilateral is convex and its
-   corners stand counter-clockwise. */
+/* m^2: the map's Jacobian at corner k; all four are positive where the quadrilateral is convex and
+   its corners stand counter-clockwise. */
 double quadrilateral_turn(const double corners[4][2], int k);
 double quadrilateral_area(const double corners[4][2]); /* m^2 */
 void quadrilateral_box(const double corners[4][2], double lower[2], double upper[2]);

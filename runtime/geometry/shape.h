@@ -65,8 +65,8 @@ bool shape_has_size(const deck_shape *shape);
    written; returns how many there are. */
 int shape_cuts(const deck_shape *shape, const double *a, const double *b, double *u, int most);
 
-/* Of a shape of the plane with an area: length of the shorter way along its outline between two points
-   on it; infinite between the two circles of a ring. */
+/* Of a shape of the plane with an area: length of the shorter way along its outline between two
+   points on it; infinite between the two circles of a ring. */
 double shape_way(const deck_shape *shape, const double *p, const double *q);
 
 /* Coordinates along axis c (0, 1, 2) of the corners, of the ends of the shape's box and of a disc's

@@ -7,8 +7,8 @@
 
 #include "runtime/interaction/sweep.h"
 
-/* Whether the law has damage on bonds (or on neighbours), on particles (or on points: at nodes their
-   mean). */
+/* Whether the law has damage on bonds (or on neighbours), on particles (or on points: at nodes
+   their mean). */
 bool damage_on_bonds(const pl_law *law);
 bool damage_on_particles(const pl_law *law);
 /* On either. */

@@ -149,9 +149,9 @@ static double velocity_at(const loads *l, const body *w, const constraint *c, lo
   return drive_of(l, c)->is_displacement ? slope_at(w, &f, t, false) : time_function_at(&f, t);
 }
 
-/* A driven node of a mesh that gives way to the body: a step moves it by dt v + dt^2 a/2, v being the
-   prescribed velocity and dt a what it would gain by itself, of a whole step that would take it to
-   the velocity `free`. */
+/* A driven node of a mesh that gives way to the body: a step moves it by dt v + dt^2 a/2, v being
+   the prescribed velocity and dt a what it would gain by itself, of a whole step that would take it
+   to the velocity `free`. */
 static bool gives_way(const loads *l, const constraint *c) {
   return l->gives_way && c->drive >= 0;
 }

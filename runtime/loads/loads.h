@@ -77,12 +77,12 @@ void loads_free(loads *l);
    on how many particles. */
 double loads_shares_of(const loads *l, int force, long *particles);
 
-/* A share of the deck's force of that number that is found elsewhere, as of a traction: m^2; the last
-   one is to be followed by loads_links_added. */
+/* A share of the deck's force of that number that is found elsewhere, as of a traction: m^2; the
+   last one is to be followed by loads_links_added. */
 void loads_add_share(loads *l, int32_t particle, int component, int force, double share);
-/* The same of one that differs from place to place, with the value that it has at `at` (m), which the
-   shares of several particles may follow. False with a diagnostic where the formula has none there
-   when it begins. */
+/* The same of one that differs from place to place, with the value that it has at `at` (m), which
+   the shares of several particles may follow. False with a diagnostic where the formula has none
+   there when it begins. */
 bool loads_add_place(loads *l, const double at[3], int force, diagnostics *d);
 void loads_add_share_there(loads *l, int32_t particle, int component, int force, double share);
 

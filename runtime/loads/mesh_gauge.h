@@ -1,6 +1,6 @@
 /* What a gauge on a mesh shows: displacement, velocity, acceleration, strain and stress at a place
-   itself, or of a region's nodes in the mean. Of element-free nodes the values are parameters, so the
-   field is looked at where they stand. */
+   itself, or of a region's nodes in the mean. Of element-free nodes the values are parameters, so
+   the field is looked at where they stand. */
 #ifndef PERILAT_RUNTIME_MESH_GAUGE_H
 #define PERILAT_RUNTIME_MESH_GAUGE_H
 
@@ -18,7 +18,8 @@ mesh_gauge *mesh_gauge_new(const deck_monitor *m, const int32_t *sites, long cou
                            const loads *l, const body *w, diagnostics *d);
 void mesh_gauge_free(mesh_gauge *g);
 
-/* What the monitor shows of the state after `step` steps, which was observed: m, m/s, m/s^2, 1, Pa. */
+/* What the monitor shows of the state after `step` steps, which was observed: m, m/s, m/s^2, 1,
+   Pa. */
 double mesh_gauge_value(mesh_gauge *g, long step);
 /* Velocity over the last step, m/s. */
 double mesh_gauge_velocity(mesh_gauge *g);

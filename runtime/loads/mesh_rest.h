@@ -1,6 +1,6 @@
-/* A mesh at rest under its loads: in each increment of a static run what supports, drives, forces and
-   weight prescribe at its end, the displacements that K u = F gives then, reactions, and the work
-   that was done, of which a linear law stores all. */
+/* A mesh at rest under its loads: in each increment of a static run what supports, drives, forces
+   and weight prescribe at its end, the displacements that K u = F gives then, reactions, and the
+   work that was done, of which a linear law stores all. */
 #ifndef PERILAT_RUNTIME_MESH_REST_H
 #define PERILAT_RUNTIME_MESH_REST_H
 

@@ -87,8 +87,8 @@ void cell_strips_clear(const cell_strips *s, int row, double *const pushed[2]);
 /* N: the forces of a row of nodes, in planes of the layout; `more`: beside those that are there. */
 void cell_strips_take(const cell_strips *s, int row, double *const pushed[2], bool more,
                       double *const force[2]);
-/* The same of `count` groups side by side that are alike and even, and full unless they are but one,
-   from what each cell does to its nodes (rectangle_cells_push). */
+/* The same of `count` groups side by side that are alike and even, and full unless they are but
+   one, from what each cell does to its nodes (rectangle_cells_push). */
 void cell_strips_gather(const cell_strips *s, int row, const cell_group *g, int count,
                         double *const by_cell[RECTANGLE_PUSHES], double *const pushed[2]);
 

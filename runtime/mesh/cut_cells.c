@@ -101,8 +101,8 @@ typedef struct rule {
   double place[MESH_MOST_GAUSS], weight[MESH_MOST_GAUSS];
 } rule;
 
-/* Of the line across the cell at `level` along the axis; it stands for `width` of it. Returns its area
-   outside; to: NULL for that alone. */
+/* Of the line across the cell at `level` along the axis; it stands for `width` of it. Returns its
+   area outside; to: NULL for that alone. */
 static double add_line(const cut_cell *c, int axis, const rule *g, double level, double width,
                        cut_points *to) {
   double a[2], b[2], *u, outside = 0;
@@ -145,8 +145,8 @@ static double add_lines(const cut_cell *c, int axis, int parts, cut_points *to) 
   return outside;
 }
 
-/* Where a round outline is upright along an axis, and where outlines cross, Gauss's places do badly:
-   the other axis or more parts, until twice as many change nothing. */
+/* Where a round outline is upright along an axis, and where outlines cross, Gauss's places do
+   badly: the other axis or more parts, until twice as many change nothing. */
 void cut_cell_points(const mesh *m, int cell, cut_points *to) {
   enum { MOST_PARTS = 16 };
   cut_cell c = cell_of(m, cell);

@@ -5,8 +5,8 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 
-/* A way around a hole that is longer by less hides nothing: around a round outline and a corner nodes
-   act as they would without the hole, and functions have no jumps there. */
+/* A way around a hole that is longer by less hides nothing: around a round outline and a corner
+   nodes act as they would without the hole, and functions have no jumps there. */
 static const double LONGER = 1.5;
 
 void holes_open(mesh_holes *h) {

@@ -119,7 +119,8 @@ static inline void mesh_corners(const mesh *m, int cell, int corner[4]) {
   corner[2] = corner[0] + m->nodes[0];
   corner[3] = corner[2] + 1;
 }
-/* The order of these where corners are counted counter-clockwise, and the other way round: 0, 1, 3, 2. */
+/* The order of these where corners are counted counter-clockwise, and the other way round: 0, 1, 3,
+   2. */
 static inline int mesh_corner_around(int q) {
   return q < 2 ? q : 5 - q;
 }
@@ -135,8 +136,8 @@ double mesh_cell_slender(const mesh *m, int cell);
 /* Where an element with one point knows the strain: its middle, whatever the place in it; what its
    corners do beside is no strain of the law's. Of other cells the place itself. */
 void mesh_strain_place(const mesh *m, int cell, const double place[2], double at[2]);
-/* The cell that holds a point (on a border: the one to its upper right, at the mesh's edge the last,
-   another one where that is absent); -1 outside the mesh. */
+/* The cell that holds a point (on a border: the one to its upper right, at the mesh's edge the
+   last, another one where that is absent); -1 outside the mesh. */
 int mesh_cell_of(const mesh *m, const double at[2]);
 
 C_LINKAGE_END

@@ -1,5 +1,5 @@
-/* What the values of a mesh's nodes are at a point: sum N_I a_I, and its gradient. Of element-free nodes
-   the values are parameters; these are the fields themselves. */
+/* What the values of a mesh's nodes are at a point: sum N_I a_I, and its gradient. Of element-free
+   nodes the values are parameters; these are the fields themselves. */
 #ifndef PERILAT_RUNTIME_MESH_FIELDS_H
 #define PERILAT_RUNTIME_MESH_FIELDS_H
 

@@ -1,5 +1,5 @@
-/* Moving least squares on a regular grid (Lancaster and Salkauskas 1981; Belytschko, Lu and Gu 1994;
-   Karlsson 2006, 2.2): the functions of nodes I at a point x,
+/* Moving least squares on a regular grid (Lancaster and Salkauskas 1981; Belytschko, Lu and Gu
+   1994; Karlsson 2006, 2.2): the functions of nodes I at a point x,
 
        N_I = w_I p_I.g,   N_I,i = w_I p_I.h_i + w_I,i p_I.g,
        A g = p,   A h_i = p_,i - A_,i g,   A = sum w_I p_I p_I^T,

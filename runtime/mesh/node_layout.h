@@ -1,7 +1,7 @@
 /* Where the values of a mesh's nodes stand in memory: node row by node row, each filled up to whole
    vectors of PL_LANES, with as many empty rows below and above, and empty places between rows, as
-   nodes reach each other: m = ceil(2 d_max) - 1. So a loop over nodes reads its neighbours with unit
-   stride and without asking where the mesh ends. */
+   nodes reach each other: m = ceil(2 d_max) - 1. So a loop over nodes reads its neighbours with
+   unit stride and without asking where the mesh ends. */
 #ifndef PERILAT_RUNTIME_NODE_LAYOUT_H
 #define PERILAT_RUNTIME_NODE_LAYOUT_H
 

@@ -1,6 +1,6 @@
 /* Strains and forces of bilinear rectangles side by side with 2 x 2 points each (rectangle.h):
-   PL_LANES of them at a time. A third of the work that tables of all slopes take (cell_strips.h), to
-   rounding the same. */
+   PL_LANES of them at a time. A third of the work that tables of all slopes take (cell_strips.h),
+   to rounding the same. */
 #ifndef PERILAT_RUNTIME_RECTANGLE_CELLS_H
 #define PERILAT_RUNTIME_RECTANGLE_CELLS_H
 

@@ -1,7 +1,7 @@
-/* What acts at a point of a mesh: bilinear functions in a finite element, moving least squares in an
-   element-free cell, in an interface cell both, blended by R, the sum of the bilinear functions of
-   its element-free corners (Belytschko, Organ and Krongauz 1995; Karlsson 2006, 2.5 with the indices
-   of 2.51 corrected):
+/* What acts at a point of a mesh: bilinear functions in a finite element, moving least squares in
+   an element-free cell, in an interface cell both, blended by R, the sum of the bilinear functions
+   of its element-free corners (Belytschko, Organ and Krongauz 1995; Karlsson 2006, 2.5 with the
+   indices of 2.51 corrected):
 
        N = (1 - R) N_bilinear + R N_moving
        N_,i = -R_,i N_bilinear + (1 - R) N_bilinear,i + R_,i N_moving + R N_moving,i

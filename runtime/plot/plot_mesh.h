@@ -1,6 +1,6 @@
 /* Meshes of a result as pictures show them: cells, coloured by their own values or their nodes',
-   and cracks. A cell that a crack crosses is cut into small parts, each of which takes the values of
-   the nodes on its own side. */
+   and cracks. A cell that a crack crosses is cut into small parts, each of which takes the values
+   of the nodes on its own side. */
 #ifndef PERILAT_RUNTIME_PLOT_MESH_H
 #define PERILAT_RUNTIME_PLOT_MESH_H
 

@@ -4,7 +4,8 @@
    stable:
 
      /                      attributes seal (sealed_file.h), perilat_version, started (ISO 8601),
-                            title, deck (its name), dt, steps, kernel_key, compiler, flags (of the kernels), threads,
+                            title, deck (its name), dt, steps, kernel_key, compiler,
+                            flags (of the kernels), threads,
                             ended (how, in words), status (of exit), wall_seconds
      /said/<when>           what the run said: begin, end, warnings (only where it said any)
      /input/deck            text; /input/set: what --set changed in it, one a line (only then);

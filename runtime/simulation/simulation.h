@@ -30,9 +30,9 @@ struct profile;
 struct sweep;
 struct tips;
 
-/* What the front end hands over for each interaction of the deck, in its order, and then for each of
-   its cracks (without a law: all 0). NULL where a law or
-   its parameters are wrong: then the deck is checked as far as it does not depend on them. */
+/* What the front end hands over for each interaction of the deck, in its order, and then for each
+   of its cracks (without a law: all 0). NULL where a law or its parameters are wrong: then the deck
+   is checked as far as it does not depend on them. */
 typedef struct simulation_law {
   const pl_law *law;
   /* [parameter_count] as of material_parameters; malloc'ed, owned by the caller. A simulation sets

@@ -186,8 +186,8 @@ static bool near(const char *what, gap g) {
 
 enum { GENERATED, HANDWRITTEN, FUSED, PROGRAMS };
 
-/* Seconds of each program in each step: the least of all loadings, so that what others take from the
-   machine counts for little. */
+/* Seconds of each program in each step: the least of all loadings, so that what others take from
+   the machine counts for little. */
 typedef struct least_times {
   double of[PROGRAMS][STEPS];
 } least_times;

@@ -56,8 +56,8 @@ static void a_plate_with_a_hole(void **state) {
   assert_true(fabs(last(&top) - 3) < 0.03 * 3 && fabs(last(&side) + 1) < 0.03);
 }
 
-/* K is in proportion to the pressure as long as nothing grows; before the wave nothing is, and the first
-   that comes is pressure on the faces. */
+/* K is in proportion to the pressure as long as nothing grows; before the wave nothing is, and the
+   first that comes is pressure on the faces. */
 static void a_tunnel_below_a_blast(void **state) {
   (void)state;
   const table once = history_of("cavern/tunnel.nml", "", "roof/K_I"),

@@ -1,5 +1,5 @@
-/* The static examples: what their decks give beside theory and another program, and that their pages say
-   it. */
+/* The static examples: what their decks give beside theory and another program, and that their
+   pages say it. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -11,7 +11,8 @@
 
 #include "tests/verification/study_said.h"
 
-/* Theory says f_t. The load has no limit yet at these sizes: its width hangs on the rows that fit. */
+/* Theory says f_t. The load has no limit yet at these sizes: its width hangs on the rows that
+   fit. */
 static void the_strength_of_a_prism_converges(void **state) {
   workplace *w = *state;
   static const char prism[] = EXAMPLES

@@ -1,5 +1,5 @@
-/* A bar of `stiffening` in a mesh of finite elements and element-free cells: drawn out slowly, beside
-   the stress of one point; pulled at its end, beside waves of that stress; its energies. */
+/* A bar of `stiffening` in a mesh of finite elements and element-free cells: drawn out slowly,
+   beside the stress of one point; pulled at its end, beside waves of that stress; its energies. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -73,8 +73,8 @@ static double drawn(const char *method, double support) {
   return most;
 }
 
-/* Exact but for what is left unbalanced: the error of the quadrature in element-free cells moves the
-   load in the second order only. */
+/* Exact but for what is left unbalanced: the error of the quadrature in element-free cells moves
+   the load in the second order only. */
 static void a_bar_is_drawn(void **state) {
   (void)state;
   const double elements = drawn("finite_elements", 2.1), both = drawn("element_free", 2.1),

@@ -1,4 +1,5 @@
-/* The decks of examples/impact_beam against the figures of another program, by the program itself. */
+/* The decks of examples/impact_beam against the figures of another program, by the program
+   itself. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -8,8 +9,8 @@
 
 #include "deck_run.h"
 
-/* h/c_d/2, and looks at the tip as far apart as with the short step: damps more, and changes nothing
-   else. */
+/* h/c_d/2, and looks at the tip as far apart as with the short step: damps more, and changes
+   nothing else. */
 #define QUICK "--set simulation.step=4.2435e-7 --set tips.check_steps=20 "
 
 static void the_struck_beam(void **state) {

@@ -1,5 +1,5 @@
-/* The strengths of the four beams of examples/reinforced_concrete, by their studies, as their page has
-   them. */
+/* The strengths of the four beams of examples/reinforced_concrete, by their studies, as their page
+   has them. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,6 @@
 /* LAPACK and CHOLMOD: small and plain where a page needs them (the stable step of a small beam),
-   absent where it does not (static solutions, lowest modes). Arguments are LAPACK's, column-major. */
+   absent where it does not (static solutions, lowest modes). Arguments are LAPACK's,
+   column-major. */
 #include <complex.h>
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* A process for each answer: a page judges its own answer itself. It is fenced in by the browser. */
+/* A process for each answer: a page judges its own answer itself. It is fenced in by the
+   browser. */
 #include <stdlib.h>
 
 #include "generator/grade/grade_child.h"

@@ -63,7 +63,8 @@ static void add_decks(collection *c, const char *pattern) {
   globfree(&found);
 }
 
-/* Files of the course that hold such a group: decks, paths and exercises stand side by side there. */
+/* Files of the course that hold such a group: decks, paths and exercises stand side by side
+   there. */
 static void add_of_course(collection *c, const char *group) {
   static const char *const patterns[] = {SOURCE_DIR "/examples/course/*/*.nml",
                                          SOURCE_DIR "/examples/course/*/teacher/hidden/*.nml"};

@@ -117,8 +117,8 @@ static const char kelvin_law[] =
     "  parameter rho = 1000 [kg/m^3] in (0, inf) \"mass density\"\n"
     "  stress sigma = hooke(strain + tau*strain_rate, E, nu)\nend model\n";
 
-/* Drawn evenly for t: E (e + tau e'), and E tau e'^2 t is lost. A stress that comes in one step of h
-   and stays: steps of Euler backward, e_n = sigma/E (1 - (1 + h/tau)^-n). */
+/* Drawn evenly for t: E (e + tau e'), and E tau e'^2 t is lost. A stress that comes in one step of
+   h and stays: steps of Euler backward, e_n = sigma/E (1 - (1 + h/tau)^-n). */
 static void rates_cost_work(void **state) {
   workplace *w = *state;
   write_text(w, "kelvin.plm", kelvin_law);

@@ -1,5 +1,6 @@
 /* perilat grade: right answers in other forms, wrong ones and their words, classes, exercises that
-   are published, put to the test, or broken. The exercise stands in tests/generator/grade/memory. */
+   are published, put to the test, or broken. The exercise stands in
+   tests/generator/grade/memory. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,6 +1,6 @@
-/* perilat grade and files that mean harm, or look as if: each is judged to an end, within its limits,
-   with less than full points; nothing outside is read or written, no control character is printed,
-   and the next one is judged as ever. With PERILAT_SHOW set, times and memory are
+/* perilat grade and files that mean harm, or look as if: each is judged to an end, within its
+   limits, with less than full points; nothing outside is read or written, no control character is
+   printed, and the next one is judged as ever. With PERILAT_SHOW set, times and memory are
    listed. */
 #define _GNU_SOURCE
 #include <setjmp.h>

@@ -149,7 +149,8 @@ static void a_law_that_is_not_linear(void **state) {
   is(p.stress[2], 2 * mu * plane[2] * (1 + c * sq), E_0 * 1e-3);
 }
 
-/* --- lefm --------------------------------------------------------------------------------------- */
+/* --- lefm
+   --------------------------------------------------------------------------------------- */
 
 /* Angles of largest hoop stress and what it amounts to, which the driven speed tells:
    v = (K_eq/K_Ic - 1) c_R. To the digits of the figures; with -K_II the same, mirrored. */

@@ -1,6 +1,6 @@
-/* perilat report: pages are well formed and let nothing in or out, tell what `export` tells, are the
-   same bytes each time; whatever a result holds is text; what cannot be read leaves a page that is
-   there as it was. */
+/* perilat report: pages are well formed and let nothing in or out, tell what `export` tells, are
+   the same bytes each time; whatever a result holds is text; what cannot be read leaves a page that
+   is there as it was. */
 #define _XOPEN_SOURCE 700 /* nftw */
 #include <math.h>
 #include <setjmp.h>
@@ -16,7 +16,8 @@
 #include "tests/generator/command_tools.h"
 #include "tests/runtime/small_result.h"
 
-/* --- reading a page ---------------------------------------------------------------------------- */
+/* --- reading a page
+   ---------------------------------------------------------------------------- */
 
 static char *page_of(const workplace *w, const char *name) {
   size_t size;
@@ -68,7 +69,8 @@ static double *page_series_of(const char *page, const char *name, long *count) {
   return numbers_of(at + strlen("\"values\": \""), count);
 }
 
-/* --- tests ------------------------------------------------------------------------------------- */
+/* --- tests
+   ------------------------------------------------------------------------------------- */
 
 static void run_beam(workplace *w) {
   expect(w, "run beam.nml --set output.frames=6", 0, "written");
@@ -473,7 +475,8 @@ static void shows_studies(void **state) {
   expect(w, "report two.h5 two.h5", 1, "shown alone");
 }
 
-/* --- sizes ------------------------------------------------------------------------------------- */
+/* --- sizes
+   ------------------------------------------------------------------------------------- */
 
 enum { MANY_ROWS = 200, MANY_COLUMNS = 250, MANY = MANY_ROWS * MANY_COLUMNS, MANY_FRAMES = 24 };
 
@@ -537,7 +540,8 @@ static void pages_stay_small(void **state) {
   free(page);
 }
 
-/* --- numbers in few characters ----------------------------------------------------------------- */
+/* --- numbers in few characters
+   ----------------------------------------------------------------- */
 
 static void packs_as_it_says(void **state) {
   (void)state;

@@ -63,7 +63,8 @@ static void test_faults(void **state) {
   check_faults(*state, SOURCE_DIR "/tests/generator/run/bad_meshes", "plate.nml", faults, FAULTS);
 }
 
-/* The size shows a wrong unit; a group that the deck leaves to the base material is told, no fault. */
+/* The size shows a wrong unit; a group that the deck leaves to the base material is told, no
+   fault. */
 static void test_file(void **state) {
   workplace *w = *state;
   assert_int_equal(shell(w, "$P check " SOURCE_DIR "/examples/plate_gmsh/plate.nml 2>&1"), 0);

@@ -1,6 +1,6 @@
 /* A compiled law with a state, a damage and a rate term on a mesh: the same bits for any number of
-   threads, by the interpreter, resumed and from a solver; its fields at nodes; what is said of a step
-   that its stiffening leaves behind. */
+   threads, by the interpreter, resumed and from a solver; its fields at nodes; what is said of a
+   step that its stiffening leaves behind. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
@@ -372,8 +372,8 @@ static void stress_knows_states(void **state) {
   result_read_close(f);
 }
 
-/* An output that is a state is that state at every node, beside a hole, too; nodes have lost what the
-   body has. */
+/* An output that is a state is that state at every node, beside a hole, too; nodes have lost what
+   the body has. */
 static void nodes_beside_a_hole_tell(void **state) {
   static const char holed[] =
       "&simulation  end_time = '40 us'  step_safety = 0.7 /\n"

@@ -1,6 +1,7 @@
 /* States that are tensors, end to end: on lattices the same bits whatever
-   the threads and after a resume, their components in results; deviators beside tensors, and what is
-   said of their zz; and solvers of meshes, whose law of a continuum and law of cracks they hold. */
+   the threads and after a resume, their components in results; deviators beside tensors, and what
+   is said of their zz; and solvers of meshes, whose law of a continuum and law of cracks they
+   hold. */
 #define _GNU_SOURCE /* nftw */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -113,8 +114,8 @@ static void write_pulled(const workplace *w, int k, const char *word, const char
   write_text(w, name, text);
 }
 
-/* The law that says `tensor` finds all that the one that says `deviator` does, zz among it, which of
-   deviators is no field but may be an output. */
+/* The law that says `tensor` finds all that the one that says `deviator` does, zz among it, which
+   of deviators is no field but may be an output. */
 static void deviators_run_as_tensors_do(void **state) {
   workplace *w = *state;
   assert_int_equal(shell(w, "cp " SOURCE_DIR "/tests/generator/families/distorted.plm "

@@ -1,5 +1,5 @@
-/* A deck that is right, wrong in one place at a time, and the exact text that a user sees of each: a
-   folder holds the deck, and a text for each fault. */
+/* A deck that is right, wrong in one place at a time, and the exact text that a user sees of each:
+   a folder holds the deck, and a text for each fault. */
 #ifndef PERILAT_TESTS_WRONG_DECKS_H
 #define PERILAT_TESTS_WRONG_DECKS_H
 

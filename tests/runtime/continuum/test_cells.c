@@ -180,7 +180,8 @@ static void holes_that_cannot_be(void **state) {
         "holes leave too few nodes");
 }
 
-/* Nodes in a hole are no particles, those beside it weigh what is left; it swings as anything does. */
+/* Nodes in a hole are no particles, those beside it weigh what is left; it swings as anything
+   does. */
 static void a_plate_with_a_hole(void **state) {
   (void)state;
   small_run r;

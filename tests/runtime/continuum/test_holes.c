@@ -1,4 +1,5 @@
-/* Holes in meshes: Kirsch's plate, tunnels, masses, rigid motions, what is on either side of a hole. */
+/* Holes in meshes: Kirsch's plate, tunnels, masses, rigid motions, what is on either side of a
+   hole. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

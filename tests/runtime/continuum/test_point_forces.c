@@ -482,8 +482,8 @@ static double imbalance_of(const char *safety) {
   return part;
 }
 
-/* Where rates take nothing a quadratic energy is balanced to rounding, whatever the step: the work of
-   the mean of two stresses is that of the way between. */
+/* Where rates take nothing a quadratic energy is balanced to rounding, whatever the step: the work
+   of the mean of two stresses is that of the way between. */
 static void states_are_balanced(void **state) {
   (void)state;
   small_run r;
@@ -505,7 +505,8 @@ static void losses_are_booked(void **state) {
   assert_true(middle < 0.65 * coarse && fine < 0.65 * middle && fine < 5e-4);
 }
 
-/* Nodes show the mean of the points around: of a bar that is stretched evenly what each point has. */
+/* Nodes show the mean of the points around: of a bar that is stretched evenly what each point
+   has. */
 static void nodes_show_states(void **state) {
   (void)state;
   small_run r;
@@ -598,7 +599,8 @@ static void nodes_beside_a_hole_show_states(void **state) {
   small_close(&r);
 }
 
-/* A damper shortens the step: with tau = 1/omega_max the limit is (sqrt(5) - 1)/2 of that without. */
+/* A damper shortens the step: with tau = 1/omega_max the limit is (sqrt(5) - 1)/2 of that
+   without. */
 static void dampers_shorten_the_step(void **state) {
   (void)state;
   small_run r;

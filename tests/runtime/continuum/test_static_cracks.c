@@ -1,5 +1,6 @@
-/* Stress intensity factors at rest, on meshes of nodes: an edge crack by box, weight and support beside
-   the figures of another program with the same settings; theory; a sheared plate; a slanted crack. */
+/* Stress intensity factors at rest, on meshes of nodes: an edge crack by box, weight and support
+   beside the figures of another program with the same settings; theory; a sheared plate; a slanted
+   crack. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -138,7 +139,8 @@ static void a_sheared_plate(void **state) {
   case_close(&c);
 }
 
-/* Half length 1 at 45 degrees in 10 x 10: both are sqrt(pi)/2 in an infinite plate, 1 to 2 % more here. */
+/* Half length 1 at 45 degrees in 10 x 10: both are sqrt(pi)/2 in an infinite plate, 1 to 2 % more
+   here. */
 static void a_slanted_crack_has_both_modes_at_both_tips(void **state) {
   (void)state;
   case_mesh c = {0};

@@ -393,8 +393,8 @@ static void masses_are_all_of_the_mesh(void **state) {
   case_close(&c);
 }
 
-/* Two nodes in a row are bars: a row of elements free at both ends, whose highest frequency is known
-   where it is one element: of a square plate of one element by its 8 x 8 matrix. */
+/* Two nodes in a row are bars: a row of elements free at both ends, whose highest frequency is
+   known where it is one element: of a square plate of one element by its 8 x 8 matrix. */
 static void the_highest_frequency_is_that_of_one_element(void **state) {
   (void)state;
   case_mesh c = {0};
@@ -407,15 +407,16 @@ static void the_highest_frequency_is_that_of_one_element(void **state) {
   node_masses(&c.m, &c.points, &density, NULL, found_mass);
   for (int n = 0; n < 4; n++)
     assert_true(fabs(found_mass[n] - 0.25) < 1e-15);
-  /* nu = 0: the modes of uniform strain have w^2 = 4 E/(rho) = 4, those of shear 4, of bending less */
+  /* nu = 0: the modes of uniform strain have w^2 = 4 E/(rho) = 4, those of shear 4, of bending
+     less */
   assert_true(fabs(frequency_limit(&c.K, mass, c.held) - 2) < 1e-9);
   case_close(&c);
 }
 
 /* --- convergence ------------------------------------------------------------------------------ */
 
-/* Errors of a static plate 1 x 1 with prescribed displacements u = sin(2 x + y)(1, 1/2) and the body
-   force that holds it: sizes relative to the field's. */
+/* Errors of a static plate 1 x 1 with prescribed displacements u = sin(2 x + y)(1, 1/2) and the
+   body force that holds it: sizes relative to the field's. */
 typedef struct field_errors {
   double displacement, energy;
 } field_errors;

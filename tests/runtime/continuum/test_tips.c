@@ -174,8 +174,9 @@ static void a_crack_that_grows_is_resumed(void **state) {
   small_close(&threads.r);
 }
 
-/* A crack that has run into a hole parts what is on either side of it, also once it is resumed: of nodes
-   just beyond the mouth, whose lines past the hole's outline are too short for it to hide them. */
+/* A crack that has run into a hole parts what is on either side of it, also once it is resumed: of
+   nodes just beyond the mouth, whose lines past the hole's outline are too short for it to hide
+   them. */
 static void a_crack_that_is_in_a_hole_is_resumed(void **state) {
   (void)state;
   static cracked_run whole, resumed;
@@ -401,7 +402,8 @@ static void weight_counts_in_the_box(void **state) {
     assert_true(fabs(K[k] - K[1]) < 0.004 * K[1]);
 }
 
-/* In free fall v = g t, and nothing is left for the integral: of nodes that a force acts on, too. */
+/* In free fall v = g t, and nothing is left for the integral: of nodes that a force acts on,
+   too. */
 static void looks_know_gravity(void **state) {
   (void)state;
   static cracked_run c;

@@ -21,7 +21,8 @@ static void known_values(void **state) {
   }
 }
 
-/* No shear on the plane of largest hoop stress: K_I sin + K_II (3 cos - 1) = 0; nearby it is less. */
+/* No shear on the plane of largest hoop stress: K_I sin + K_II (3 cos - 1) = 0; nearby it is
+   less. */
 static void it_is_the_largest(void **state) {
   (void)state;
   for (int k = -20; k <= 20; k++) {

@@ -1,5 +1,5 @@
-/* Fields of a running tip against known values and the equations of motion; stress intensity factors
-   of these fields by the interaction integral. */
+/* Fields of a running tip against known values and the equations of motion; stress intensity
+   factors of these fields by the interaction integral. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

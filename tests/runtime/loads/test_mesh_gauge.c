@@ -1,4 +1,5 @@
-/* Gauges on meshes: linear fields at any place, free fall, an accelerated edge, places that are none. */
+/* Gauges on meshes: linear fields at any place, free fall, an accelerated edge, places that are
+   none. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -20,8 +21,8 @@ static void run(small_run *r, const char *text) {
 #define GAUGE(name, kind, component, at)                                                           \
   "&monitor name = '" name "' kind = '" kind "' component = '" component "' at = " at " /\n"
 
-/* A mesh all of whose nodes begin with u = (1e-4 + 2e-3 x - 4e-3 y, -3e-3 x + 1e-3 y): before any step
-   gauges show that field, of elements, element-free nodes, and between them. */
+/* A mesh all of whose nodes begin with u = (1e-4 + 2e-3 x - 4e-3 y, -3e-3 x + 1e-3 y): before any
+   step gauges show that field, of elements, element-free nodes, and between them. */
 #define LINEAR(mesh)                                                                               \
   "&simulation end_time = '20 us' step_safety = 0.5 /\n" mesh                                      \
   "&material mesh = 'plate' model = 'hooke' /\n"                                                   \

@@ -1,5 +1,5 @@
-/* Static runs of decks: what is held, driven and loaded, against closed forms; their energies; loads
-   that come and go; stress intensities; what cannot be. */
+/* Static runs of decks: what is held, driven and loaded, against closed forms; their energies;
+   loads that come and go; stress intensities; what cannot be. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -107,8 +107,8 @@ static void weight_is_borne(void **state) {
   small_close(&r);
 }
 
-/* Bending by a stress that is linear over the edge: the middle of the end sinks by M L^2/(2 E I); bilinear
-   elements are a little stiffer. */
+/* Bending by a stress that is linear over the edge: the middle of the end sinks by M L^2/(2 E I);
+   bilinear elements are a little stiffer. */
 static void a_traction_by_a_formula_bends(void **state) {
   (void)state;
   small_run r;
@@ -126,7 +126,8 @@ static void a_traction_by_a_formula_bends(void **state) {
   small_close(&r);
 }
 
-/* A stress along an inner line pulls what lies between it and the support; what is beyond goes along. */
+/* A stress along an inner line pulls what lies between it and the support; what is beyond goes
+   along. */
 static void a_line_inside_may_be_loaded(void **state) {
   (void)state;
   small_run r;

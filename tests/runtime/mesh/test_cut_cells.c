@@ -1,4 +1,5 @@
-/* Holes: what they hide, how far a line goes, points of cells that they cut, nodes that are gone. */
+/* Holes: what they hide, how far a line goes, points of cells that they cut, nodes that are
+   gone. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,4 +1,5 @@
-/* A linear field of the nodes is itself at every point, in element-free, blended and finite cells. */
+/* A linear field of the nodes is itself at every point, in element-free, blended and finite
+   cells. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
