@@ -131,3 +131,25 @@ bool text_ends_in(const char *text, const char *tail) {
   size_t n = strlen(text), m = strlen(tail);
   return n > m && strcmp(text + n - m, tail) == 0;
 }
+
+void markup_put(FILE *out, char c) {
+  switch (c) {
+  case '&':
+    fputs("&amp;", out);
+    break;
+  case '<':
+    fputs("&lt;", out);
+    break;
+  case '>':
+    fputs("&gt;", out);
+    break;
+  case '"':
+    fputs("&quot;", out);
+    break;
+  case '\'':
+    fputs("&#39;", out);
+    break;
+  default:
+    fputc(c, out);
+  }
+}

@@ -23,6 +23,9 @@ shown_character character_shown(const char *text, size_t available);
 size_t characters_plain(const char *text, size_t available);
 /* Writes a text so. */
 void characters_show(FILE *out, const char *text, size_t length);
+/* Writes a byte of a text into XML or HTML, between tags or in a quoted value: written out where it
+   means something there. */
+void markup_put(FILE *out, char c);
 /* Does a longer text end in `tail`? */
 bool text_ends_in(const char *text, const char *tail);
 /* A name on one line: line ends and tabs are written out, too. Good until the thread's fourth next

@@ -123,22 +123,7 @@ static void skip_blanks(reader *r) {
 
 static void put_escaped(const char *text, size_t length, FILE *out) {
   for (size_t k = 0; k < length; k++)
-    switch (text[k]) {
-    case '&':
-      fputs("&amp;", out);
-      break;
-    case '<':
-      fputs("&lt;", out);
-      break;
-    case '>':
-      fputs("&gt;", out);
-      break;
-    case '"':
-      fputs("&quot;", out);
-      break;
-    default:
-      fputc(text[k], out);
-    }
+    markup_put(out, text[k]);
 }
 
 /* {words}, where signs of LaTeX have a backslash; blanks at the ends are kept by browsers alone

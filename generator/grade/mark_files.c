@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "dsl/base/characters.h"
 #include "generator/exercise/exercise_grammar.h"
 #include "generator/grade/mark_text.h"
 #include "generator/kernel/document.h"
@@ -118,29 +119,10 @@ bool marks_csv(const exercise *e, const marks *all, int count, const char *path)
 
 /* --- JUnit ------------------------------------------------------------------------------------ */
 
-void xml_text(FILE *out, const char *text) {
-  for (; *text; text++) {
-    const unsigned char c = (unsigned char)*text;
-    switch (c) {
-    case '&':
-      fputs("&amp;", out);
-      break;
-    case '<':
-      fputs("&lt;", out);
-      break;
-    case '>':
-      fputs("&gt;", out);
-      break;
-    case '"':
-      fputs("&quot;", out);
-      break;
-    case '\'':
-      fputs("&#39;", out);
-      break;
-    default:
-      if (c >= ' ' || c == '\n' || c == '\t') fputc(c, out);
-    }
-  }
+/* Control characters are left out: XML has none. */
+static void xml_text(FILE *out, const char *text) {
+  for (; *text; text++)
+    if ((unsigned char)*text >= ' ' || *text == '\n' || *text == '\t') markup_put(out, *text);
 }
 
 static bool is_short(const exercise_item *item, const item_mark *i, const marks *m) {

@@ -13,7 +13,5 @@ void marks_json(const exercise *e, const marks *m, json *j);
 bool marks_csv(const exercise *e, const marks *all, int count, const char *path);
 /* An answer is a test suite, an item a test; points that are lost are a failure. */
 bool marks_junit(const exercise *e, const marks *all, int count, const char *path);
-/* Text in which & < > " ' are written out and control characters are left out. */
-void xml_text(FILE *out, const char *text);
 
 #endif

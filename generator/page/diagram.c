@@ -268,3 +268,15 @@ bool diagram_svg(FILE *out, const diagram *d) {
   fputs("</svg>\n", out);
   return true;
 }
+
+void diagram_legend(FILE *out, const diagram *d) {
+  fputs("<ul class=\"legend\">", out);
+  for (int k = 0; k < d->count; k++) {
+    const diagram_curve *c = &d->curves[d->stacked ? d->count - 1 - k : k];
+    if (!c->label) continue;
+    fprintf(out, "<li><span class=\"ink%d dash%d\"></span>", c->ink % 8, c->ink / 8 % 4);
+    html_text(out, c->label);
+    fputs("</li>", out);
+  }
+  fputs("</ul>\n", out);
+}

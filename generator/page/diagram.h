@@ -28,5 +28,7 @@ typedef struct diagram {
 
 /* False, with nothing written, where no value can be drawn. */
 bool diagram_svg(FILE *out, const diagram *d);
+/* The curves that have labels, the topmost area first. */
+void diagram_legend(FILE *out, const diagram *d);
 
 #endif

@@ -11,29 +11,12 @@
 #include "dsl/base/units.h"
 #include "runtime/plot/canvas.h"
 
+/* A browser would make a line end of its own of \r. */
 static void put_character(FILE *out, char c) {
-  switch (c) {
-  case '&':
-    fputs("&amp;", out);
-    break;
-  case '<':
-    fputs("&lt;", out);
-    break;
-  case '>':
-    fputs("&gt;", out);
-    break;
-  case '"':
-    fputs("&quot;", out);
-    break;
-  case '\'':
-    fputs("&#39;", out);
-    break;
-  case '\r': /* a browser would make it a line end of its own */
+  if (c == '\r')
     fputs("\\r", out);
-    break;
-  default:
-    fputc(c, out);
-  }
+  else
+    markup_put(out, c);
 }
 
 void html_bytes(FILE *out, const char *text, size_t length) {

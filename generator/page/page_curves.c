@@ -55,14 +55,11 @@ static void put_curve(FILE *out, const page_result *results, int count, const ch
 }
 
 static void put_results_legend(FILE *out, const page_result *results, int count) {
+  diagram_curve of[2];
   if (count < 2) return;
-  fputs("<ul class=\"legend\">", out);
-  for (int k = 0; k < count; k++) {
-    fprintf(out, "<li><span class=\"ink%d\"></span>", k);
-    html_text(out, results[k].shown);
-    fputs("</li>", out);
-  }
-  fputs("</ul>\n", out);
+  for (int k = 0; k < count; k++)
+    of[k] = (diagram_curve){.label = results[k].shown, .ink = k};
+  diagram_legend(out, &(diagram){.curves = of, .count = count});
 }
 
 /* What the first result's is drawn over counts, where the other has it, too. */
@@ -149,10 +146,7 @@ static void put_stack(FILE *out, const page_result *p) {
                      .stacked = true,
                      .large = true,
                      .over = ""};
-  fputs("<ul class=\"legend\">", out);
-  for (int k = count - 1; k >= 0; k--)
-    fprintf(out, "<li><span class=\"ink%d\"></span>%s</li>", areas[k].ink, areas[k].label);
-  fputs("</ul>\n", out);
+  diagram_legend(out, &d);
   if (count == 0 || !diagram_svg(out, &d)) fputs("<p class=\"none\">none</p>", out);
   free(sums);
 }

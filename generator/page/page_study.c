@@ -127,17 +127,6 @@ static void put_tables(FILE *out, const study_reading *r) {
 
 /* --- curves ----------------------------------------------------------------------------------- */
 
-static void put_legend(FILE *out, const study_reading *r) {
-  fputs("<ul class=\"legend\">", out);
-  for (int k = 0; k < r->curve_count; k++) {
-    if (r->curves[k].count == 0) continue;
-    fprintf(out, "<li><span class=\"ink%d dash%d\"></span>", k % 8, k / 8 % 4);
-    html_text(out, r->curves[k].name);
-    fputs("</li>", out);
-  }
-  fputs("</ul>\n", out);
-}
-
 static void put_curves(FILE *out, const study_reading *r) {
   char(*keys)[KEY] = must_calloc((size_t)r->curve_count + 1, sizeof *keys);
   diagram_curve *curves = must_calloc((size_t)r->curve_count + 1, sizeof *curves);
@@ -147,8 +136,13 @@ static void put_curves(FILE *out, const study_reading *r) {
     const study_curve *c = &r->curves[k];
     if (c->count == 0) continue;
     if (!first) first = c;
-    curves[count++] = (diagram_curve){
-        .x = c->x, .y = c->y, .count = c->count, .ink = k, .series = "y", .of = key_of(k, keys[k])};
+    curves[count++] = (diagram_curve){.label = c->name,
+                                      .x = c->x,
+                                      .y = c->y,
+                                      .count = c->count,
+                                      .ink = k,
+                                      .series = "y",
+                                      .of = key_of(k, keys[k])};
   }
   char title[700];
   snprintf(title, sizeof title, "%.300s over %.300s", r->y_name, r->x_name);
@@ -162,7 +156,7 @@ static void put_curves(FILE *out, const study_reading *r) {
                      .large = true,
                      .over = "x"};
   fputs("<section><h2>Their curves</h2>\n", out);
-  put_legend(out, r);
+  diagram_legend(out, &d);
   fputs("<figure class=\"curve\"><figcaption>", out);
   html_text(out, title);
   fputs("</figcaption>\n", out);

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "dsl/base/characters.h"
 #include "runtime/result/views.h"
 
 /* The sidecar names the HDF5 file without its folder: both move together. */
@@ -13,22 +14,7 @@ static const char *base_name(const char *path) {
 /* Names of lattices and files may hold characters that mean something in XML. */
 static void print_text(FILE *out, const char *text) {
   for (; *text; text++)
-    switch (*text) {
-    case '&':
-      fputs("&amp;", out);
-      break;
-    case '<':
-      fputs("&lt;", out);
-      break;
-    case '>':
-      fputs("&gt;", out);
-      break;
-    case '"':
-      fputs("&quot;", out);
-      break;
-    default:
-      fputc(*text, out);
-    }
+    markup_put(out, *text);
 }
 
 /* `file:set`, as HDF5 data are named. */

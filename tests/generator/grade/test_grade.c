@@ -12,8 +12,8 @@
 
 #include "generator/exercise/answer_table.h"
 #include "generator/exercise/exercise_grammar.h"
-#include "generator/grade/curve_text.h"
 #include "generator/grade/mark_files.h"
+#include "generator/grade/mark_page.h"
 #include "generator/grade/mark_text.h"
 #include "tests/generator/command_tools.h"
 
@@ -267,10 +267,10 @@ static void a_class_has_a_row_each(void **state) {
   assert_int_equal(shell(w, "cat marks.xml"), 0);
   says(w, "<testsuite name=\"memory bob\" tests=\"6\" failures=\"4\" skipped=\"1\"");
   /* of the public path, and of the hidden one that asks for it */
-  assert_int_equal(shell(w, "grep -c '<svg' marks.html; grep -c '<script' marks.html; grep -o "
-                            "pre-wrap marks.html"),
+  assert_int_equal(shell(w, "grep -c '<svg' marks.html; grep -c '<script' marks.html; grep -c "
+                            "\"default-src 'none'\" marks.html; xmllint --noout marks.html"),
                    0);
-  assert_string_equal(w->said, "2\n0\npre-wrap\n");
+  assert_string_equal(w->said, "2\n0\n1\n");
 }
 
 /* Curves are shown of public paths, where the exercise says no other thing. */
@@ -315,13 +315,13 @@ static void samples_are_the_answers(void **state) {
                "> class/ada.plm; (cat class/ada.plm; echo '! Bob') > class/bob.plm; sed "
                "'s/$/\\r/' class/ada.plm > class/eve/answer.plm; cp class/ada.plm other/x.plm"),
       0);
-  assert_int_equal(shell(w,
-                         "drawn() { $P grade memory $1 --html $2 $3 $4 > said; grep polyline $2 | "
-                         "tail -1; }; drawn class/ada.plm 1 > a; drawn class/bob.plm 2 > b; "
-                         "drawn class/eve/answer.plm 3 > c; drawn other/x.plm 4 > d; drawn "
-                         "class/ada.plm 5 --seed 4 > e; test -s a && cmp a c && cmp a d && "
-                         "! cmp -s a b && ! cmp -s a e"),
-                   0);
+  assert_int_equal(
+      shell(w, "drawn() { $P grade memory $1 --html $2 $3 $4 > said; grep 'class=.curve' $2 | "
+               "tail -1; }; drawn class/ada.plm 1 > a; drawn class/bob.plm 2 > b; "
+               "drawn class/eve/answer.plm 3 > c; drawn other/x.plm 4 > d; drawn "
+               "class/ada.plm 5 --seed 4 > e; test -s a && cmp a c && cmp a d && "
+               "! cmp -s a b && ! cmp -s a e"),
+      0);
   expect(w, "grade memory class/ada.plm", 2, "Any material: 0 of 4, all or nothing\n");
 }
 
@@ -490,11 +490,14 @@ static void text_in_pages_is_written_out(void **state) {
   char *text;
   size_t length;
   FILE *out = must_open_text(&text, &length);
-  xml_text(out, "<b a='\"'>&\033");
-  curve_svg("x<\ny\n0 0 1 1 nan 2 \n0 0 1 0.5 <script> 3\n", out);
+  marks_curve(out, "x<\n1\ny\033\n<N>\n0 0 1 1 nan 2 \n0 0 1 0.5 <script> 3\n");
+  marks_curve(out, "");
   must_close_text(out);
-  assert_non_null(strstr(text, "&lt;b a=&#39;&quot;&#39;&gt;&amp;<svg"));
+  assert_non_null(strstr(text, "<svg"));
+  assert_null(strstr(strstr(text, "<svg") + 1, "<svg"));
   assert_non_null(strstr(text, ">x&lt;</text>"));
+  assert_non_null(strstr(text, "&lt;N&gt;"));
+  assert_non_null(strstr(text, "</span>right</li>"));
   assert_null(strstr(text, "script"));
   assert_null(strchr(text, '\033'));
   free(text);
