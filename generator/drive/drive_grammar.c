@@ -323,25 +323,3 @@ bool drive_refuse_path(const char *command, const char *file) {
             file, command, file);
   return true;
 }
-
-static const char *value_words(const deck_key_info *key) {
-  if (key->type == DECK_COUNT) return "whole number";
-  if (!key->unit || !*key->unit) return "text";
-  return unit_is_pure(key->unit) ? "pure number" : key->unit;
-}
-
-void drive_reference(FILE *out) {
-  for (int g = 0; g < DRIVE_GROUP_COUNT; g++) {
-    fprintf(out, "### &%s\n\n%s\n\n| key | value | default | meaning |\n|---|---|---|---|\n",
-            groups[g].name, groups[g].doc);
-    for (int k = 0; k < groups[g].key_count; k++) {
-      const deck_key_info *key = &groups[g].keys[k];
-      const char *given = key->required ? "required" : key->fallback ? key->fallback : "";
-      fprintf(out, "| `%s` | ", key->name);
-      for (const char *c = key->choices ? key->choices : value_words(key); *c; c++)
-        fputs(*c == '|' ? ", " : (char[]){*c, 0}, out);
-      fprintf(out, " | %s | %s |\n", given[0] == '=' ? given + 2 : given, key->doc);
-    }
-    fputc('\n', out);
-  }
-}

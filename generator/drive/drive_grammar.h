@@ -24,8 +24,6 @@ enum {
       DRIVE_GROUP_COUNT
 };
 
-/* Every group and key, as Markdown. */
-void drive_reference(FILE *out);
 /* The groups that a path may hold. */
 extern const deck_grammar drive_grammar;
 /* The group of paths with that name (without &), or NULL. */

@@ -170,27 +170,3 @@ const char *const item_kind_names[ITEM_KIND_COUNT] = {
     ITEM_KINDS(X)
 #undef X
 };
-
-static const char *value_words(const deck_key_info *key) {
-  if (key->type == DECK_COUNT) return "whole number";
-  if (key->type == DECK_LOGICAL) return ".true., .false.";
-  if (key->type == DECK_PAIR) return "two pure numbers";
-  if (!key->unit || !*key->unit) return key->type == DECK_NAMES ? "texts" : "text";
-  return unit_is_pure(key->unit) ? "pure number" : key->unit;
-}
-
-void exercise_reference(FILE *out) {
-  for (int g = 0; g < EXERCISE_GROUP_COUNT; g++) {
-    fprintf(out, "### &%s\n\n%s\n\n| key | value | default | meaning |\n|---|---|---|---|\n",
-            groups[g].name, groups[g].doc);
-    for (int k = 0; k < groups[g].key_count; k++) {
-      const deck_key_info *key = &groups[g].keys[k];
-      const char *given = key->required ? "required" : key->fallback ? key->fallback : "";
-      fprintf(out, "| `%s` | ", key->name);
-      for (const char *c = key->choices ? key->choices : value_words(key); *c; c++)
-        fputs(*c == '|' ? ", " : (char[]){*c, 0}, out);
-      fprintf(out, " | %s | %s |\n", given[0] == '=' ? given + 2 : given, key->doc);
-    }
-    fputc('\n', out);
-  }
-}

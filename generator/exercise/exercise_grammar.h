@@ -10,7 +10,5 @@ enum { EXERCISE_GROUP_EXERCISE, EXERCISE_GROUP_ITEM, EXERCISE_GROUP_COUNT };
 
 extern const deck_grammar exercise_grammar;
 extern const char *const item_kind_names[ITEM_KIND_COUNT];
-/* Every group and key, as Markdown. */
-void exercise_reference(FILE *out);
 
 #endif

@@ -58,7 +58,8 @@ static void print_type(const deck_key_info *key, FILE *out) {
     fputs("degrees, or `'0.3 rad'`", out);
     break;
   case DECK_COUNT:
-    fprintf(out, "whole number, 0 to %d", key->most);
+    fputs("whole number", out);
+    if (key->most > 0) fprintf(out, ", 0 to %d", key->most);
     break;
   case DECK_LOGICAL:
     fputs("`.true.` or `.false.`", out);
@@ -67,7 +68,7 @@ static void print_type(const deck_key_info *key, FILE *out) {
     fputs("texts", out);
     break;
   default:
-    fputs(shown ? shown : "text", out);
+    fputs(shown && *shown ? shown : "text", out);
   }
 }
 
@@ -80,9 +81,9 @@ static void print_default(const deck_key_info *key, FILE *out) {
     fprintf(out, "`%s`", key->fallback);
 }
 
-void deck_reference(FILE *out) {
-  for (int i = 0; i < DECK_GROUP_COUNT; i++) {
-    const deck_group_info *g = deck_groups[i];
+void deck_reference(const deck_grammar *of, FILE *out) {
+  for (int i = 0; i < of->group_count; i++) {
+    const deck_group_info *g = of->groups[i];
     fprintf(out, "### &%s\n\n%s\n\n| key | value | default | meaning |\n|---|---|---|---|\n",
             g->name, g->doc);
     for (int k = 0; k < g->key_count; k++) {

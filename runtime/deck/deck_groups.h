@@ -11,7 +11,7 @@
 extern const deck_group_info *const deck_groups[DECK_GROUP_COUNT];
 extern const deck_grammar deck_grammar_of_decks;
 
-/* Every group and key with its value, unit, default and meaning, as Markdown. */
-void deck_reference(FILE *out);
+/* Every group and key of a grammar with its value, unit, default and meaning, as Markdown. */
+void deck_reference(const deck_grammar *of, FILE *out);
 
 #endif

@@ -19,6 +19,7 @@
 #include "generator/drive/drive_path.h"
 #include "generator/drive/drive_table.h"
 #include "generator/kernel/model.h"
+#include "runtime/deck/deck_groups.h"
 #include "runtime/result/result_file.h"
 #include "runtime/result/result_read.h"
 
@@ -466,7 +467,7 @@ static void the_reference_is_true(void **state) {
   size_t length = 0;
   FILE *out = open_memstream(&text, &length);
   assert_non_null(out);
-  drive_reference(out);
+  deck_reference(&drive_grammar, out);
   fclose(out);
   char *page =
       read_text_file(SOURCE_DIR "/models/drives/README.md", 1 << 20, &length, error, sizeof error);

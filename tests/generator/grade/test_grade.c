@@ -15,6 +15,7 @@
 #include "generator/grade/mark_files.h"
 #include "generator/grade/mark_page.h"
 #include "generator/grade/mark_text.h"
+#include "runtime/deck/deck_groups.h"
 #include "tests/generator/command_tools.h"
 
 /* A copy of the exercise in the workplace. */
@@ -511,7 +512,7 @@ static void the_reference_is_the_grammars(void **state) {
   char *text;
   size_t length;
   FILE *out = must_open_text(&text, &length);
-  exercise_reference(out);
+  deck_reference(&exercise_grammar, out);
   must_close_text(out);
   assert_int_equal(shell(w, "cat '" SOURCE_DIR "/generator/exercise/README.md' > page"), 0);
   char *page = read_bytes(w, "page", &length);

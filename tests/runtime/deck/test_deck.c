@@ -534,7 +534,7 @@ static void the_reference_is_up_to_date(void **state) {
   char *reference = NULL, *page = read_file(page_path);
   size_t length;
   FILE *out = open_memstream(&reference, &length);
-  deck_reference(out);
+  deck_reference(&deck_grammar_of_decks, out);
   fclose(out);
   char *groups = strstr(page, head);
   assert_non_null(groups);
