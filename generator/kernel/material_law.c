@@ -119,7 +119,7 @@ bool material_law_read(const deck_material *m, const char *path, model *out, dia
 
 /* --- the lattice ------------------------------------------------------------------------------ */
 
-static law_setting setting_of(const deck_lattice *l) {
+law_setting material_setting(const deck_lattice *l) {
   for (int k = SETTING_PLANE_STRESS; k <= SETTING_SPACE; k++)
     if (strcmp(l->setting, law_setting_name((law_setting)k)) == 0) return (law_setting)k;
   return SETTING_PLANE_STRESS;
@@ -154,7 +154,7 @@ static bool take_setting(const deck_material *m, const deck_lattice *l, model *o
   char meant[96];
   if (!l) return true;
   const bool irregular = deck_lattice_is_irregular(l);
-  out->law = law_on_lattice(out->law, setting_of(l), irregular, neighbours_of(l));
+  out->law = law_on_lattice(out->law, material_setting(l), irregular, neighbours_of(l));
   const char *name = law_setting_name(out->law->setting);
   if (out->law->irregular && !deck_lattice_is_bar(l) && !deck_lattice_is_link(l) &&
       !model_suits_irregular(out)) {

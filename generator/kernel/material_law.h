@@ -15,6 +15,8 @@ C_LINKAGE_BEGIN
 bool material_law_open(const deck_material *m, const deck_lattice *l, const char *deck_path,
                        model *out, diagnostics *said);
 
+/* The setting of a lattice or mesh: its key `setting`. */
+law_setting material_setting(const deck_lattice *l);
 /* The steps of that. Opens the file `path`, which is refused, unseen, when it holds no law, and
    takes the options. */
 bool material_law_read(const deck_material *m, const char *path, model *out, diagnostics *said);

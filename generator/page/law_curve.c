@@ -40,7 +40,8 @@ static char *path_text(const driver *r, double most, bool returns) {
   else if (r->of == DRIVE_OF_FAMILIES)
     fprintf(out, "&particle spacing = '%.17g m'", r->size);
   else
-    fprintf(out, "&point test = 'uniaxial stress' size = '%.17g m'", r->size);
+    fprintf(out, "&point test = 'uniaxial stress' setting = '%s' size = '%.17g m'",
+            law_setting_name(r->m->law->setting), r->size);
   const bool reads_area = law_reads(r->m->law, QUANTITY_AREA);
   if (r->of == DRIVE_OF_BONDS && reads_area)
     fprintf(out, " area = '%.17g m^2'", r->l->area > 0 ? r->l->area : r->size * r->size);

@@ -9,6 +9,7 @@
 #include "dsl/print/explain.h"
 #include "dsl/print/explain_math.h"
 #include "dsl/print/mathml.h"
+#include "dsl/semantics/law_variant.h"
 #include "generator/kernel/material_law.h"
 #include "generator/page/diagram.h"
 #include "generator/page/html.h"
@@ -78,6 +79,14 @@ static deck_material without_places(arena *a, const deck_material *m) {
   return alone;
 }
 
+/* A single bond is that of the plane also where its lattice is in space. */
+static void take_setting(used_law *u) {
+  const law_setting setting = material_setting(u->lattice);
+  const law_kind kind = u->m.law->tree->law;
+  if (setting != SETTING_SPACE || kind == LAW_STATE || kind == LAW_CONTINUUM)
+    u->m.law = law_on_lattice(u->m.law, setting, false, 0);
+}
+
 /* Read from the result alone, with the deck's options and values. False: what is missing (a file
    that the law includes, say) is not told, the text stands in the page. */
 static bool open_law(used_law *u, char *text) {
@@ -87,9 +96,10 @@ static bool open_law(used_law *u, char *text) {
                       alone = without_places(u->p->memory, &known);
   diag_begin(&u->said, (source_set *)&u->p->sources);
   if (!model_open_text(&u->m, u->material->model, text, strlen(text), NULL, 0) ||
-      !material_law_take_options(&known, &u->m, &u->said) ||
-      !material_law_plan(&alone, NULL, &u->m, &u->said))
+      !material_law_take_options(&known, &u->m, &u->said))
     return false;
+  take_setting(u);
+  if (!material_law_plan(&alone, NULL, &u->m, &u->said)) return false;
   u->kernel = model_kernel(&u->m, true, &note, error, sizeof error);
   if (!u->kernel) return false;
   u->parameters = must_calloc((size_t)u->kernel->parameter_count + 1, sizeof *u->parameters);
@@ -211,13 +221,16 @@ static void put_diagram(FILE *out, const drive_table *t, const char *title) {
   if (!diagram_svg(out, &d)) fputs("<p class=\"none\">nothing</p>", out);
 }
 
-static void put_curve_caption(FILE *out, const law_curve *c, bool varied) {
+static void put_curve_caption(FILE *out, const law_curve *c, law_setting setting, bool varied) {
+  static const char *const settings[] = {[SETTING_PLANE_STRESS] = "plane stress",
+                                         [SETTING_PLANE_STRAIN] = "plane strain",
+                                         [SETTING_SPACE] = "space"};
   static const char *const things[] = {[DRIVE_OF_BONDS] = "One bond, spacing",
                                        [DRIVE_OF_FAMILIES] = "One particle, spacing",
                                        [DRIVE_OF_POINTS] = "One point, free across, cell size"};
   char text[HTML_QUANTITY];
-  html_print(out, "%s %s: drawn out by a third of the way, let go, drawn out", things[c->of],
-             html_quantity(c->size, "m", text));
+  html_print(out, "%s %s, in %s: drawn out by a third of the way, let go, drawn out", things[c->of],
+             html_quantity(c->size, "m", text), settings[setting]);
   fputs(c->was_pressed ? "; beside it pressed in the same way" : "", out);
   if (varied) fputs("; with the values above, the same everywhere", out);
 }
@@ -226,7 +239,7 @@ static void put_curve(FILE *out, const used_law *u) {
   law_curve c;
   if (law_curve_read(&c, &u->m, u->kernel, u->parameters, u->lattice)) {
     fputs("<h3>What it answers by itself</h3>\n<figure class=\"curve alone\"><figcaption>", out);
-    put_curve_caption(out, &c, varies(u));
+    put_curve_caption(out, &c, u->m.law->setting, varies(u));
     fputs("</figcaption>\n", out);
     put_diagram(out, &c.drawn, "the answer when drawn");
     if (c.was_pressed) put_diagram(out, &c.pressed, "the answer when pressed");

@@ -417,6 +417,37 @@ static void laws_that_differ_in_space(void **state) {
   free(same);
 }
 
+/* A point free across of E = 30 GPa, nu = 0.49 at a thousandth: 30 MPa in plane stress, 39.5 MPa in
+   plane strain. */
+static void laws_are_those_of_their_setting(void **state) {
+  static const struct {
+    const char *setting, *words;
+    double most;
+  } cases[] = {{"plane_stress", "in plane stress", 30}, {"plane_strain", "in plane strain", 40}};
+  workplace *w = *state;
+  for (int k = 0; k < 2; k++) {
+    char deck[800];
+    snprintf(deck, sizeof deck,
+             "&simulation end_time = '1 us' /\n"
+             "&mesh name = 'm' size = '40 mm', '20 mm' nodes = 5, 3 thickness = '10 mm'\n"
+             "      method = 'finite_elements' setting = '%s' /\n"
+             "&material mesh = 'm' model = 'elastic' E = '30 GPa' nu = 0.49 /\n"
+             "&output result = 'm.h5' /\n",
+             cases[k].setting);
+    write_text(w, "m.nml", deck);
+    expect(w, "run m.nml", 0, "m.h5");
+    expect(w, "report m.h5 -o m.html", 0, "m.html");
+    char *page = page_of(w, "m.html"), *curve = between(page, "<figcaption>One point", "</svg>");
+    double low, high, factor;
+    assert_non_null(strstr(curve, cases[k].words));
+    assert_int_equal(
+        sscanf(strstr(curve, "data-y=\""), "data-y=\"%lf %lf %lf", &low, &high, &factor), 3);
+    assert_true(fabs(high - cases[k].most) < 1e-9);
+    free(curve);
+    free(page);
+  }
+}
+
 /* A mesh, solved for at rest. */
 static void shows_meshes(void **state) {
   workplace *w = *state;
@@ -594,6 +625,7 @@ int main(void) {
       IN_WORKPLACE(folders_of_the_machine_are_left_out),
       IN_WORKPLACE(runs_speak),
       IN_WORKPLACE(laws_that_differ_in_space),
+      IN_WORKPLACE(laws_are_those_of_their_setting),
       IN_WORKPLACE(shows_meshes),
       IN_WORKPLACE(without_frames),
       IN_WORKPLACE(shows_studies),
