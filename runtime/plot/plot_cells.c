@@ -65,8 +65,7 @@ void plot_cells_fill(canvas *c, const plot_meshes *m, const mesh_view *v, const 
     fill_mesh(c, &m->items[k], v, at, low, high);
 }
 
-/* --- lines of equal value ----------------------------------------------------------------------
-   */
+/* --- lines of equal value --------------------------------------------------------------------- */
 
 static double step_of(double range, int wanted) {
   double best = 0;

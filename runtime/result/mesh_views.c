@@ -35,8 +35,7 @@ long mesh_path_count(const mesh_path *p, long frame) {
   return count;
 }
 
-/* --- cells that no crack crosses ---------------------------------------------------------------
-   */
+/* --- cells that no crack crosses -------------------------------------------------------------- */
 
 /* Whether the line a -> b has a part inside the box; a line along its border has none. */
 static bool crosses(const double a[2], const double b[2], const double low[2],
