@@ -347,28 +347,62 @@ static bool take_shown(hid_t file, const mesh_views *v, const result_field *f, l
   return good;
 }
 
+/* Whether all cells are shown in all frames, as they are where none dies: nothing is copied then. */
+static bool are_all_shown(const mesh_views *v, const result_field *f, long frames) {
+  for (long k = 0; k < frames; k++)
+    if (v->sets[v->set_of_frame[k]].count != f->count) return false;
+  return true;
+}
+
+static bool copy_values(hid_t file, const mesh_views *v, const result_field *f, long frames,
+                        const char *name) {
+  const hsize_t count[1] = {(hsize_t)mesh_views_values_begin(v, frames)};
+  double *all = must_alloc(((size_t)count[0] + 1) * sizeof *all);
+  const bool good =
+      take_shown(file, v, f, frames, all) && h5_write_doubles(file, name, all, 1, count, f->unit);
+  free(all);
+  return good;
+}
+
+/* Frames of whole meshes one after the other. */
+static bool view_values(hid_t file, const result_field *f, long frames, const char *name,
+                        const char *own) {
+  const hsize_t count = (hsize_t)f->count, sum[1] = {count * (hsize_t)frames};
+  h5_block *at = must_calloc((size_t)frames + 1, sizeof *at);
+  for (long k = 0; k < frames; k++)
+    at[k] = (h5_block){.set = own,
+                       .start = {(hsize_t)k},
+                       .count = {1, count},
+                       .first = (hsize_t)k * count,
+                       .rows = count};
+  const bool good = h5_make_view(file, name, 1, sum, at, (int)frames, false);
+  free(at);
+  return good;
+}
+
 static bool show_values(hid_t file, const mesh_views *v, const result_field *f, long frame,
-                        const char *set) {
+                        const char *all, const char *own) {
   char name[NAME];
   const hsize_t count[1] = {(hsize_t)v->sets[v->set_of_frame[frame]].count};
-  const h5_block from = {
-      .set = set, .start = {(hsize_t)mesh_views_values_begin(v, frame)}, .count = {count[0], 1}};
+  const h5_block whole = {.set = own, .start = {(hsize_t)frame}, .count = {1, count[0]}},
+                 part = {.set = all,
+                         .start = {(hsize_t)mesh_views_values_begin(v, frame)},
+                         .count = {count[0], 1}};
   mesh_views_values_name(f, frame, name, sizeof name);
-  return h5_make_view(file, name, 1, count, &from, 1, false);
+  return h5_make_view(file, name, 1, count, own ? &whole : &part, 1, false);
 }
 
 static bool write_values(hid_t file, const mesh_views *v, const result_field *f, long frames) {
-  char group[NAME], name[NAME];
-  const hsize_t count[1] = {(hsize_t)mesh_views_values_begin(v, frames)};
-  double *all = must_alloc(((size_t)count[0] + 1) * sizeof *all);
+  char group[NAME], all[NAME], own[NAME];
+  const bool whole = are_all_shown(v, f, frames);
   snprintf(group, sizeof group, "/xdmf/cell_values/%s", f->name);
-  mesh_views_all_values_name(f, name, sizeof name);
-  bool good = h5_make_group(file, "/xdmf/cell_values") && h5_make_group(file, group) &&
-              take_shown(file, v, f, frames, all) &&
-              h5_write_doubles(file, name, all, 1, count, f->unit);
+  snprintf(own, sizeof own, "/cells/%s", f->name);
+  mesh_views_all_values_name(f, all, sizeof all);
+  bool good =
+      h5_make_group(file, "/xdmf/cell_values") && h5_make_group(file, group) &&
+      (whole ? view_values(file, f, frames, all, own) : copy_values(file, v, f, frames, all));
   for (long k = 0; k < frames && good; k++)
-    good = show_values(file, v, f, k, name);
-  free(all);
+    good = show_values(file, v, f, k, all, whole ? own : NULL);
   return good;
 }
 
