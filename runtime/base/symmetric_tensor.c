@@ -1,6 +1,7 @@
 #include "runtime/base/symmetric_tensor.h"
 
 #include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
@@ -30,12 +31,17 @@ static bool is_named(const char *name, int length, const char *component, const 
   return found;
 }
 
-int tensor_traced(const char *name, const char *const *names, int count) {
+const char *tensor_traced(const char *name, const char *const *names, int count, char *words,
+                          size_t size) {
   const int length = (int)strlen(name) - 3;
-  if (length < 1 || strcmp(name + length, "_zz") != 0) return 0;
+  if (length < 1 || strcmp(name + length, "_zz") != 0) return NULL;
   for (int c = 0; c < TENSOR_MOST; c++) {
     const bool traced = strcmp(space[c].name, "zz") == 0;
-    if (is_named(name, length, space[c].name, names, count) == traced) return 0;
+    if (is_named(name, length, space[c].name, names, count) == traced) return NULL;
   }
-  return length;
+  snprintf(words, size,
+           "`%.*s` is a deviator, kept without zz = -(xx + yy): let the law give "
+           "`output %s = %.*s[z,z]`",
+           length, name, name, length, name);
+  return words;
 }

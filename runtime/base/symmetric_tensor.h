@@ -3,6 +3,8 @@
 #ifndef PERILAT_RUNTIME_SYMMETRIC_TENSOR_H
 #define PERILAT_RUNTIME_SYMMETRIC_TENSOR_H
 
+#include <stddef.h>
+
 enum { TENSOR_MOST = 6 };
 
 typedef struct tensor_component {
@@ -14,8 +16,9 @@ typedef struct tensor_component {
 int tensor_components(int dimensions, const tensor_component **components);
 /* By its name, without regard to case; -1: there is none. */
 int tensor_find(int dimensions, const char *name);
-/* Whether `name` is "e_zz" where `names` has all other components of e: it is a deviator, which is
-   kept without zz. Then how many characters "e" has, else 0. */
-int tensor_traced(const char *name, const char *const *names, int count);
+/* Where `name` is "e_zz" and `names` has all other components of e, which is a deviator then: that zz
+   is not kept, and how it may be had, in words. Else NULL. */
+const char *tensor_traced(const char *name, const char *const *names, int count, char *words,
+                          size_t size);
 
 #endif

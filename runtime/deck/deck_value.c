@@ -31,13 +31,10 @@ const char *deck_shown(arena *a, const char *text) {
 
 void deck_suggest(diagnostics *d, const char *name, const char *const *names, int count,
                   const char *intro) {
-  const int deviator = tensor_traced(name, names, count);
+  char words[256];
   const char *nearest = nearest_name(name, names, count);
-  if (deviator) {
-    diag_hint(d,
-              "`%.*s` is a deviator, kept without zz = -(xx + yy): let the law give "
-              "`output %s = %.*s[z,z]`",
-              deviator, name, name, deviator, name);
+  if (tensor_traced(name, names, count, words, sizeof words)) {
+    diag_hint(d, "%s", words);
     return;
   }
   if (nearest) {

@@ -2,10 +2,13 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "dsl/base/arena.h"
 #include "dsl/base/characters.h"
 #include "dsl/base/diagnostics.h"
+#include "runtime/base/symmetric_tensor.h"
 #include "runtime/result/result_sets.h"
 
 /* --- what there is ---------------------------------------------------------------------------- */
@@ -90,13 +93,27 @@ static void add_names(char *text, size_t size, const result_names *n, int which)
   if (!count) add_text(text, size, "none");
 }
 
+/* tensor_traced of names in any folder. */
+static const char *traced(const result_names *n, const char *given, char *words, size_t size) {
+  const char **last = must_calloc((size_t)n->count + 1, sizeof *last);
+  for (int k = 0; k < n->count; k++)
+    last[k] = result_names_last(n->items[k]);
+  const char *said = tensor_traced(given, last, n->count, words, size);
+  free(last);
+  return said;
+}
+
 static void no_such_name(result_file *f, const char *group, const char *given, char *error,
                          size_t size) {
   const bool of_frames = strcmp(group, "/frames") == 0;
   const result_names *n = result_names_in(f, group);
   const char *near = result_names_near(n, given);
+  char words[256];
   snprintf(error, size, "`%s` has no %s `%s`; ", f->path, of_frames ? "field" : "history", given);
-  if (near) add_text(error, size, "did you mean `%s`? ", name_shown(near));
+  if (traced(n, given, words, sizeof words))
+    add_text(error, size, "%s; ", words);
+  else if (near)
+    add_text(error, size, "did you mean `%s`? ", name_shown(near));
   if (of_frames) {
     add_text(error, size, "fields of particles: ");
     add_names(error, size, n, OF_PARTICLES);

@@ -144,6 +144,10 @@ static void deviators_run_as_tensors_do(void **state) {
   expect(w, "check deviator.nml", 1,
          "hint: `handed` is a deviator, kept without zz = -(xx + yy): let the law give `output "
          "handed_zz = handed[z,z]`");
+  write_pulled(w, 0, "deviator", "handed_xx', 'handed_yy', 'handed_yz', 'handed_xz");
+  expect(w, "run deviator.nml --interpret", 0, "deviator.h5");
+  expect(w, "plot deviator.h5 --map handed_zz -o map.png", 1,
+         "no field `handed_zz`; `handed` is a deviator, kept without zz");
   write_pulled(w, 0, "tensor", "handed_zz");
   expect(w, "check tensor.nml", 0, "");
 }
