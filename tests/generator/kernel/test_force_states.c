@@ -27,7 +27,7 @@ typedef struct body {
   double **motion, **shape, **particle, **chord; /* [..][SIZE], chords [dimensions + 1][planes] */
   double **before, **after[2], **link, **bond_link, **force, **force_state, **sum;
   uint64_t bonds[SIZE], incoming[SIZE], held[SIZE], marks[2][SIZE];
-  uint64_t *marked[2][8];
+  uint64_t **marked[2];
   long offset[MOST_NEIGHBOURS];
   int32_t *neighbour;
 } body;
@@ -56,6 +56,8 @@ static void body_open(body *b, const pl_law *kernel, int neighbours) {
   b->sum = planes_new(kernel->sum_count, SIZE);
   b->neighbour = must_calloc((size_t)toward, sizeof *b->neighbour);
   memset(b->marks[0], 0xff, sizeof b->marks[0]);
+  for (int side = 0; side < 2; side++)
+    b->marked[side] = must_calloc((size_t)kernel->field_count + 1, sizeof *b->marked[side]);
   for (int f = 0; f < kernel->field_count; f++)
     b->marked[0][f] = b->marks[0], b->marked[1][f] = b->marks[1];
 }
@@ -75,6 +77,8 @@ static void body_close(body *b) {
   planes_free(b->force, kernel->dof);
   planes_free(b->force_state, kernel->dof);
   planes_free(b->sum, kernel->sum_count);
+  free(b->marked[0]);
+  free(b->marked[1]);
   free(b->neighbour);
 }
 
@@ -215,8 +219,8 @@ static void run(const body *b, const pl_program *program, bool alone, long first
                  .mass = b->particle[1] + first,
                  .time_step = 1.7e-7,
                  .old_filled = (const uint64_t *const *)b->marked[0],
-                 .new_filled = (uint64_t *const *)b->marked[0],
-                 .settled = (uint64_t *const *)b->marked[1]};
+                 .new_filled = b->marked[0],
+                 .settled = b->marked[1]};
   if (alone)
     f.force_state = from(&m[4], b->force_state, kernel->dof, first);
   else
