@@ -1,10 +1,18 @@
-/* A bilinear rectangle with 2 x 2 points by what its edges do: strains at the points are blends of
-   differences of displacements along two edges, and forces follow by the transpose. Read by the
-   host and, as text, by every kernel, so that both find the same bits. Points and nodes stand in
-   the order low left, low right, high left, high right. Local arrays and constant indices only:
-   where this is inlined and unrolled, all of it is in registers. */
+/* A bilinear rectangle with 2 x 2 points by the modes of its nodes' motion: both edges stretched
+   alike, one more than the other (the hourglass). What these make of strains at the points, and by
+   the transpose of stresses there, takes half the multiplications that slopes take:
+
+       u   -1 +1    -1 -1    +1 -1     strain xx at a point = mean_x stretch +- change_x bend
+           -1 +1    +1 +1    -1 +1     the sign is that of the point: low - , high +
+         stretch_x stretch_y  bend     (rows from above: nodes high, nodes low)
+
+   Read by the host and, as text, by every kernel, so that both find the same bits. Points and nodes
+   stand in the order low left, low right, high left, high right. Local arrays and constant indices
+   only: where this is inlined and unrolled, all of it is in registers. */
 #ifndef PERILAT_RUNTIME_RECTANGLE_H
 #define PERILAT_RUNTIME_RECTANGLE_H
+
+#include "dsl/base/elementary.h"
 
 #if defined(__GNUC__)
 #define PL_RECTANGLE static inline __attribute__((always_inline, unused))
@@ -19,50 +27,53 @@
 #define PL_UNROLL_4 _Pragma("GCC unroll 4")
 #endif
 
-/* Slopes, 1/m, or times a volume: x[low or high point][lower or upper edge],
-   y[left or right point][left or right edge]. */
+/* Of N_,x and N_,y at the points, 1/m, or times a volume, m^2: the part that all points have, and
+   that with the sign of the node and the point; [x, y]. */
 typedef struct pl_rectangle {
-  double x[2][2], y[2][2];
+  double mean[2], change[2];
 } pl_rectangle;
+
+typedef struct pl_rectangle_modes {
+  double along_x, along_y, bend;
+} pl_rectangle_modes;
+
+PL_RECTANGLE pl_rectangle_modes pl_rectangle_modes_of(const double u[4]) {
+  const double rising = u[3] - u[0], falling = u[1] - u[2]; /* along the diagonals */
+  return (pl_rectangle_modes){rising + falling, rising - falling, (u[3] - u[2]) - (u[1] - u[0])};
+}
 
 /* strain xx, yy, xy (of a tensor) from displacements u[nodes] along x and v along y. */
 PL_RECTANGLE void pl_rectangle_strain(const pl_rectangle *r, const double u[4], const double v[4],
                                       double strain[3][4]) {
-  const double u_low = u[1] - u[0], u_high = u[3] - u[2], u_left = u[2] - u[0],
-               u_right = u[3] - u[1], v_low = v[1] - v[0], v_high = v[3] - v[2],
-               v_left = v[2] - v[0], v_right = v[3] - v[1];
-  const double xx_low = r->x[0][0] * u_low + r->x[0][1] * u_high,
-               xx_high = r->x[1][0] * u_low + r->x[1][1] * u_high,
-               yy_left = r->y[0][0] * v_left + r->y[0][1] * v_right,
-               yy_right = r->y[1][0] * v_left + r->y[1][1] * v_right;
-  const double low = 0.5 * (r->x[0][0] * v_low + r->x[0][1] * v_high),
-               high = 0.5 * (r->x[1][0] * v_low + r->x[1][1] * v_high),
-               left = 0.5 * (r->y[0][0] * u_left + r->y[0][1] * u_right),
-               right = 0.5 * (r->y[1][0] * u_left + r->y[1][1] * u_right);
-  strain[0][0] = strain[0][1] = xx_low;
-  strain[0][2] = strain[0][3] = xx_high;
-  strain[1][0] = strain[1][2] = yy_left;
-  strain[1][1] = strain[1][3] = yy_right;
-  strain[2][0] = left + low;
-  strain[2][1] = right + low;
-  strain[2][2] = left + high;
-  strain[2][3] = right + high;
+  const pl_rectangle_modes a = pl_rectangle_modes_of(u), b = pl_rectangle_modes_of(v);
+  const double xx = r->mean[0] * a.along_x, xx_high = r->change[0] * a.bend,
+               yy = r->mean[1] * b.along_y, yy_right = r->change[1] * b.bend;
+  const double xy = pl_fma(0.5 * r->mean[1], a.along_y, 0.5 * r->mean[0] * b.along_x),
+               xy_right = 0.5 * r->change[1] * a.bend, xy_high = 0.5 * r->change[0] * b.bend;
+  const double both = xy_right + xy_high, one = xy_right - xy_high;
+  strain[0][0] = strain[0][1] = xx - xx_high;
+  strain[0][2] = strain[0][3] = xx + xx_high;
+  strain[1][0] = strain[1][2] = yy - yy_right;
+  strain[1][1] = strain[1][3] = yy + yy_right;
+  strain[2][0] = xy - both;
+  strain[2][1] = xy + one;
+  strain[2][2] = xy - one;
+  strain[2][3] = xy + both;
 }
 
 /* Forces of the nodes along an axis, N, from the stress there on faces across x and across y at the
-   points: xx and xy along x, xy and yy along y. r: slopes times the volume of a point, m^2. */
+   points: xx and xy along x, xy and yy along y. r: times the volume of a point, m^2. */
 PL_RECTANGLE void pl_rectangle_push(const pl_rectangle *r, const double x[4], const double y[4],
                                     double force[4]) {
   const double x_low = x[0] + x[1], x_high = x[2] + x[3], y_left = y[0] + y[2],
                y_right = y[1] + y[3];
-  const double low = r->x[0][0] * x_low + r->x[1][0] * x_high,
-               high = r->x[0][1] * x_low + r->x[1][1] * x_high,
-               left = r->y[0][0] * y_left + r->y[1][0] * y_right,
-               right = r->y[0][1] * y_left + r->y[1][1] * y_right;
-  force[0] = -(low + left);
-  force[1] = low - right;
-  force[2] = left - high;
-  force[3] = high + right;
+  const double along_x = r->mean[0] * (x_low + x_high), along_y = r->mean[1] * (y_left + y_right),
+               bend = pl_fma(r->change[0], x_high - x_low, r->change[1] * (y_right - y_left));
+  const double rising = along_x + along_y, falling = along_x - along_y;
+  force[0] = bend - rising;
+  force[1] = falling - bend;
+  force[2] = (along_y - along_x) - bend;
+  force[3] = rising + bend;
 }
 
 #endif

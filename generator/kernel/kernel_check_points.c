@@ -139,11 +139,10 @@ typedef struct rectangle_row {
 } rectangle_row;
 
 static void draw_row(rectangle_row *r, uint64_t *seed) {
-  for (int a = 0; a < 2; a++)
-    for (int b = 0; b < 2; b++) {
-      r->slopes.x[a][b] = draw_uniform(seed, 1, 1e3);
-      r->slopes.y[a][b] = draw_uniform(seed, 1, 1e3);
-    }
+  for (int a = 0; a < 2; a++) {
+    r->slopes.mean[a] = draw_uniform(seed, 1, 1e3);
+    r->slopes.change[a] = draw_uniform(seed, 1, 1e3);
+  }
   r->push = rectangle_slopes_times(&r->slopes, draw_uniform(seed, 1e-9, 1));
   for (int d = 0; d < AXES; d++)
     for (int n = 0; n < 2 * STRIDE; n++) {

@@ -124,6 +124,6 @@ const char *toolchain_flags(void) {
   const bool wide = p == processors && strstr(here, " avx512f");
   snprintf(flags, sizeof flags, COMMON_FLAGS "%s%s", p ? p->name : processors->name,
            wide ? " -mprefer-vector-width=512" : "",
-           wide && strstr(here, "GenuineIntel") ? " -mtune=icelake-server" : "");
+           wide ? " -mtune=icelake-server" : "");
   return flags;
 }

@@ -102,14 +102,25 @@ static components chosen(ir *g, ir_node when, components a, components b) {
   return tensor_settled(g, a);
 }
 
-/* 0 where it has returned, else not a number: so that what is made of it is found, and told
-   (explain_point.h). Where f is not linear in lambda it is looked at again. */
-static ir_node unless_returned(ir *g, ir_node over, ir_node falls, bool linear) {
+/* 0, or no number: so that what is made of it is found, and told (explain_point.h). */
+static ir_node zero_if(ir *g, ir_node good) {
+  return ir_unary(g, IR_SQRT, ir_select(g, good, ir_constant(g, 0), ir_constant(g, -1)));
+}
+
+/* Whether f is 0, to rounding. */
+static ir_node has_returned(ir *g, ir_node over) {
   static const double RETURNED = 1e-9; /* of what is added up to f */
   const ir_node most = ir_mul(g, ir_constant(g, RETURNED), rewrite_size(g, over));
-  const ir_node near = ir_binary(g, IR_LE, ir_unary(g, IR_ABS, over), most);
-  const ir_node good = linear ? falls : near;
-  return ir_unary(g, IR_SQRT, ir_select(g, good, ir_constant(g, 0), ir_constant(g, -1)));
+  return ir_binary(g, IR_LE, ir_unary(g, IR_ABS, over), most);
+}
+
+/* lambda with f = 0, where f is linear in it: f(0) by its slope, which is uniform in most laws. */
+static ir_node found_at_once(ir *g, ir_node over, ir_node slope, ir_node lambda) {
+  const ir_node falls = ir_binary(g, IR_LT, slope, ir_constant(g, 0)), none = ir_constant(g, 0);
+  const ir_node pace =
+      ir_div(g, ir_constant(g, -1), ir_select(g, falls, slope, ir_constant(g, -1)));
+  ir_substitute(g, &over, 1, &lambda, &none, 1, &over);
+  return ir_mul(g, over, ir_add(g, pace, zero_if(g, falls)));
 }
 
 /* Of the flow noted last: what explains that no return is found. */
@@ -122,14 +133,39 @@ static void note_slope(lowering *c, ir_node slope, ir_node lambda) {
   ir_substitute(c->graph, &slope, 1, &lambda, &after, 1, &flow->slope_after);
 }
 
+/* lambda with f(lambda) = 0: of Newton's method from 0, in one step where f is linear in lambda and
+   else in a fixed number: the returns of the usual convex yield functions have converged to
+   rounding long before. Where one has not, a point of a continuum has states that are no numbers,
+   and of other laws the `flow` check says so. */
+static ir_node find_lambda(lowering *c, const stmt *rule, ir_node over, ir_node lambda) {
+  enum { NEWTON_STEPS = 8 };
+  ir *g = c->graph;
+  const ir_node slope = ir_derivative(g, over, lambda),
+                falls = ir_binary(g, IR_LT, slope, ir_constant(g, 0));
+  const bool linear = !rewrite_depends(g, &slope, 1, &lambda, 1),
+             told = c->law->tree->law == LAW_CONTINUUM;
+  if (told) note_slope(c, slope, lambda);
+  if (told && linear) return found_at_once(g, over, slope, lambda);
+  ir_node next = ir_sub(g, lambda, ir_div(g, over, ir_select(g, falls, slope, ir_constant(g, -1))));
+  next = ir_select(g, falls, next, lambda);
+  ir_node found = ir_constant(g, 0);
+  for (int k = 0; k < (linear ? 1 : NEWTON_STEPS); k++) {
+    ir_substitute(g, &next, 1, &lambda, &found, 1, &found);
+    if (ir_count(g) > MOST_NODES)
+      return lower_failed_value(c, rule->where,
+                                "with its return written out the law is too large to compile")
+          .of[0];
+  }
+  if (!told) return found;
+  ir_node doubt = zero_if(g, has_returned(g, over));
+  ir_substitute(g, &doubt, 1, &lambda, &found, 1, &doubt);
+  return ir_add(g, found, doubt);
+}
+
 /* `flow x along direction returned when f >= 0`: x = old + lambda direction with f(x) = 0, what
-   neighbours have being frozen. Newton's method from lambda = 0, in one step where f is linear in
-   lambda and else in a fixed number: the returns of the usual convex yield functions have converged
-   to rounding long before. Where one has not, a point of a continuum has states that are no
-   numbers, and of other laws the `flow` check says so. */
+   neighbours have being frozen. */
 static components flow_returned(lowering *c, const stmt *rule, components old,
                                 components direction) {
-  enum { NEWTON_STEPS = 8 };
   ir *g = c->graph;
   ir_node over = overstress_of(c, rule->when);
   if (over == IR_NONE)
@@ -148,25 +184,8 @@ static components flow_returned(lowering *c, const stmt *rule, components old,
         c, rule->where,
         "the flow toward one neighbour would change the guards of all others: a guard "
         "that goes over the family must be one for the whole particle");
-  ir_node slope = ir_derivative(g, over, lambda);
-  ir_node falls = ir_binary(g, IR_LT, slope, ir_constant(g, 0));
-  ir_node safe = ir_select(g, falls, slope, ir_constant(g, -1));
-  ir_node next = ir_sub(g, lambda, ir_div(g, over, safe));
-  next = ir_select(g, falls, next, lambda);
-  ir_node found = ir_constant(g, 0);
-  const bool linear = !rewrite_depends(g, &slope, 1, &lambda, 1);
-  for (int k = 0; k < (linear ? 1 : NEWTON_STEPS) && !c->failed; k++) {
-    ir_substitute(g, &next, 1, &lambda, &found, 1, &found);
-    if (ir_count(g) > MOST_NODES)
-      return lower_failed_value(c, rule->where,
-                                "with its return written out the law is too large to compile");
-  }
-  if (c->law->tree->law == LAW_CONTINUUM) {
-    ir_node doubt = unless_returned(g, over, falls, linear);
-    ir_substitute(g, &doubt, 1, &lambda, &found, 1, &doubt);
-    found = ir_add(g, found, doubt);
-    note_slope(c, slope, lambda);
-  }
+  ir_node found = find_lambda(c, rule, over, lambda);
+  if (c->failed) return old;
   ir_substitute(g, &found, 1, stand_in, what, frozen, &found);
   return chosen(g, when, along(g, old, found, direction), old);
 }

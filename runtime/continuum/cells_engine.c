@@ -53,6 +53,11 @@ static double *const *linear_forces(const cells_engine *e) {
   return e->linear[0] ? e->linear : e->resisting;
 }
 
+/* Whether all that resists are the points of one law. */
+static bool is_alone(const cells_engine *e) {
+  return e->of->where.count == 1 && !cells_some_linear(e->of);
+}
+
 /* `seen`: not for a step. Rows of cells are shared out as rows of nodes are. */
 static void find_resistance(sweep *w, int block, bool seen) {
   const body_block *b = &w->body->blocks[block];
@@ -65,7 +70,8 @@ static void find_resistance(sweep *w, int block, bool seen) {
     node_matrix_multiply(&c->matrix, motion.displacement, linear_forces(e), b->first, b->last);
   for (int n = 0; n < c->where.count; n++)
     if (c->by_points[n])
-      point_forces_find(c->by_points[n], block, b->first, b->last, &motion, seen);
+      point_forces_find(c->by_points[n], block, b->first, b->last, &motion, seen,
+                        is_alone(e) ? e->resisting : NULL);
 }
 
 /* Points push nodes of several rows: what they push is added up when all have. */

@@ -14,13 +14,27 @@ enum {
   STRAINS = 3,
   STRESSES = 4,
   TANGENTS = STRAINS * STRAINS,
-  STRIP = 320 /* points of a strip, unless a group has more: strains and stresses are 18 kB */
+  STRIP = 320,      /* points of a strip, unless a group has more: strains and stresses are 18 kB */
+  LONG_STRIP = 2048 /* where the law keeps these to itself: what its cells push is 32 kB */
 };
 
-/* What a thread works with: planes of one strip. */
+/* Groups of a row whose points the law is asked for together. */
+typedef struct point_strip {
+  int row, first, last;
+  long at, count;    /* its points */
+  bool rectangles;   /* one beside the other, all alike; groups are full, or there is but one */
+  pl_rectangle push; /* of these: slopes times the volume of a point */
+} strip;
+
+/* A row of a group's nodes, in a thread's own memory. */
+enum { GROUP_NODES = PL_LANES + 1 };
+
+/* What a thread works with: planes of one strip, displacements and velocities of the nodes of a
+   group, [low and high][GROUP_NODES], and sums over rows of rectangles. */
 typedef struct point_scratch {
   double *strain[STRAINS], *rate[STRAINS], *stress[STRESSES], *traction[STRAINS],
-      *tangent[TANGENTS], *bound, *by_cell[RECTANGLE_PUSHES];
+      *tangent[TANGENTS], *bound, *by_cell[RECTANGLE_PUSHES], *group[2][2];
+  rectangle_rows sums;
   double **old_field, **new_field, **observed;
 } point_scratch;
 
@@ -36,8 +50,71 @@ static void planes(point_forces *p, double **at, int count, long size) {
     at[k] = doubles(p, size);
 }
 
-static int strip_room(const point_forces *p) {
-  return p->strips.most > STRIP ? p->strips.most : STRIP;
+/* Whether the law goes from nodes to nodes by itself where cells are rectangles, unless these are
+   asked whether they have failed. */
+static bool goes_by_rectangles(const point_forces *p) {
+  return p->failed < 0 && PL_HAS(p->law, rectangle_ledger) && p->law->rectangle_ledger;
+}
+
+static bool is_full(const cell_group *g) {
+  return g->count == PL_LANES;
+}
+
+static bool is_of_rectangles(const point_forces *p, const cell_group *g) {
+  return g->even > 0 && !p->mean;
+}
+
+/* Whether the next group goes on with a strip of these. A strip is the same whoever finds forces
+   of it, so that their sums are. */
+static bool joins(const point_forces *p, const strip *s, const cell_group *first,
+                  const cell_group *next) {
+  const long points = s->count + (long)next->points * PL_LANES;
+  if (s->rectangles != is_of_rectangles(p, next)) return false;
+  if (!s->rectangles) return points <= STRIP;
+  return points <= (goes_by_rectangles(p) ? LONG_STRIP : STRIP) && next->even == first->even &&
+         next->table == first->table && is_full(first) && is_full(next) &&
+         next->first == first->first + (s->last - s->first) * PL_LANES;
+}
+
+static strip next_strip(const point_forces *p, int row, int first) {
+  const cell_strips *s = &p->strips;
+  const cell_group *groups = s->groups;
+  strip out = {.row = row,
+               .first = first,
+               .last = first,
+               .at = groups[first].at,
+               .rectangles = is_of_rectangles(p, &groups[first])};
+  do
+    out.count += (long)groups[out.last++].points * PL_LANES;
+  while (out.last < s->first_group[row + 1] && joins(p, &out, &groups[first], &groups[out.last]));
+  if (out.rectangles)
+    out.push = rectangle_slopes_times(&groups[first].table->slopes, groups[first].even);
+  return out;
+}
+
+static void find_parts(point_forces *p) {
+  p->parts = must_calloc((size_t)p->strips.group_count + 1, sizeof *p->parts);
+  p->first_part = must_calloc((size_t)p->strips.rows + 1, sizeof *p->first_part);
+  p->whole = must_calloc((size_t)p->strips.rows + 1, 1);
+  p->placed = must_calloc((size_t)p->strips.rows + 1, 1);
+  p->summed = must_calloc((size_t)p->strips.rows + 1, 1);
+  int count = 0;
+  for (int row = 0; row < p->strips.rows; row++) {
+    p->first_part[row] = count;
+    for (int g = p->strips.first_group[row]; g < p->strips.first_group[row + 1];
+         g = p->parts[count++].last)
+      p->parts[count] = next_strip(p, row, g);
+    p->whole[row] = goes_by_rectangles(p) && !p->mean && cell_strips_is_whole(&p->strips, row);
+  }
+  p->first_part[p->strips.rows] = count;
+}
+
+/* Points of the largest strip. */
+static long strip_room(const point_forces *p) {
+  long most = STRIP;
+  for (int k = 0; k < p->first_part[p->strips.rows]; k++)
+    most = p->parts[k].count > most ? p->parts[k].count : most;
+  return most;
 }
 
 static void open_scratch(point_forces *p, point_scratch *s) {
@@ -48,7 +125,10 @@ static void open_scratch(point_forces *p, point_scratch *s) {
   planes(p, s->traction, STRAINS, size);
   planes(p, s->tangent, TANGENTS, size);
   planes(p, &s->bound, 1, size);
-  planes(p, s->by_cell, RECTANGLE_PUSHES, size);
+  planes(p, s->by_cell, RECTANGLE_PUSHES, size / 4 + PL_LANES);
+  planes(p, s->sums.above, 2, p->strips.layout.padded);
+  for (int k = 0; k < 2; k++)
+    planes(p, s->group[k], 2, 2 * GROUP_NODES);
   s->old_field = must_calloc((size_t)p->law->field_count + 1, sizeof(double *));
   s->new_field = must_calloc((size_t)p->law->field_count + 1, sizeof(double *));
   s->observed = must_calloc((size_t)p->law->output_count + 1, sizeof(double *));
@@ -177,6 +257,7 @@ point_forces *point_forces_new(const mesh *m, const unsigned char *own,
   point_forces *p = must_calloc(1, sizeof *p);
   *p = (point_forces){.of = m, .points = points, .law = law, .blocks = blocks};
   p->memory = pool_new();
+  p->failed = point_law_failed(law);
   p->uniforms = must_calloc((size_t)law->uniform_count + 1, sizeof(double));
   law->prepare(law, parameters, &none, p->uniforms);
   cell_strips_open(&p->strips, m, points, own);
@@ -185,15 +266,15 @@ point_forces *point_forces_new(const mesh *m, const unsigned char *own,
     p->pushed[d] = doubles(p, cell_strips_pushed(&p->strips));
   find_sizes(p, m);
   p->rows = must_calloc((size_t)p->strips.rows + 1, sizeof *p->rows);
-  p->scratch = must_calloc((size_t)blocks + 1, sizeof *p->scratch);
-  for (int b = 0; b < blocks; b++)
-    open_scratch(p, &p->scratch[b]);
-  p->failed = point_law_failed(law);
   p->dead = must_calloc((size_t)p->strips.rows + 1, sizeof *p->dead);
   p->first_death = -1;
   find_rest(p, own, parameters);
   for_each_cell(p, open_mean);
   for_each_cell(p, open_hourglass);
+  find_parts(p);
+  p->scratch = must_calloc((size_t)blocks + 1, sizeof *p->scratch);
+  for (int b = 0; b < blocks; b++)
+    open_scratch(p, &p->scratch[b]);
   return p;
 }
 
@@ -206,6 +287,11 @@ void point_forces_free(point_forces *p) {
   }
   free(p->scratch);
   free(p->rows);
+  free(p->parts);
+  free(p->first_part);
+  free(p->whole);
+  free(p->placed);
+  free(p->summed);
   free(p->dead);
   free(p->uniforms);
   cell_strips_close(&p->strips);
@@ -218,41 +304,6 @@ long point_forces_bytes(const point_forces *p) {
 }
 
 /* --- a strip ---------------------------------------------------------------------------------- */
-
-typedef struct strip { /* groups of a row */
-  int row, first, last;
-  long at, count;  /* its points */
-  bool rectangles; /* one beside the other, all alike; groups are full, or there is but one */
-} strip;
-
-static bool is_full(const cell_group *g) {
-  return g->count == PL_LANES;
-}
-
-static bool is_of_rectangles(const point_forces *p, const cell_group *g) {
-  return g->even > 0 && !p->mean;
-}
-
-/* Whether the next group goes on with a strip of these. A strip is the same whoever finds forces
-   of it, so that their sums are. */
-static bool joins(const point_forces *p, const strip *s, const cell_group *first,
-                  const cell_group *next) {
-  const long more = (long)next->points * PL_LANES;
-  if (s->count + more > STRIP || s->rectangles != is_of_rectangles(p, next)) return false;
-  if (!s->rectangles) return true;
-  return next->even == first->even && next->table == first->table && is_full(first) &&
-         is_full(next) && next->first == first->first + (s->last - s->first) * PL_LANES;
-}
-
-static strip next_strip(const point_forces *p, int row, int first) {
-  const cell_strips *s = &p->strips;
-  const cell_group *groups = s->groups;
-  strip out = {row, first, first, groups[first].at, 0, is_of_rectangles(p, &groups[first])};
-  do
-    out.count += (long)groups[out.last++].points * PL_LANES;
-  while (out.last < s->first_group[row + 1] && joins(p, &out, &groups[first], &groups[out.last]));
-  return out;
-}
 
 static void find_strains(const point_forces *p, const strip *s, const double *const nodes[2],
                          double *const strain[STRAINS]) {
@@ -370,18 +421,12 @@ static void push_group(const point_forces *p, int row, const cell_group *g,
   cell_strips_push(&p->strips, row, g, (const double *const *)own->traction, p->pushed);
 }
 
-static void gather(const point_forces *p, const strip *s, const point_scratch *own) {
-  cell_strips_gather(&p->strips, s->row, &p->strips.groups[s->first], s->last - s->first,
-                     own->by_cell, p->pushed);
-}
-
 static void push_rectangles(const point_forces *p, const strip *s, const point_scratch *own,
                             double *const stress[STRAINS]) {
-  const cell_group *first = &p->strips.groups[s->first];
-  const pl_rectangle by = rectangle_slopes_times(&first->table->slopes, first->even);
-  rectangle_cells_push(&by, s->last - s->first,
+  rectangle_cells_push(&s->push, s->last - s->first,
                        (const double *const[]){stress[0], stress[1], stress[2]}, own->by_cell);
-  gather(p, s, own);
+  cell_strips_gather(&p->strips, s->row, &p->strips.groups[s->first], s->last - s->first,
+                     own->by_cell, p->pushed);
 }
 
 static void push_groups(const point_forces *p, const strip *s, const point_scratch *own,
@@ -468,39 +513,46 @@ static void aim(const point_forces *p, const strip *s, double *plane, int count,
     at[k] = plane + k * (long)p->strips.count + s->at;
 }
 
-/* From nodes to nodes in one loop of the law's. */
+/* u of a group's nodes. Beyond the last one they are where that is: lanes that fill up strain as the
+   last cell does at its edge, and no more. */
+static const double *nodes_of(const cell_group *g, const double *u, long stride, double *out) {
+  for (int row = 0; row < 2; row++)
+    for (int n = 0; n < GROUP_NODES; n++)
+      out[row * GROUP_NODES + n] = u[row * stride + (n < g->count ? n : g->count)];
+  return out;
+}
+
+/* What the cells of a strip do to their nodes, in one loop of the law's from these to these. */
 static void step_rectangles(const point_forces *p, const strip *s, point_scratch *own,
                             const point_motion *at) {
   const cell_group *first = &p->strips.groups[s->first];
   const node_layout *l = &p->strips.layout;
   const long node = l->origin + s->row * l->stride + first->first;
-  const pl_rectangle by = rectangle_slopes_times(&first->table->slopes, first->even);
-  const double *const u[] = {at->displacement[0] + node, at->displacement[1] + node},
-                      *const v[] = {at->velocity[0] + node, at->velocity[1] + node};
+  const bool rates = p->law->reads_rates || p->loses;
+  const double *u[2], *v[2];
   double *lost[PL_LOSSES];
   pl_points points = view_of(p, s, own, at);
   const pl_rectangles cells = {.size = sizeof cells,
                                .count = (s->last - s->first) * PL_LANES,
-                               .stride = l->stride,
+                               .stride = is_full(first) ? l->stride : GROUP_NODES,
                                .displacement = u,
                                .velocity = v,
                                .slopes = &first->table->slopes,
-                               .push = &by,
+                               .push = &s->push,
                                .force = own->by_cell,
                                .points = &points};
+  for (int d = 0; d < 2; d++) {
+    u[d] = at->displacement[d] + node;
+    v[d] = at->velocity[d] + node;
+    if (is_full(first)) continue;
+    u[d] = nodes_of(first, u[d], l->stride, own->group[0][d]);
+    if (rates) v[d] = nodes_of(first, v[d], l->stride, own->group[1][d]);
+  }
   if (p->loses) {
     aim(p, s, p->lost, PL_LOSSES, lost);
     points.lost = lost;
   }
   (p->loses ? p->law->rectangle_ledger : p->law->rectangle_step)(p->law, p->uniforms, &cells);
-  gather(p, s, own);
-}
-
-/* Whether the law has that loop for a strip: of full groups, since lanes that fill up would strain,
-   whose points are not asked whether they have failed. */
-static bool steps_rectangles(const point_forces *p, const strip *s) {
-  return s->rectangles && is_full(&p->strips.groups[s->first]) && p->failed < 0 &&
-         PL_HAS(p->law, rectangle_ledger) && p->law->rectangle_ledger;
 }
 
 static void step_points(const point_forces *p, const strip *s, point_scratch *own,
@@ -522,7 +574,43 @@ static void step_points(const point_forces *p, const strip *s, point_scratch *ow
 
 static void step_strip(const point_forces *p, const strip *s, point_scratch *own,
                        const point_motion *at) {
-  (steps_rectangles(p, s) ? step_rectangles : step_points)(p, s, own, at);
+  if (!s->rectangles || !goes_by_rectangles(p)) {
+    step_points(p, s, own, at);
+    return;
+  }
+  step_rectangles(p, s, own, at);
+  cell_strips_gather(&p->strips, s->row, &p->strips.groups[s->first], s->last - s->first,
+                     own->by_cell, p->pushed);
+}
+
+static void step_row(const point_forces *p, int row, point_scratch *own, const point_motion *at) {
+  cell_strips_clear(&p->strips, row, p->pushed);
+  for (int k = p->first_part[row]; k < p->first_part[row + 1]; k++)
+    step_strip(p, &p->parts[k], own, at);
+}
+
+/* Of rectangles and nothing else. What the row does to its upper nodes waits for the next one if
+   that is such a row, too, and this thread's. */
+static void step_whole_row(const point_forces *p, int row, bool first, bool last,
+                           point_scratch *own, const point_motion *at, double *const force[2]) {
+  const cell_strips *s = &p->strips;
+  double *low[2], *high[2];
+  for (int d = 0; d < 2; d++) {
+    low[d] = force[d] + s->layout.origin + row * s->layout.stride;
+    high[d] = cell_strips_pushed_row(s, row, p->pushed[d]);
+  }
+  if (first) rectangle_rows_begin(&own->sums, s->layout.nodes[0]);
+  for (int k = p->first_part[row]; k < p->first_part[row + 1]; k++) {
+    const strip *part = &p->parts[k];
+    const cell_group *from = &s->groups[part->first], *to = &s->groups[part->last - 1];
+    step_rectangles(p, part, own, at);
+    rectangle_rows_add(&own->sums, from->first, to->first + to->count - from->first, own->by_cell,
+                       (double *const[]){low[0] + from->first, low[1] + from->first});
+  }
+  const int node = s->layout.nodes[0] - 1;
+  rectangle_rows_end(&own->sums, node, (double *const[]){low[0] + node, low[1] + node});
+  for (int d = 0; d < 2 && last; d++)
+    memcpy(high[d], own->sums.above[d], (size_t)s->layout.nodes[0] * sizeof *high[d]);
 }
 
 /* --- looking at a state ----------------------------------------------------------------------- */
@@ -630,26 +718,38 @@ static void see_strip(const point_forces *p, const strip *s, point_scratch *own,
 
 /* --- rows ------------------------------------------------------------------------------------- */
 
+static void see_row(point_forces *p, int row, point_scratch *own, const point_motion *at) {
+  cell_strips_clear(&p->strips, row, p->pushed);
+  p->rows[row] = (point_row){0};
+  for (int k = p->first_part[row]; k < p->first_part[row + 1]; k++)
+    see_strip(p, &p->parts[k], own, at);
+}
+
 void point_forces_find(point_forces *p, int block, int from, int to, const point_motion *at,
-                       bool seen) {
+                       bool seen, double *const force[2]) {
   const int last = to < p->strips.rows ? to : p->strips.rows;
   for (int row = from; row < last; row++) {
-    cell_strips_clear(&p->strips, row, p->pushed);
-    if (seen) p->rows[row] = (point_row){0};
-    if (!seen) p->dead[row] = 0;
-    strip s = {.last = p->strips.first_group[row]};
-    while (s.last < p->strips.first_group[row + 1]) {
-      s = next_strip(p, row, s.last);
-      if (seen)
-        see_strip(p, &s, &p->scratch[block], at);
-      else
-        step_strip(p, &s, &p->scratch[block], at);
+    const bool placed = !seen && force && p->whole[row],
+               goes_on = placed && row > from && p->whole[row - 1];
+    p->placed[row] = placed;
+    p->summed[row] = goes_on;
+    if (seen) {
+      see_row(p, row, &p->scratch[block], at);
+      continue;
     }
+    p->dead[row] = 0;
+    if (placed)
+      step_whole_row(p, row, !goes_on, row + 1 == last || !p->whole[row + 1], &p->scratch[block],
+                     at, force);
+    else
+      step_row(p, row, &p->scratch[block], at);
   }
 }
 
 void point_forces_take(const point_forces *p, int row, bool more, double *const force[2]) {
-  cell_strips_take(&p->strips, row, p->pushed, more, force);
+  const bool own = row < p->strips.rows;
+  if (own && p->summed[row]) return;
+  cell_strips_take(&p->strips, row, p->pushed, own && p->placed[row], more, force);
 }
 
 void point_forces_turn(point_forces *p, double time) {
@@ -757,7 +857,11 @@ double point_forces_worst(point_forces *p, int node, const point_motion *at, poi
     if (row < 0 || row >= p->strips.rows) continue;
     for (int g = p->strips.first_group[row]; g < p->strips.first_group[row + 1]; g++) {
       const cell_group *group = &p->strips.groups[g];
-      const strip s = {row, g, g + 1, group->at, (long)group->points * PL_LANES, false};
+      const strip s = {.row = row,
+                       .first = g,
+                       .last = g + 1,
+                       .at = group->at,
+                       .count = (long)group->points * PL_LANES};
       const pl_points points = motion_of(p, &s, own, at);
       p->law->point_step(p->law, p->uniforms, &points);
       for (long k = 0; k < s.count && isfinite(most); k++) {

@@ -45,6 +45,11 @@ typedef struct point_forces {
      of the corners, and C, N/m. */
   double *mean, *part, *hourglass;
   point_row *rows;               /* [strips.rows] */
+  struct point_strip *parts;     /* row by row: groups that are found together */
+  int *first_part;               /* [strips.rows + 1] */
+  unsigned char *whole;          /* [strips.rows] all rectangles, whose law has a loop for them */
+  unsigned char *placed;         /* [strips.rows] what pushes its lower nodes is among the forces */
+  unsigned char *summed;         /* [strips.rows] and so is what the row below pushes them by */
   int failed;                    /* the law's field that tells so; -1: points do not fail */
   long *dead;                    /* [strips.rows] dead cells after the step */
   double first_death;            /* s: of the first one; negative: all are alive */
@@ -74,11 +79,12 @@ typedef struct point_motion {
 
 /* Stresses and new states of the points of the rows of cells from <= j < to, and what they push.
    `seen`: of the present state, and not for a step: energies, outputs and stresses are kept, and so
-   is how stiff the rows are. */
+   is how stiff the rows are. force[2]: planes of the layout that are only these forces', who may
+   write to them at once; NULL: there are others. */
 void point_forces_find(point_forces *p, int block, int from, int to, const point_motion *at,
-                       bool seen);
-/* N: adds up what pushes a row of nodes; force[2]: planes of the layout. `more`: to what is
-   there. */
+                       bool seen, double *const force[2]);
+/* N: adds up what pushes a row of nodes; force[2]: planes of the layout. `more`: to what is there
+   of others. */
 void point_forces_take(const point_forces *p, int row, bool more, double *const force[2]);
 /* After a step to that time: new states are old ones. */
 void point_forces_turn(point_forces *p, double time);

@@ -495,6 +495,19 @@ void cell_strips_gather(const cell_strips *s, int row, const cell_group *g, int 
                          s->layout.stride);
 }
 
+bool cell_strips_is_whole(const cell_strips *s, int row) {
+  int cells = 0;
+  for (int g = s->first_group[row]; g < s->first_group[row + 1]; g++) {
+    if (!(s->groups[g].even > 0) || s->groups[g].first != cells) return false;
+    cells += s->groups[g].count;
+  }
+  return cells == s->layout.nodes[0] - 1 && s->low == 0 && s->high == 1;
+}
+
+double *cell_strips_pushed_row(const cell_strips *s, int row, double *pushed) {
+  return pushed + row * plane_of(s) + (1 - s->low) * s->layout.stride;
+}
+
 long cell_strips_pushed(const cell_strips *s) {
   return s->elements ? s->elements->slots : plane_of(s) * s->rows;
 }
@@ -510,6 +523,13 @@ void cell_strips_clear(const cell_strips *s, int row, double *const pushed[2]) {
   }
 }
 
+/* Of the row of cells below and of the one above. */
+static void add_both(long count, const double *a, const double *b, double *out) {
+  INDEPENDENT
+  for (long k = 0; k < count; k++)
+    out[k] = a[k] + b[k];
+}
+
 static void add_row(long count, const double *in, bool more, double *out) {
   if (!more) {
     memcpy(out, in, (size_t)count * sizeof *out);
@@ -520,21 +540,26 @@ static void add_row(long count, const double *in, bool more, double *out) {
     out[k] += in[k];
 }
 
-void cell_strips_take(const cell_strips *s, int row, double *const pushed[2], bool more,
-                      double *const force[2]) {
+void cell_strips_take(const cell_strips *s, int row, double *const pushed[2], bool placed,
+                      bool more, double *const force[2]) {
   const node_layout *l = &s->layout;
   if (s->elements) {
     element_strips_take(s->elements, row, pushed, more, force);
     return;
   }
-  const int from = row - s->high < 0 ? 0 : row - s->high,
-            to = row - s->low > s->rows - 1 ? s->rows - 1 : row - s->low;
+  const int from = row - s->high < 0 ? 0 : row - s->high, above = placed ? row - 1 : row - s->low,
+            to = above > s->rows - 1 ? s->rows - 1 : above;
+  const bool first = !more && !placed;
   for (int d = 0; d < 2; d++) {
     double *out = force[d] + l->origin + row * l->stride;
-    if (!more && from > to) memset(out, 0, (size_t)l->padded * sizeof *out);
-    for (int c = from; c <= to; c++)
-      add_row(l->padded, pushed[d] + c * plane_of(s) + (row - c - s->low) * l->stride,
-              more || c > from, out);
+    const double *in = pushed[d] + from * plane_of(s) + (row - from - s->low) * l->stride;
+    const long next = plane_of(s) - l->stride;
+    if (first && from > to) memset(out, 0, (size_t)l->padded * sizeof *out);
+    if (first && to == from + 1)
+      add_both(l->padded, in, in + next, out);
+    else
+      for (int c = from; c <= to; c++)
+        add_row(l->padded, in + (c - from) * next, !first || c > from, out);
     for (long k = l->nodes[0]; k < l->padded; k++)
       out[k] = 0;
   }

@@ -84,13 +84,18 @@ void cell_strips_push_mode(const cell_strips *s, int row, const cell_group *g, c
 bool cell_strips_single(const cell_strips *s, const cell_group *g);
 /* Before a row of cells pushes. */
 void cell_strips_clear(const cell_strips *s, int row, double *const pushed[2]);
-/* N: the forces of a row of nodes, in planes of the layout; `more`: beside those that are there. */
-void cell_strips_take(const cell_strips *s, int row, double *const pushed[2], bool more,
-                      double *const force[2]);
+/* N: the forces of a row of nodes, in planes of the layout; `more`: beside those that are there;
+   `placed`: what the row of cells above does to them is there. */
+void cell_strips_take(const cell_strips *s, int row, double *const pushed[2], bool placed,
+                      bool more, double *const force[2]);
 /* The same of `count` groups side by side that are alike and even, and full unless they are but
    one, from what each cell does to its nodes (rectangle_cells_push). */
 void cell_strips_gather(const cell_strips *s, int row, const cell_group *g, int count,
                         double *const by_cell[RECTANGLE_PUSHES], double *const pushed[2]);
+/* Whether a row of cells is nothing but such groups, so that rectangle_rows can push. */
+bool cell_strips_is_whole(const cell_strips *s, int row);
+/* What that row of cells does to its upper nodes: a row of `pushed`. */
+double *cell_strips_pushed_row(const cell_strips *s, int row, double *pushed);
 
 /* Number of a lane's cell; of what fills up the first one's. */
 int cell_strips_cell(const cell_strips *s, const mesh *m, int row, const cell_group *g, int lane);

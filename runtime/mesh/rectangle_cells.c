@@ -9,34 +9,32 @@ enum { LOW_LEFT, LOW_RIGHT, HIGH_LEFT, HIGH_RIGHT, CORNERS };
 
 /* --- slopes ----------------------------------------------------------------------------------- */
 
-static bool alike(double a, double b, double least) {
-  return fabs(a - b) <= least;
+static double sign(bool plus) {
+  return plus ? 1 : -1;
 }
 
 bool rectangle_slopes_find(pl_rectangle *r, const double slope[4][4][2], double least) {
-  *r = (pl_rectangle){.x = {{slope[LOW_LEFT][LOW_RIGHT][0], slope[LOW_LEFT][HIGH_RIGHT][0]},
-                            {slope[HIGH_LEFT][LOW_RIGHT][0], slope[HIGH_LEFT][HIGH_RIGHT][0]}},
-                      .y = {{slope[LOW_LEFT][HIGH_LEFT][1], slope[LOW_LEFT][HIGH_RIGHT][1]},
-                            {slope[LOW_RIGHT][HIGH_LEFT][1], slope[LOW_RIGHT][HIGH_RIGHT][1]}}};
+  for (int d = 0; d < 2; d++) {
+    const int across = d == 0 ? HIGH_LEFT : LOW_RIGHT; /* the corner beside, along the other axis */
+    const double near = -slope[LOW_LEFT][LOW_LEFT][d], far = -slope[LOW_LEFT][across][d];
+    r->mean[d] = 0.5 * (near + far);
+    r->change[d] = 0.5 * (near - far);
+  }
   for (int point = 0; point < CORNERS; point++)
     for (int node = 0; node < CORNERS; node++) {
-      const int right = node % 2, high = node / 2;
-      const double x = r->x[point / 2][high], y = r->y[point % 2][right];
-      if (!alike(slope[point][node][0], right ? x : -x, least) ||
-          !alike(slope[point][node][1], high ? y : -y, least))
+      const bool right = node % 2, high = node / 2, point_right = point % 2, point_high = point / 2;
+      const double x = r->mean[0] + sign(high == point_high) * r->change[0],
+                   y = r->mean[1] + sign(right == point_right) * r->change[1];
+      if (!(fabs(slope[point][node][0] - sign(right) * x) <= least) ||
+          !(fabs(slope[point][node][1] - sign(high) * y) <= least))
         return false;
     }
   return true;
 }
 
 pl_rectangle rectangle_slopes_times(const pl_rectangle *r, double volume) {
-  pl_rectangle out;
-  for (int a = 0; a < 2; a++)
-    for (int b = 0; b < 2; b++) {
-      out.x[a][b] = volume * r->x[a][b];
-      out.y[a][b] = volume * r->y[a][b];
-    }
-  return out;
+  return (pl_rectangle){.mean = {volume * r->mean[0], volume * r->mean[1]},
+                        .change = {volume * r->change[0], volume * r->change[1]}};
 }
 
 /* --- cells ------------------------------------------------------------------------------------ */
@@ -104,4 +102,47 @@ void rectangle_cells_gather(int cells, double *const pushed[RECTANGLE_PUSHES],
     gather_row(cells, of[LOW_LEFT], of[LOW_RIGHT], force[d]);
     gather_row(cells, of[HIGH_LEFT], of[HIGH_RIGHT], force[d] + stride);
   }
+}
+
+/* --- rows of cells ---------------------------------------------------------------------------- */
+
+static const double NONE = -0.0; /* added to a number it is that number, to the bit */
+
+static void begin_row(rectangle_rows *r) {
+  for (int d = 0; d < 2; d++)
+    r->right[d][0] = r->right[d][1] = NONE;
+}
+
+void rectangle_rows_begin(rectangle_rows *r, int nodes) {
+  for (int d = 0; d < 2; d++)
+    for (int n = 0; n < nodes; n++)
+      r->above[d][n] = NONE;
+  begin_row(r);
+}
+
+void rectangle_rows_add(rectangle_rows *r, int first, int cells,
+                        double *const pushed[RECTANGLE_PUSHES], double *const force[2]) {
+  for (int d = 0; d < 2; d++) {
+    double *const *of = pushed + d * CORNERS;
+    const double *low_left = of[LOW_LEFT], *low_right = of[LOW_RIGHT], *high_left = of[HIGH_LEFT],
+                 *high_right = of[HIGH_RIGHT];
+    double *above = r->above[d] + first, *out = force[d];
+    out[0] = (low_left[0] + r->right[d][0]) + above[0];
+    above[0] = high_left[0] + r->right[d][1];
+    INDEPENDENT
+    for (long n = 1; n < cells; n++) {
+      out[n] = (low_left[n] + low_right[n - 1]) + above[n];
+      above[n] = high_left[n] + high_right[n - 1];
+    }
+    r->right[d][0] = low_right[cells - 1];
+    r->right[d][1] = high_right[cells - 1];
+  }
+}
+
+void rectangle_rows_end(rectangle_rows *r, int node, double *const force[2]) {
+  for (int d = 0; d < 2; d++) {
+    force[d][0] = r->right[d][0] + r->above[d][node];
+    r->above[d][node] = r->right[d][1];
+  }
+  begin_row(r);
 }

@@ -31,7 +31,7 @@ static void find_block(const contestant *c, int block, bool take) {
     if (!take) node_stencil_multiply(c->stencil, c->motion->displacement, c->force, from, to);
     return;
   }
-  if (!take) point_forces_find(c->points, block, from, to, c->motion, false);
+  if (!take) point_forces_find(c->points, block, from, to, c->motion, false, c->force);
   for (int row = from; row < to && take; row++)
     point_forces_take(c->points, row, false, c->force);
 }

@@ -100,7 +100,7 @@ static void find(loaded *l, int threads) {
 #pragma omp for schedule(static)
     for (int block = 0; block < threads; block++) {
       const int from = block * count / threads, to = (block + 1) * count / threads;
-      if (!take) point_forces_find(l->points, block, from, to, &at, false);
+      if (!take) point_forces_find(l->points, block, from, to, &at, false, l->force);
       for (int row = from; row < to && take; row++)
         point_forces_take(l->points, row, false, l->force);
     }
@@ -315,7 +315,7 @@ static void measure_law(figures *f, const point_case *c) {
 
 bool benchmark_points(figures *f) {
   puts("\nPoints");
-  const bool fair = measure_beside(f);
+  const bool fair = measure_beside(f);if (getenv("FIRST")) exit(0);
   printf("  %-40s %7s %7s %7s %6s %7s %5s %8s\n", "", "10^6/s", "ns", "2 by 1", "bytes", "flops",
          "div.", "changed");
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)

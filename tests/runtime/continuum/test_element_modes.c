@@ -149,7 +149,7 @@ static void list_does_as_grid(int gauss, double hourglass) {
   const point_motion at = {u, u, 0, 1};
   both_find(&b, true);
   node_matrix_multiply(&of, u, f, 0, listed.nodes[1]);
-  point_forces_find(by_points, 0, 0, listed.nodes[1], &at, true);
+  point_forces_find(by_points, 0, 0, listed.nodes[1], &at, true, NULL);
   for (int row = 0; row < listed.nodes[1]; row++)
     point_forces_take(by_points, row, false, g);
   double most = 0, half_work = 0, stored = 0;

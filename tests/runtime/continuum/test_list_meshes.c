@@ -289,7 +289,7 @@ static void points_and_matrix_agree(void **state) {
       for (int part = 0; part < 2; part++) {
         point_forces *p =
             point_forces_new(&l.m, own[part], &l.points, &hooke_law, values[part], 1, true);
-        point_forces_find(p, 0, 0, l.m.nodes[1], &at, part == 1);
+        point_forces_find(p, 0, 0, l.m.nodes[1], &at, part == 1, NULL);
         for (int row = 0; row < l.m.nodes[1]; row++)
           point_forces_take(p, row, part == 1, by_points);
         point_forces_free(p);
