@@ -250,7 +250,6 @@ static ir_node simplify_add(ir *g, ir_node a, ir_node b) {
 static ir_node simplify_sub(ir *g, ir_node a, ir_node b) {
   if (ir_is_number(g, b, 0.0)) return a;
   if (ir_is_number(g, a, 0.0)) return ir_neg(g, b);
-  if (a == b && !ir_may_be_nan(g, a)) return ir_constant(g, 0.0);
   if (is_op(g, b, IR_NEG)) return ir_add(g, a, ir_operand(g, b, 0));
   return make_node(g, IR_SUB, a, b, IR_NONE);
 }
@@ -262,7 +261,6 @@ static ir_node simplify_mul(ir *g, ir_node a, ir_node b) {
     b = swapped;
   }
   if (ir_is_number(g, b, 1.0)) return a;
-  if (ir_is_number(g, b, 0.0) && !ir_may_be_nan(g, a)) return b;
   if (ir_is_number(g, b, -1.0)) return ir_neg(g, a);
   if (is_op(g, a, IR_NEG) && is_constant(g, b))
     return ir_mul(g, ir_operand(g, a, 0), ir_constant(g, -ir_value(g, b)));

@@ -108,9 +108,9 @@ bool toolchain_runs_here(char *error, size_t size) {
 }
 
 /* Speculation of divisions and square roots needs -fno-trapping-math and -fno-math-errno; the
-   interpreter's bits need -ffp-contract=off. gcc does not know newer processors of Intel's by
-   name and then orders instructions for none in particular; told to order them for an older one
-   of the same build it gains 5 %. Combining more than two instructions takes gcc a third of its
+   interpreter's bits need -ffp-contract=off. gcc does not know newer processors by name and then
+   orders instructions for none in particular; told to order them for one with vectors of 512 bits
+   it gains 5 % on Intel's processors and 3 to 8 % on AMD's. Combining more than two instructions takes gcc a third of its
    time on these loops and gains nothing. */
 #define COMMON_FLAGS                                                                               \
   "-std=gnu11 -O3 -march=%s -fno-math-errno -fno-trapping-math -ffp-contract=off "                 \
@@ -123,7 +123,6 @@ const char *toolchain_flags(void) {
   toolchain_processor(here, sizeof here);
   const bool wide = p == processors && strstr(here, " avx512f");
   snprintf(flags, sizeof flags, COMMON_FLAGS "%s%s", p ? p->name : processors->name,
-           wide ? " -mprefer-vector-width=512" : "",
-           wide ? " -mtune=icelake-server" : "");
+           wide ? " -mprefer-vector-width=512" : "", wide ? " -mtune=icelake-server" : "");
   return flags;
 }

@@ -102,6 +102,32 @@ static components chosen(ir *g, ir_node when, components a, components b) {
   return tensor_settled(g, a);
 }
 
+/* What stands for previous values of flows that are solved for, and these. */
+static int kept_fields(lowering *c, ir_node *from, ir_node *to) {
+  const symbol_list *fields = &c->law->fields;
+  int count = 0;
+  for (int k = 0; k < fields->count; k++) {
+    const symbol *s = fields->items[k];
+    if (!lower_is_returned(s->component_of ? s->component_of : s)) continue;
+    from[count] = lower_kept_field(c->graph, c->law, k);
+    to[count++] = lower_field(c->graph, c->law, k);
+  }
+  return count;
+}
+
+/* f as it is before x flows: lambda is 0 (NULL: it is not there), x its previous value, and x less
+   that nothing. */
+static ir_node before_flow(lowering *c, ir_node f, const ir_node *lambda) {
+  const size_t fields = (size_t)c->law->fields.count + 1;
+  ir_node *from = must_alloc(fields * sizeof *from), *to = must_alloc(fields * sizeof *to);
+  const int pairs = kept_fields(c, from, to);
+  ir_substitute(c->graph, &f, 1, from, to, pairs, &f);
+  rewrite_zero(c->graph, &f, 1, lambda, lambda ? 1 : 0, &f);
+  free(from);
+  free(to);
+  return f;
+}
+
 /* 0, or no number: so that what is made of it is found, and told (explain_point.h). */
 static ir_node zero_if(ir *g, ir_node good) {
   return ir_unary(g, IR_SQRT, ir_select(g, good, ir_constant(g, 0), ir_constant(g, -1)));
@@ -115,12 +141,12 @@ static ir_node has_returned(ir *g, ir_node over) {
 }
 
 /* lambda with f = 0, where f is linear in it: f(0) by its slope, which is uniform in most laws. */
-static ir_node found_at_once(ir *g, ir_node over, ir_node slope, ir_node lambda) {
-  const ir_node falls = ir_binary(g, IR_LT, slope, ir_constant(g, 0)), none = ir_constant(g, 0);
+static ir_node found_at_once(lowering *c, ir_node over, ir_node slope, ir_node lambda) {
+  ir *g = c->graph;
+  const ir_node falls = ir_binary(g, IR_LT, slope, ir_constant(g, 0));
   const ir_node pace =
       ir_div(g, ir_constant(g, -1), ir_select(g, falls, slope, ir_constant(g, -1)));
-  ir_substitute(g, &over, 1, &lambda, &none, 1, &over);
-  return ir_mul(g, over, ir_add(g, pace, zero_if(g, falls)));
+  return ir_mul(g, before_flow(c, over, &lambda), ir_add(g, pace, zero_if(g, falls)));
 }
 
 /* Of the flow noted last: what explains that no return is found. */
@@ -145,7 +171,7 @@ static ir_node find_lambda(lowering *c, const stmt *rule, ir_node over, ir_node 
   const bool linear = !rewrite_depends(g, &slope, 1, &lambda, 1),
              told = c->law->tree->law == LAW_CONTINUUM;
   if (told) note_slope(c, slope, lambda);
-  if (told && linear) return found_at_once(g, over, slope, lambda);
+  if (told && linear) return found_at_once(c, over, slope, lambda);
   ir_node next = ir_sub(g, lambda, ir_div(g, over, ir_select(g, falls, slope, ir_constant(g, -1))));
   next = ir_select(g, falls, next, lambda);
   ir_node found = ir_constant(g, 0);
@@ -172,7 +198,7 @@ static components flow_returned(lowering *c, const stmt *rule, components old,
     return lower_failed_value(c, rule->where,
                               "a returned flow goes back to where its guard is an equality: write "
                               "`returned when f >= 0`");
-  ir_node when = lower_expr(c, rule->when), *what, *stand_in;
+  ir_node when = before_flow(c, lower_expr(c, rule->when), NULL), *what, *stand_in;
   note_flow(c, rule, when);
   const int frozen = freeze_neighbours(c, &over, &what, &stand_in);
   ir_node lambda = ir_input(g, IR_FROM_FIELD, 2 * c->law->fields.count, "lambda",
@@ -488,19 +514,6 @@ static void *keep(arena *memory, void *items, int count, size_t size) {
   if (count) memcpy(kept, items, (size_t)count * size);
   free(items);
   return kept;
-}
-
-/* What stands for previous values of flows that are solved for, and these. */
-static int kept_fields(lowering *c, ir_node *from, ir_node *to) {
-  const symbol_list *fields = &c->law->fields;
-  int count = 0;
-  for (int k = 0; k < fields->count; k++) {
-    const symbol *s = fields->items[k];
-    if (!lower_is_returned(s->component_of ? s->component_of : s)) continue;
-    from[count] = lower_kept_field(c->graph, c->law, k);
-    to[count++] = lower_field(c->graph, c->law, k);
-  }
-  return count;
 }
 
 /* Puts the rules in place of the opaque new values. A rule reads new values of rules above it. */
