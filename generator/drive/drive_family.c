@@ -51,8 +51,8 @@ static kernel_plan *plan_stress(const law *l, diagnostics *d) {
   const int count = part_count(p->dimensions), own = 1 + l->outputs.count;
   segment wanted = {.root_count = 0};
   ir_node other = ir_make(g, IR_NEIGHBOUR, step.F, IR_NONE, IR_NONE);
-  ir_node force = ir_mul(g, ir_constant(g, 0.5), ir_add(g, step.F, other));
-  ir_node twice = ir_mul(g, ir_constant(g, 2), lower_quantity(g, QUANTITY_V));
+  ir_node force = ir_scaled(g, 0.5, ir_add(g, step.F, other));
+  ir_node twice = ir_scaled(g, 2, lower_quantity(g, QUANTITY_V));
   ir_node moment = ir_div(g, force, lower_quantity(g, QUANTITY_S));
   for (int k = 0; k < count; k++) {
     const int which = part(p->dimensions, k);

@@ -106,10 +106,11 @@ static components chosen(ir *g, ir_node when, components a, components b) {
    (explain_point.h). Where f is not linear in lambda it is looked at again. */
 static ir_node unless_returned(ir *g, ir_node over, ir_node falls, bool linear) {
   static const double RETURNED = 1e-9; /* of what is added up to f */
-  const ir_node most = ir_mul(g, ir_constant(g, RETURNED), rewrite_size(g, over));
+  const ir_node most = ir_scaled(g, RETURNED, rewrite_size(g, over));
   const ir_node near = ir_binary(g, IR_LE, ir_unary(g, IR_ABS, over), most);
   const ir_node good = linear ? falls : near;
-  return ir_unary(g, IR_SQRT, ir_select(g, good, ir_constant(g, 0), ir_constant(g, -1)));
+  const ir_node bad = ir_constant(g, -1);
+  return ir_unary(g, IR_SQRT, ir_select(g, good, ir_constant(g, 0), bad));
 }
 
 /* Of the flow noted last: what explains that no return is found. */
@@ -292,9 +293,10 @@ static ir_node end_moment(lowering *c, law_result which, ir_node W, builtin_quan
   const components moment = components_of(c, c->law->results[which]),
                    shear = components_of(c, c->law->results[RESULT_V]);
   if (axis < moment.count) return moment.of[axis];
-  if (axis < shear.count)
-    return ir_div(g, ir_mul(g, shear.of[axis], lower_quantity(g, QUANTITY_LENGTH)),
-                  ir_constant(g, 2));
+  if (axis < shear.count) {
+    const ir_node two = ir_constant(g, 2), length = lower_quantity(g, QUANTITY_LENGTH);
+    return ir_div(g, ir_mul(g, shear.of[axis], length), two);
+  }
   if (W != IR_NONE) return ir_derivative(g, W, lower_bending(g, c->law, theta, axis));
   return lower_fail(c, c->law->tree->name_where, "the law gives no end moments");
 }
@@ -400,9 +402,10 @@ static void lower_tip(lowering *c, lowered_law *out) {
   for (int k = 0; k < LOWERED_TIP; k++) {
     const symbol *given = c->law->results[RESULT_GROW + k];
     out->tip[k] = lower_expr(c, given->rule->value);
-    if (k == 0) /* a truth value as a number */
-      out->tip[k] =
-          ir_select(c->graph, out->tip[k], ir_constant(c->graph, 1), ir_constant(c->graph, 0));
+    if (k == 0) { /* a truth value as a number */
+      const ir_node zero = ir_constant(c->graph, 0);
+      out->tip[k] = ir_select(c->graph, out->tip[k], ir_constant(c->graph, 1), zero);
+    }
     lower_name_node(c->graph, out->tip[k], names[k], given->rule->where);
   }
 }
