@@ -26,8 +26,8 @@ static bool draw_samples(grading *g, arena *a, const handed_text *text, judge_re
     int known, count;
     if (item->kind != ITEM_SAMPLE || !item_is_judged(item, g->o->only_public)) continue;
     const path_case *origins = sample_origins(&g->basis, item, &known);
-    path_case *more = path_samples(a, item, origins, known, e->solution, seed_of(g, item, text),
-                                   &count, &g->basis.said);
+    path_case *more = path_samples(a, item, origins, known, e->solution, &g->basis.kept,
+                                   seed_of(g, item, text), &count, &g->basis.said);
     if (!more) return false;
     path_case *all = arena_alloc(a, (size_t)(q->sample_count + count + 1) * sizeof *all);
     if (q->sample_count) memcpy(all, q->samples, (size_t)q->sample_count * sizeof *all);

@@ -22,6 +22,7 @@ typedef struct judging {
   declared_names declared;
   path_outcome *outcomes; /* [case_count], of those that were driven */
   cases_seen seen;
+  driven_law kept; /* the answer, as paths drive it */
   runs_made runs;
   bool all_right;
   const char *first_error; /* "code: message" of a law that does not read */
@@ -136,7 +137,7 @@ static void judge_cases(judging *j, int k, path_case *cases, int count, path_out
   int passed = 0;
   bool said = false;
   for (int c = 0; c < count && j->reads; c++) {
-    judge_path(&outcomes[c], j->memory, &cases[c], j->q->answer, &j->declared, &j->seen);
+    judge_path(&outcomes[c], j->memory, &cases[c], j->q->answer, &j->declared, &j->kept, &j->seen);
     passed += outcomes[c].right;
     if (outcomes[c].right || said) continue;
     put_outcome(j, k, &cases[c], count, &outcomes[c]);
@@ -378,6 +379,7 @@ void judge_answer(const judge_request *q, FILE *out) {
   record_write(out, RECORD_END, -1, NULL, NULL);
   for (int k = 0; k < b->case_count; k++)
     if (j.outcomes[k].table.memory) drive_table_free(&j.outcomes[k].table);
+  driven_law_close(&j.kept);
   free(j.seen.items);
   arena_free(j.memory);
 }

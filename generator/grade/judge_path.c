@@ -48,9 +48,9 @@ static bool march(path_outcome *out, const driven_law *of, cases_seen *seen) {
 }
 
 /* False after words. */
-static bool drive_along(path_outcome *out, arena *a, driven_law *of, const drive_input *in,
-                        cases_seen *seen, diagnostics *said) {
-  const driven_outcome outcome = driven_law_open(of, a, in, false, said);
+static bool drive_along(path_outcome *out, arena *a, driven_law *of, driven_law *kept,
+                        const drive_input *in, cases_seen *seen, diagnostics *said) {
+  const driven_outcome outcome = driven_law_open_kept(of, kept, a, in, said);
   if (outcome == DRIVEN_BAD_LAW && of->opened && of->model.said.errors > 0)
     out->words = arena_printf(a, "your law has errors");
   else if (outcome != DRIVEN_READY || !march(out, of, seen))
@@ -90,14 +90,14 @@ static bool agrees(const path_case *c, const drive_table *t, const reference_law
 
 /* Right with the values that are at hand, wrong with others: numbers stand where names should. */
 static bool only_at_hand(const path_outcome *out, arena *a, const path_case *c, const char *answer,
-                         const declared_names *declared, diagnostics *said) {
+                         const declared_names *declared, driven_law *kept, diagnostics *said) {
   const char *missing;
   path_outcome plain = {.words = NULL};
   driven_law of;
   if (!c->plain || agrees(c, &out->table, &c->right)) return false;
   const drive_input *in = input_here(a, c, c->plain, answer, declared, &missing);
   const bool good =
-      drive_along(&plain, a, &of, in, NULL, said) && agrees(c, &plain.table, &c->right_plain);
+      drive_along(&plain, a, &of, kept, in, NULL, said) && agrees(c, &plain.table, &c->right_plain);
   driven_law_close(&of);
   if (plain.table.memory) drive_table_free(&plain.table);
   return good;
@@ -168,7 +168,7 @@ static void meet(path_outcome *out, arena *a, const driven_law *of, const drive_
 /* --- the whole -------------------------------------------------------------------------------- */
 
 void judge_path(path_outcome *out, arena *a, const path_case *c, const char *answer,
-                const declared_names *declared, cases_seen *seen) {
+                const declared_names *declared, driven_law *kept, cases_seen *seen) {
   const char *missing;
   source_set sources = {NULL, 0};
   diagnostics said;
@@ -181,12 +181,12 @@ void judge_path(path_outcome *out, arena *a, const path_case *c, const char *ans
     out->words = arena_printf(
         a, "your law has no parameter `%s`, which the exercise sets: keep those of the starter",
         missing);
-  } else if (drive_along(out, a, &of, in, seen, &said)) {
+  } else if (drive_along(out, a, &of, kept, in, seen, &said)) {
     if (expects)
       meet(out, a, &of, in, &said);
     else
       compare(out, a, c);
-    if (!out->right && !expects && only_at_hand(out, a, c, answer, declared, &said))
+    if (!out->right && !expects && only_at_hand(out, a, c, answer, declared, kept, &said))
       out->words = arena_printf(a,
                                 "right with the values of the starter, wrong with others (%s): "
                                 "did you write numbers for them?\n%s",
