@@ -189,22 +189,22 @@ static bool is_right(const exercise_item *item, double value, double expected) {
 }
 
 /* "E is 6e+10, minus twice what it should be"; "E is 0". */
-static void say_number(FILE *out, const char *what, double value, double expected) {
+static void say_number(FILE *out, const char *what, double value, double expected, bool exact) {
   const double ratio = value / expected;
   fprintf(out, "%s is ", what);
   if (expected != 0 && fabs(ratio) >= 1e-9) fprintf(out, "%.5g, ", value);
   if (expected != 0)
-    ratio_say(ratio, "what it should be", out);
+    (exact ? exact_ratio_say : ratio_say)(ratio, "what it should be", out);
   else
     fprintf(out, "%.5g, not 0", value);
   rounding_say(ratio, out);
 }
 
-static char *number_words(arena *a, const char *what, double value, double expected) {
+static char *number_words(arena *a, const char *what, double value, double expected, bool exact) {
   char *text;
   size_t length;
   FILE *out = must_open_text(&text, &length);
-  say_number(out, what, value, expected);
+  say_number(out, what, value, expected, exact);
   must_close_text(out);
   char *words = arena_text(a, text, length);
   free(text);
@@ -223,7 +223,8 @@ static void put_number(judging *j, int k, double value, double expected, const c
   if (isnan(value))
     record_write(j->out, RECORD_WORDS, k, NULL, why);
   else
-    record_write(j->out, RECORD_WORDS, k, NULL, number_words(j->memory, what, value, expected));
+    record_write(j->out, RECORD_WORDS, k, NULL,
+                 number_words(j->memory, what, value, expected, item->kind != ITEM_RUN));
 }
 
 static void judge_implied(judging *j, int k) {

@@ -119,18 +119,35 @@ static void compare(path_outcome *out, arena *a, const path_case *c) {
 /* --- against what the path expects ------------------------------------------------------------ */
 
 /* Where it says more than the numbers do. */
-static void say_known_ratio(double ratio, FILE *out) {
-  const bool rounding = ratio_is_rounding(ratio), known = rounding || ratio_words(fabs(ratio));
+static void say_known_ratio(double ratio, bool alike, FILE *out) {
+  char formula[64];
+  const bool rounding = alike && ratio_is_rounding(ratio),
+             known = rounding || ratio_words(fabs(ratio)) ||
+                     (alike && ratio_formula(fabs(ratio), formula, sizeof formula));
   if (!known || !isfinite(ratio) || fabs(ratio) < 1e-9) return;
   fputs(rounding ? ", " : ": ", out);
-  ratio_say(ratio, should, out);
+  exact_ratio_say(ratio, should, out);
   rounding_say(ratio, out);
+}
+
+/* All that fail do so by one factor: then that says something, however odd it is. */
+static bool fail_alike(const drive_input *in, const drive_verdict *verdicts) {
+  double low = INFINITY, high = -INFINITY;
+  for (int k = 0; k < in->expect_count; k++) {
+    if (verdicts[k].passed) continue;
+    const double ratio = verdicts[k].found / verdicts[k].expected;
+    if (!isfinite(ratio)) return false;
+    low = pl_fmin(low, ratio);
+    high = pl_fmax(high, ratio);
+  }
+  return high - low <= 2e-3 * fabs(high);
 }
 
 static void say_failures(path_outcome *out, arena *a, const drive_input *in,
                          const drive_verdict *verdicts) {
   char *text;
   size_t length;
+  const bool alike = fail_alike(in, verdicts);
   FILE *to = must_open_text(&text, &length);
   for (int k = 0; k < in->expect_count; k++) {
     const drive_verdict *v = &verdicts[k];
@@ -138,7 +155,7 @@ static void say_failures(path_outcome *out, arena *a, const drive_input *in,
     if (v->passed) continue;
     fprintf(to, "%s is %.6g, expected %.6g%s%s (at %.6g s)", in->expects[k].quantity,
             v->found + 0.0, v->expected + 0.0, *unit_text ? " " : "", unit_text, v->time);
-    say_known_ratio(v->found / v->expected, to);
+    say_known_ratio(v->found / v->expected, alike, to);
     fputc('\n', to);
   }
   must_close_text(to);

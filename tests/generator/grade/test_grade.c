@@ -94,6 +94,19 @@ static void others_get_general_words(void **state) {
          "the force N is wrong only where it is stretched after it lost energy");
 }
 
+/* One factor of all that fails says something, one that each has for itself does not. */
+static void factors_are_told_where_all_have_one(void **state) {
+  workplace *w = *state;
+  graded(w, RIGIDITY "sqrt(3)/2*8/9*E*s*t|", "8/9 times what it should be");
+  says(w, "final N is -2309.4, expected -2598.08 N (at 2 s): 8/9 times what it should be");
+  graded(w,
+         "s|^    | EA\\*stretch  *otherwise|    | 0.996*8/9*EA*stretch otherwise|; "
+         "s|(1 - omega)\\*EA|(1 - omega)*0.9*EA|",
+         "final N is ");
+  does_not_say(w, "constant rounded");
+  does_not_say(w, "8/9");
+}
+
 static void numbers_for_names_are_told(void **state) {
   workplace *w = *state;
   graded(w, RIGIDITY "sqrt(3)/2*E*0.01 [m]*t|",
@@ -526,6 +539,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {TEST(right_answers_get_all_points),
                                      TEST(known_wrong_answers_get_their_sentence),
                                      TEST(others_get_general_words),
+                                     TEST(factors_are_told_where_all_have_one),
                                      TEST(numbers_for_names_are_told),
                                      TEST(errors_are_told_at_their_line),
                                      TEST(messages_name_the_file_that_was_given),

@@ -341,7 +341,7 @@ static void time_and_memory_run_out(void **state) {
   size_t length;
   FILE *out = must_open_text(&text, &length);
   fputs(head, out);
-  for (int k = 0; k < 2500; k++)
+  for (int k = 0; k < 6000; k++)
     fprintf(out, "  state z%d on bond = 0\n  z%d = max(z%d, stretch)\n", k, k, k);
   fputs(tail, out);
   must_close_text(out);
