@@ -152,7 +152,7 @@ static bool start(judging_child *c, const judge_request *q, const confinement *t
 bool grade_child_begin(judging_child *c, marks *m, const judge_request *q, const handed_in *answer,
                        const handed_text *text, const confinement *to) {
   judge_request here = *q;
-  *c = (judging_child){.m = m, .from = -1, .begun = monotonic_seconds()};
+  c->begun = monotonic_seconds();
   m->trouble = text->bad;
   if (m->trouble) return true;
   if (!make_folder(c->folder, sizeof c->folder)) {
