@@ -168,8 +168,10 @@ static void say_state(const table_difference *d, const drive_table *answer, cons
   fprintf(out, "%s%s first differs ", column_words(q->name),
           q->minor ? ", which is small beside the largest of its kind," : "");
   say_place(answer, d->row, out);
-  fprintf(out, ": it is %.6g, not %.6g%s%s", q->answer[d->row] + 0.0, q->reference[d->row] + 0.0,
-          *unit_shown(q->unit) ? " " : "", unit_shown(q->unit));
+  const double a = q->answer[d->row] + 0.0, b = q->reference[d->row] + 0.0;
+  const int digits = fabs(a - b) < 1e-4 * fabs(b) ? 9 : 6; /* so many tell them apart */
+  fprintf(out, ": it is %.*g, not %.*g%s%s", digits, a, digits, b, *unit_shown(q->unit) ? " " : "",
+          unit_shown(q->unit));
   if (!q->minor && q->differing > 1 && d->larger)
     fprintf(out, ", and %s in all states that differ", d->larger > 0 ? "too large" : "too small");
   say_beginning(d, out);

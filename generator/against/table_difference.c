@@ -62,6 +62,7 @@ static const struct {
                {1.7320508075688773, "sqrt(3)", true},
                {1.4142135623730951, "sqrt(2)", false},
                {3.1415926535897932, "pi", false},
+               {1.7724538509055159, "sqrt(pi)", false},
                {5.4413980927026535, "pi sqrt(3)", false}};
 enum { MOST_WHOLE = 16, MOST_WITH_ROOT = 9 };
 

@@ -119,7 +119,7 @@ void table_difference_free(table_difference *d);
 
 /* A ratio that has a meaning of its own, within 2e-3: "twice", "half", ...; NULL: none. */
 const char *ratio_words(double ratio);
-/* Any other ratio of small whole numbers, roots of 2 and 3, and pi, within 5e-6: "3/4",
+/* Any other ratio of small whole numbers, roots of 2 and 3, pi and its root, within 5e-6: "3/4",
    "2/(3 sqrt(3))", "pi/4"; false: it is none, or has one digit behind the point. */
 bool ratio_formula(double ratio, char *text, size_t size);
 /* So near to 1 that somebody has rounded a number. */

@@ -386,6 +386,7 @@ static void ratios_are_told_as_fractions(void **state) {
   is_formula(3.14159265358979323846 / 4, "pi/4");
   is_formula(2 / 3.14159265358979323846, "2/pi");
   is_formula(3.14159265358979323846 * sqrt(3) / 6, "pi sqrt(3)/6");
+  is_formula(1 / sqrt(3.14159265358979323846), "1/sqrt(pi)");
   is_formula(0.7, "none");
   is_formula(3. / 4 * (1 + 2e-5), "none");
   is_formula(0.123456, "none");
