@@ -142,12 +142,13 @@ static void say_side(const table_difference *d, const char *should, FILE *out) {
     fputs(": there it is ", out);
     exact_ratio_say(d->ratio, should, out);
   }
+  const double far = 100 * d->columns[d->of].worst;
   if (!minus && !known)
-    fprintf(out, ": there it is %s by up to %.2g %% of the largest",
+    fprintf(out, ": there it is %s by up to %.*g %% of the largest",
             d->larger > 0   ? "too large"
             : d->larger < 0 ? "too small"
                             : "off",
-            100 * d->columns[d->of].worst);
+            far < 100 ? 2 : 4, far < 100 ? far : rint(far));
   say_beginning(d, out);
   say_dissipated(d, should, out);
 }
