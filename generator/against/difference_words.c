@@ -66,6 +66,16 @@ void ratio_say(double ratio, const char *should, FILE *out) {
     fprintf(out, "%.4g times %s", fabs(ratio), should);
 }
 
+void exact_ratio_say(double ratio, const char *should, FILE *out) {
+  char formula[64];
+  if (ratio_words(fabs(ratio)) || ratio_is_rounding(ratio) ||
+      !ratio_formula(fabs(ratio), formula, sizeof formula)) {
+    ratio_say(ratio, should, out);
+    return;
+  }
+  fprintf(out, "%s%s times %s", ratio < 0 ? "minus " : "", formula, should);
+}
+
 void rounding_say(double ratio, FILE *out) {
   if (ratio_is_rounding(ratio))
     fputs(": is a constant rounded? write sqrt(3)/2 or pi, say, not their digits", out);
@@ -87,6 +97,33 @@ static void say_place(const drive_table *t, long row, FILE *out) {
           way->values[row]);
 }
 
+/* Where it begins to yield or to break, if that is elsewhere. */
+static void say_beginning(const table_difference *d, FILE *out) {
+  const double answer = d->begins[0], reference = d->begins[1];
+  const char *name = d->begins_of, *unit_text = d->begins_unit ? unit_shown(d->begins_unit) : "";
+  if (!name || (isnan(answer) && isnan(reference)) || answer == 0 || reference == 0) return;
+  const char *gap = *unit_text ? " " : "";
+  if (isnan(answer))
+    fprintf(out, "; it loses no energy, and should from %s = %.4g%s%s on", name, reference, gap,
+            unit_text);
+  else if (isnan(reference))
+    fprintf(out, "; it loses energy from %s = %.4g%s%s on, and should lose none", name, answer, gap,
+            unit_text);
+  else if (fabs(answer - reference) > 0.02 * reference)
+    fprintf(out, "; it begins to lose energy at %s = %.4g, not %.4g%s%s", name, answer, reference,
+            gap, unit_text);
+}
+
+/* Where that is a multiple with a name. */
+static void say_dissipated(const table_difference *d, const char *should, FILE *out) {
+  const double ratio = d->totals[TOTAL_DISSIPATED];
+  char formula[64];
+  if (isnan(ratio) || fabs(ratio - 1) <= 2e-3 || ratio < 1e-9) return;
+  if (!ratio_words(ratio) && !ratio_formula(ratio, formula, sizeof formula)) return;
+  fprintf(out, "; %s is ", total_words[TOTAL_DISSIPATED]);
+  exact_ratio_say(ratio, should, out);
+}
+
 static void say_total(const table_difference *d, const char *should, FILE *out) {
   if (d->total != TOTAL_PEAK && !isnan(d->totals[TOTAL_PEAK]))
     fprintf(out, "%s agrees, but ", total_words[TOTAL_PEAK]);
@@ -95,30 +132,51 @@ static void say_total(const table_difference *d, const char *should, FILE *out) 
 }
 
 static void say_side(const table_difference *d, const char *should, FILE *out) {
+  char formula[64];
   fprintf(out, "%s is wrong only %s", column_words(d->columns[d->of].name), side_words[d->side]);
-  const bool minus = fabs(d->ratio + 1) <= 1e-6;
-  if (isnan(d->ratio) || (!minus && !ratio_words(fabs(d->ratio)))) return;
-  fputs(minus ? ": there it has the wrong sign" : ": there it is ", out);
-  if (!minus) ratio_say(d->ratio, should, out);
+  const bool minus = fabs(d->ratio + 1) <= 1e-6,
+             known = !isnan(d->ratio) && (ratio_words(fabs(d->ratio)) ||
+                                          ratio_formula(fabs(d->ratio), formula, sizeof formula));
+  if (minus) fputs(": there it has the wrong sign", out);
+  if (!minus && known) {
+    fputs(": there it is ", out);
+    exact_ratio_say(d->ratio, should, out);
+  }
+  const double far = 100 * d->columns[d->of].worst;
+  if (!minus && !known)
+    fprintf(out, ": there it is %s by up to %.*g %% of the largest",
+            d->larger > 0   ? "too large"
+            : d->larger < 0 ? "too small"
+                            : "off",
+            far < 100 ? 2 : 4, far < 100 ? far : rint(far));
+  say_beginning(d, out);
+  say_dissipated(d, should, out);
 }
 
 static void say_ratio_of_all(const table_difference *d, const char *should, FILE *out) {
   const column_difference *q = &d->columns[d->of];
   if (q->energy) fputs("the forces agree, but ", out);
   fprintf(out, "%s is ", column_words(q->name));
-  ratio_say(d->ratio, should, out);
+  exact_ratio_say(d->ratio, should, out);
   fputs(" in all states", out);
   rounding_say(d->ratio, out);
 }
 
-static void say_state(const table_difference *d, const drive_table *answer, FILE *out) {
+static void say_state(const table_difference *d, const drive_table *answer, const char *should,
+                      FILE *out) {
   const column_difference *q = &d->columns[d->of];
   if (q->energy) fputs("the forces agree, but ", out);
   fprintf(out, "%s%s first differs ", column_words(q->name),
           q->minor ? ", which is small beside the largest of its kind," : "");
   say_place(answer, d->row, out);
-  fprintf(out, ": it is %.6g, not %.6g%s%s", q->answer[d->row] + 0.0, q->reference[d->row] + 0.0,
-          *unit_shown(q->unit) ? " " : "", unit_shown(q->unit));
+  const double a = q->answer[d->row] + 0.0, b = q->reference[d->row] + 0.0;
+  const int digits = fabs(a - b) < 1e-4 * fabs(b) ? 9 : 6; /* so many tell them apart */
+  fprintf(out, ": it is %.*g, not %.*g%s%s", digits, a, digits, b, *unit_shown(q->unit) ? " " : "",
+          unit_shown(q->unit));
+  if (!q->minor && q->differing > 1 && d->larger)
+    fprintf(out, ", and %s in all states that differ", d->larger > 0 ? "too large" : "too small");
+  say_beginning(d, out);
+  if (!q->energy) say_dissipated(d, should, out);
 }
 
 void difference_say(const table_difference *d, const drive_table *answer, const char *should,
@@ -153,7 +211,7 @@ void difference_say(const table_difference *d, const drive_table *answer, const 
     say_side(d, should, out);
     return;
   case DIFFERENCE_STATE:
-    say_state(d, answer, out);
+    say_state(d, answer, should, out);
   }
 }
 

@@ -70,11 +70,12 @@ static void look_beside(reference_law *r, double factor) {
 /* --- the whole -------------------------------------------------------------------------------- */
 
 driven_outcome reference_law_drive(reference_law *r, arena *memory, const drive_input *in,
-                                   const char *path, diagnostics *said) {
+                                   const char *path, driven_law *kept, diagnostics *said) {
   drive_band band;
   *r = (reference_law){.in = *in};
   r->in.material.model = path;
-  const driven_outcome outcome = driven_law_open(&r->of, memory, &r->in, false, said);
+  const driven_outcome outcome = kept ? driven_law_open_kept(&r->of, kept, memory, &r->in, said)
+                                      : driven_law_open(&r->of, memory, &r->in, false, said);
   if (outcome != DRIVEN_READY) return outcome;
   if (!driven_law_march(&r->of, &r->table, &band)) return DRIVEN_UNSUITED;
   r->skip = must_calloc((size_t)r->table.rows + 1, sizeof *r->skip);

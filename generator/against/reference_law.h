@@ -14,9 +14,10 @@ typedef struct reference_law {
 } reference_law;
 
 /* Drives the law in the file `path`, found beside the path's file, along `in`. To be closed
-   whatever comes of it; messages about the law are in of.model.said, others in `said`. */
+   whatever comes of it; messages about the law are in of.model.said, others in `said`. `kept`
+   (NULL: none): as driven_law_open_kept has it. */
 driven_outcome reference_law_drive(reference_law *r, arena *memory, const drive_input *in,
-                                   const char *path, diagnostics *said);
+                                   const char *path, driven_law *kept, diagnostics *said);
 void reference_law_close(reference_law *r);
 
 #endif

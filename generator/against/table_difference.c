@@ -53,6 +53,59 @@ const char *ratio_words(double ratio) {
   return NULL;
 }
 
+/* What a fraction may be multiplied with: over or under its line. */
+static const struct {
+  double value;
+  const char *text;
+  bool is_small; /* goes with fractions of larger numbers, too */
+} factors[] = {{1, "", true},
+               {1.7320508075688773, "sqrt(3)", true},
+               {1.4142135623730951, "sqrt(2)", false},
+               {3.1415926535897932, "pi", false},
+               {1.7724538509055159, "sqrt(pi)", false},
+               {5.4413980927026535, "pi sqrt(3)", false}};
+enum { MOST_WHOLE = 16, MOST_WITH_ROOT = 9 };
+
+/* "3", "sqrt(3)", "3 sqrt(3)"; in brackets where it is a product below a line. */
+static void write_multiple(int n, const char *root, bool below, char *text, size_t size) {
+  if (!*root)
+    snprintf(text, size, "%d", n);
+  else if (n == 1)
+    snprintf(text, size, below && strchr(root, ' ') ? "(%s)" : "%s", root);
+  else
+    snprintf(text, size, below ? "(%d %s)" : "%d %s", n, root);
+}
+
+static void write_fraction(int p, int q, const char *root, bool under, char *text, size_t size) {
+  char above[40], below[40];
+  write_multiple(p, under ? "" : root, false, above, sizeof above);
+  write_multiple(q, under ? root : "", true, below, sizeof below);
+  if (strcmp(below, "1") == 0)
+    snprintf(text, size, "%s", above);
+  else
+    snprintf(text, size, "%s/%s", above, below);
+}
+
+/* The simplest one is written. */
+bool ratio_formula(double ratio, char *text, size_t size) {
+  const double within = 5e-6;
+  int best = 1000;
+  if (fabs(10 * ratio - rint(10 * ratio)) <= within * 10 * ratio) return false;
+  for (size_t k = 0; k < 2 * sizeof factors / sizeof *factors; k++) {
+    const bool under = k % 2 == 1;
+    const double factor = under ? 1 / factors[k / 2].value : factors[k / 2].value;
+    const int most = factors[k / 2].is_small ? MOST_WHOLE : MOST_WITH_ROOT;
+    for (int q = 1; q <= most && (k != 1); q++) {
+      const double p = rint(ratio / factor * q);
+      if (!(p >= 1 && p <= most) || !(fabs(ratio - p / q * factor) <= within * ratio)) continue;
+      if ((int)p + q >= best) continue;
+      best = (int)p + q;
+      write_fraction((int)p, q, factors[k / 2].text, under, text, size);
+    }
+  }
+  return best < 1000;
+}
+
 bool ratio_is_rounding(double ratio) {
   return fabs(ratio - 1) <= 5e-3;
 }
@@ -280,6 +333,43 @@ static void find_totals(search *s, const drive_table *answer) {
   s->d->totals[TOTAL_PEAK] = total_ratio(signed_peak(a, rows), signed_peak(r, rows), 0);
 }
 
+/* The row in which energy is lost first, of what it has taken until then; -1: none is. */
+static long losing_row(const drive_table *t, long rows) {
+  const double *lost = column_values(t, "dissipated_damage"), *stored = column_values(t, "stored");
+  lost = lost ? lost : column_values(t, "dissipated");
+  double most = 0;
+  for (long k = 0; k < rows && lost && stored; k++) {
+    most = pl_fmax(most, fabs(stored[k]));
+    if (lost[k] > worth * most) return k;
+  }
+  return -1;
+}
+
+/* Where a law begins to yield or to break, in the force that is driven. */
+static void find_beginnings(search *s, const drive_table *answer) {
+  const drive_column *force = &s->reference->columns[s->force];
+  const int same = drive_column_find(answer, force->name);
+  if (same < 0) return;
+  const double *values[2] = {answer->columns[same].values, force->values};
+  const long row[2] = {losing_row(answer, s->d->rows), losing_row(s->reference, s->d->rows)};
+  if (labs(row[0] - row[1]) < 2 && (row[0] < 0) == (row[1] < 0)) return;
+  for (int k = 0; k < 2; k++)
+    s->d->begins[k] = row[k] < 0 ? NAN : fabs(signed_peak(values[k], row[k]));
+  s->d->begins_of = force->name;
+  s->d->begins_unit = force->unit;
+}
+
+static void find_larger(search *s) {
+  long larger = 0, smaller = 0;
+  for (long k = 0; k < s->d->rows; k++) {
+    if (!counts(s, k) || gap(s->q, k) <= s->d->tolerance) continue;
+    const double a = s->q->answer[k], b = s->q->reference[k];
+    larger += fabs(a) > fabs(b) && a * b >= 0;
+    smaller += fabs(a) < fabs(b) && a * b >= 0;
+  }
+  s->d->larger = larger == s->q->differing ? 1 : smaller == s->q->differing ? -1 : 0;
+}
+
 static bool is_same(double ratio) {
   return fabs(ratio - 1) <= 2e-3;
 }
@@ -418,7 +508,7 @@ static bool choose_column(table_difference *d) {
 void table_difference_find(table_difference *d, const drive_table *answer,
                            const drive_table *reference, double tolerance,
                            const unsigned char *skip, bool energies) {
-  *d = (table_difference){.tolerance = tolerance, .row = -1, .ratio = NAN};
+  *d = (table_difference){.tolerance = tolerance, .row = -1, .ratio = NAN, .begins = {NAN, NAN}};
   d->rows = answer->rows < reference->rows ? answer->rows : reference->rows;
   if (reference->bad_row >= 0 && reference->bad_row < d->rows) d->rows = reference->bad_row;
   for (int k = 0; k < TOTAL_COUNT; k++)
@@ -433,6 +523,8 @@ void table_difference_find(table_difference *d, const drive_table *answer,
   driven_columns(reference, &s.way, &s.force);
   d->row = s.q->first;
   find_totals(&s, answer);
+  find_beginnings(&s, answer);
+  find_larger(&s);
   d->kind = classify(&s);
 }
 

@@ -81,8 +81,13 @@ typedef struct table_difference {
   difference_side side;
   double totals[TOTAL_COUNT]; /* answer over reference; NaN: there is none */
   difference_total total;     /* TOTAL: whose ratio is told */
-  long row;                   /* the first that differs, or that has no number; -1: none */
-  const char *bad;            /* NO_NUMBER: the column */
+  int larger;                 /* 1: larger in all states that differ, -1: smaller; 0: neither */
+  /* [answer, reference] the largest driven force that is borne before energy is lost; NaN: none is
+     lost. Both NaN where they are alike */
+  double begins[2];
+  const char *begins_of, *begins_unit; /* the column, and its unit */
+  long row;                            /* the first that differs, or that has no number; -1: none */
+  const char *bad;                     /* NO_NUMBER: the column */
 } table_difference;
 
 /* Rows that say nothing, because a case of the law begins there: what is answered, or the energies
@@ -114,6 +119,9 @@ void table_difference_free(table_difference *d);
 
 /* A ratio that has a meaning of its own, within 2e-3: "twice", "half", ...; NULL: none. */
 const char *ratio_words(double ratio);
+/* Any other ratio of small whole numbers, roots of 2 and 3, pi and its root, within 5e-6: "3/4",
+   "2/(3 sqrt(3))", "pi/4"; false: it is none, or has one digit behind the point. */
+bool ratio_formula(double ratio, char *text, size_t size);
 /* So near to 1 that somebody has rounded a number. */
 bool ratio_is_rounding(double ratio);
 

@@ -345,8 +345,8 @@ static void implied_forces(bench *b, ir_node *nodes) {
   ir_node W = b->law_frozen.W;
   for (int k = 0; k < WAYS; k++)
     nodes[k] = ir_derivative(g, W, lower_quantity(g, by[k]));
-  nodes[FORCE_N] = ir_add(g, ir_div(g, nodes[FORCE_N], lower_quantity(g, QUANTITY_S)),
-                          ir_derivative(g, W, lower_quantity(g, QUANTITY_LENGTH)));
+  const ir_node by_length = ir_derivative(g, W, lower_quantity(g, QUANTITY_LENGTH));
+  nodes[FORCE_N] = ir_add(g, ir_div(g, nodes[FORCE_N], lower_quantity(g, QUANTITY_S)), by_length);
 }
 
 void physics_check_energy_and_force(physics *p) {

@@ -9,6 +9,7 @@
 #include "generator/check/physics_point_bench.h"
 #include "generator/check/physics_point_flows.h"
 #include "generator/check/physics_point_turns.h"
+#include "generator/interpreter/lone_point.h"
 #include "generator/ir/random_values.h"
 #include "runtime/base/eigen.h"
 
@@ -37,11 +38,8 @@ static const char MEND_ROOT[] =
 static const char MEND_JUMP[] = "let the values of the cases meet where one ends, or write `jump` "
                                 "at the end of the line if the jump is meant";
 static const char MEND_FOLD[] =
-    "let the values of the cases meet where one ends, or write `jump` at the end of the line if "
-    "the "
-    "jump is meant; without cases the strain along z that leaves no stress ends here, as the "
-    "stress "
-    "along z falls with it: let the law be `for plane_strain, space`, or bound what lets it fall";
+    "no strain along z, or several, leave no stress there, as the stress along z does not rise all "
+    "the way with it: bound what lets it fall, or let the law be `for plane_strain, space`";
 static const char MEND_NOT_DEFINED[] = "keep roots, logarithms and divisors off what they are not "
                                        "defined for, by cases or by `max`";
 
@@ -50,6 +48,23 @@ static const char MEND_NOT_FOUND[] =
     "a "
     "flow that does not come back to its limit, and in plane stress a strain along z that is not "
     "found, are no numbers, too: `perilat drive` along this strain tells which";
+
+/* --- along z ---------------------------------------------------------------------------------- */
+
+/* How many strains along z leave no stress there at this strain; 1 where that is no question. */
+static int roots_along_z(const point_bench *b, const double *strain) {
+  if (b->setting.setting != SETTING_PLANE_STRESS) return 1;
+  double *field = must_calloc((size_t)b->law->fields.count + 1, sizeof *field);
+  for (int k = 0; k < b->law->fields.count; k++)
+    field[k] = b->old_field[k][0];
+  const asked_point at = {strain, field, b->size[0], TIME_STEP};
+  lone_point point;
+  lone_point_open(&point, b->plan, b->parameters, &at);
+  const along_z seen = lone_point_along_z(&point, &b->setting);
+  lone_point_close(&point);
+  free(field);
+  return isfinite(seen.least) ? seen.roots : 1;
+}
 
 /* --- at rest ---------------------------------------------------------------------------------- */
 
@@ -183,7 +198,11 @@ static void check_tangent(point_bench *b) {
                                             tangent_gap(b, strain, tangent, 1e-5 * size)),
                                     tangent_gap(b, strain, tangent, 1e-6 * size));
   const bool finite = isfinite(difference) && isfinite(scale);
-  if (!finite && !b->failed[DIAG_FLOW])
+  if (!finite && !b->failed[DIAG_FLOW] && !b->failed[DIAG_NOT_FINITE] &&
+      roots_along_z(b, strain) == 0)
+    point_bench_say(b, DIAG_NOT_FINITE, strain, MEND_FOLD,
+                    "no strain along z is found that leaves no stress there");
+  else if (!finite && !b->failed[DIAG_FLOW])
     point_bench_say(b, DIAG_NOT_FINITE, strain,
                     b->law->fields.count > 0 || b->setting.setting == SETTING_PLANE_STRESS
                         ? MEND_NOT_FOUND
@@ -191,8 +210,7 @@ static void check_tangent(point_bench *b) {
                     "the stress or its slope is not finite at a finite strain");
   else if (finite && !b->failed[DIAG_CONTINUITY] && !b->failed[DIAG_NOT_FINITE] &&
            !(difference <= TANGENT_TOLERANCE * scale))
-    point_bench_say(b, DIAG_TANGENT, strain,
-                    b->setting.setting == SETTING_PLANE_STRESS ? MEND_FOLD : NULL,
+    point_bench_say(b, DIAG_TANGENT, strain, roots_along_z(b, strain) != 1 ? MEND_FOLD : NULL,
                     "the tangent is off the stress's differences by %.3g of its largest entry",
                     difference / scale);
 }
@@ -384,10 +402,15 @@ static void check_continuity(point_bench *b, bool meant) {
     if (second) begin += width;
     memcpy(second ? low : high, next, sizeof next);
   }
-  if (isfinite(scale) && change_of(b, low, high) > 1e-4 * scale)
-    point_bench_say(b, DIAG_CONTINUITY, here,
-                    b->setting.setting == SETTING_PLANE_STRESS ? MEND_FOLD : MEND_JUMP,
-                    "the stress jumps by %.6g Pa", change_of(b, low, high));
+  if (!isfinite(scale) || !(change_of(b, low, high) > 1e-4 * scale)) return;
+  between(b, from, to, begin + width, next);
+  between(b, from, to, begin, here);
+  const bool folds = roots_along_z(b, here) != 1 || roots_along_z(b, next) != 1;
+  point_bench_say(b, DIAG_CONTINUITY, next, folds ? MEND_FOLD : MEND_JUMP,
+                  folds ? "the strain along z that leaves no stress there ends here: the stress "
+                          "jumps by %.6g Pa"
+                        : "the stress jumps by %.6g Pa",
+                  change_of(b, low, high));
 }
 
 /* --- closed paths ----------------------------------------------------------------------------- */

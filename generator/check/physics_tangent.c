@@ -123,10 +123,10 @@ static ir_node slope(bench *b, ir_node force, bench_axis axis) {
   ir *g = b->graph;
   if (force == IR_NONE) return ir_constant(g, 0);
   ir_node d = ir_derivative(g, force, lower_quantity(g, law_motion[axis]));
-  if (axis == AXIS_STRETCH)
-    d = ir_add(g, d,
-               ir_mul(g, lower_quantity(g, QUANTITY_S),
-                      ir_derivative(g, force, lower_quantity(g, QUANTITY_LENGTH))));
+  if (axis == AXIS_STRETCH) {
+    const ir_node by_length = ir_derivative(g, force, lower_quantity(g, QUANTITY_LENGTH));
+    d = ir_add(g, d, ir_mul(g, lower_quantity(g, QUANTITY_S), by_length));
+  }
   rewrite_zero(g, &d, 1, NULL, 0, &d);
   return d;
 }

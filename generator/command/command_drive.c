@@ -391,7 +391,7 @@ static int drive_the_other(driving *r) {
   if (!path) return 0;
   if (!file_suits(path, FILES(LAW), "--against", "a law")) return INPUT_WRONG;
   const driven_outcome outcome =
-      reference_law_drive(&r->reference, r->memory, r->in, path, &r->said);
+      reference_law_drive(&r->reference, r->memory, r->in, path, NULL, &r->said);
   if (r->reference.of.opened) tell(r, &r->reference.of.model.said);
   if (outcome != DRIVEN_READY) return outcome == DRIVEN_NO_KERNEL ? DRIVE_FAILED : INPUT_WRONG;
   if (driven_law_kind(&r->reference.of) == driven_law_kind(&r->of)) return 0;

@@ -51,8 +51,8 @@ static kernel_plan *plan_stress(const law *l, diagnostics *d) {
   const int count = part_count(p->dimensions), own = 1 + l->outputs.count;
   segment wanted = {.root_count = 0};
   ir_node other = ir_make(g, IR_NEIGHBOUR, step.F, IR_NONE, IR_NONE);
-  ir_node force = ir_mul(g, ir_constant(g, 0.5), ir_add(g, step.F, other));
-  ir_node twice = ir_mul(g, ir_constant(g, 2), lower_quantity(g, QUANTITY_V));
+  ir_node force = ir_scaled(g, 0.5, ir_add(g, step.F, other));
+  ir_node twice = ir_scaled(g, 2, lower_quantity(g, QUANTITY_V));
   ir_node moment = ir_div(g, force, lower_quantity(g, QUANTITY_S));
   for (int k = 0; k < count; k++) {
     const int which = part(p->dimensions, k);
@@ -70,12 +70,22 @@ static kernel_plan *plan_stress(const law *l, diagnostics *d) {
   return p;
 }
 
+static bool gauge_open(family_gauge *g, const law *l, diagnostics *d) {
+  if (!g->plan) g->plan = plan_stress(l, d);
+  if (g->plan && !g->kernel) g->kernel = plan_interpreted(g->plan);
+  return g->kernel != NULL;
+}
+
+void family_gauge_close(family_gauge *g) {
+  if (g->kernel) plan_interpreted_free(g->kernel);
+  plan_free(g->plan);
+  *g = (family_gauge){.plan = NULL};
+}
+
 /* --- the particle ----------------------------------------------------------------------------- */
 
 typedef struct driven_particle {
   const pl_law *kernel;
-  kernel_plan *stress_plan;
-  pl_law *stress_kernel;
   rows *lattice;
   patch *law, *stress; /* the same particle */
   long site;
@@ -101,12 +111,12 @@ static void particle_close(driven_particle *r) {
   patch_free(r->law);
   patch_free(r->stress);
   if (r->lattice) rows_free(r->lattice);
-  if (r->stress_kernel) plan_interpreted_free(r->stress_kernel);
-  plan_free(r->stress_plan);
 }
 
+/* `g` NULL: its stress is not asked for. */
 static bool particle_open(driven_particle *r, const drive_input *in, const law *l,
-                          const pl_law *kernel, const double *parameters, diagnostics *d) {
+                          const pl_law *kernel, family_gauge *g, const double *parameters,
+                          diagnostics *d) {
   static const long one[3] = {1, 1, 1}, origin[3] = {0, 0, 0};
   const deck_lattice like = drive_lattice(in, l);
   *r = (driven_particle){.kernel = kernel, .dimensions = kernel->dimensions};
@@ -115,13 +125,11 @@ static bool particle_open(driven_particle *r, const drive_input *in, const law *
   r->lattice = implied_lattice_like(&like, material_density(kernel, parameters));
   if (!r->lattice)
     return refuse(in, d, "a particle of this lattice has no neighbours, or too many");
-  r->stress_plan = plan_stress(l, d);
-  if (!r->stress_plan) return false;
-  r->stress_kernel = plan_interpreted(r->stress_plan);
+  if (g && !gauge_open(g, l, d)) return false;
   r->parts = part_count(r->dimensions);
   r->neighbours = 2 * r->lattice->directions;
   r->law = patch_new(kernel, parameters, r->lattice, one, 0, 0);
-  r->stress = patch_new(r->stress_kernel, parameters, r->lattice, one, r->parts, 1);
+  r->stress = g ? patch_new(g->kernel, parameters, r->lattice, one, r->parts, 1) : NULL;
   r->site = patch_site(r->law, origin);
   return true;
 }
@@ -147,7 +155,7 @@ static void particle_move(driven_particle *r, const double *strain, const double
     gradient[0][x][y] = gradient[0][y][x] = strain[k];
     gradient[1][x][y] = gradient[1][y][x] = rate[k];
   }
-  for (int k = 0; k < 2; k++) {
+  for (int k = 0; k < 2 && both[k]; k++) {
     patch_deform(both[k], (const double(*)[3])gradient[0], NULL, both[k]->displacement);
     patch_deform(both[k], (const double(*)[3])gradient[1], NULL, both[k]->velocity);
   }
@@ -293,7 +301,7 @@ static void set_fields(driven_particle *r, const double *initial) {
       set_plane(r->law, f, k, initial[f]);
 }
 
-bool drive_family_run(const drive_input *in, const law *l, const pl_law *kernel,
+bool drive_family_run(const drive_input *in, const law *l, const pl_law *kernel, family_gauge *g,
                       const double *parameters, const double *initial, drive_table *out,
                       diagnostics *d) {
   const double beside = 1e-6; /* of a step: rates are those of the step that ends */
@@ -301,7 +309,7 @@ bool drive_family_run(const drive_input *in, const law *l, const pl_law *kernel,
   driven_particle r;
   state before = {.strain = {0}};
   double energy[ENERGIES] = {0};
-  if (!particle_open(&r, in, l, kernel, parameters, d)) {
+  if (!particle_open(&r, in, l, kernel, g, parameters, d)) {
     particle_close(&r);
     return false;
   }
@@ -332,7 +340,7 @@ void drive_family_observe(const drive_input *in, const law *l, const pl_law *ker
   diagnostics unheard;
   source_set sources = {NULL, 0};
   diag_begin(&unheard, &sources);
-  if (particle_open(&r, in, l, kernel, parameters, &unheard)) {
+  if (particle_open(&r, in, l, kernel, NULL, parameters, &unheard)) {
     int c = t->law_column;
     for (int k = 0; k < r.parts; k++)
       s.strain[k] = t->columns[1 + k].values[row];

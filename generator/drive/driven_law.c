@@ -1,12 +1,12 @@
 #include "generator/drive/driven_law.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "dsl/semantics/law_reads.h"
 #include "generator/drive/drive_bond.h"
-#include "generator/drive/drive_family.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/material_law.h"
 #include "generator/plan/plan.h"
@@ -151,15 +151,56 @@ static bool set_values(driven_law *r) {
   return good;
 }
 
-driven_outcome driven_law_open(driven_law *r, arena *memory, const drive_input *in, bool compiled,
+static driven_outcome open_law(driven_law *r, const drive_input *in, bool compiled,
                                diagnostics *said) {
-  *r = (driven_law){.in = in, .memory = memory, .said = said};
-  bool good = material_law_open(&in->material, NULL, in->path, &r->model, said);
+  *r = (driven_law){.in = in, .said = said};
+  const bool good = material_law_open(&in->material, NULL, in->path, &r->model, said);
   r->opened = r->model.memory != NULL;
   if (!good || !take_setting(r)) return DRIVEN_BAD_LAW;
   if (!open_kernel(r, compiled)) return DRIVEN_NO_KERNEL;
+  if (r->law->kind == PL_STATE) r->gauge = arena_alloc(r->model.memory, sizeof *r->gauge);
+  return DRIVEN_READY;
+}
+
+static driven_outcome suit_path(driven_law *r) {
   return can_be_driven(r) && has_section(r) && suits_law(r) && set_values(r) ? DRIVEN_READY
                                                                              : DRIVEN_UNSUITED;
+}
+
+driven_outcome driven_law_open(driven_law *r, arena *memory, const drive_input *in, bool compiled,
+                               diagnostics *said) {
+  const driven_outcome outcome = open_law(r, in, compiled, said);
+  r->memory = memory;
+  return outcome == DRIVEN_READY ? suit_path(r) : outcome;
+}
+
+/* What a path sets has no part in the kernel, but for options and the setting of a point. */
+static bool has_kernel_of(const driven_law *kept, const drive_input *in) {
+  char *path = model_find(in->material.model, in->path);
+  const bool same = path && kept->model.path && strcmp(path, kept->model.path) == 0 &&
+                    kept->law->kind != PL_CONTINUUM && kept->model.law->options.count == 0;
+  free(path);
+  return same;
+}
+
+driven_outcome driven_law_open_kept(driven_law *r, driven_law *kept, arena *memory,
+                                    const drive_input *in, diagnostics *said) {
+  if (!kept->opened) {
+    const driven_outcome outcome = open_law(kept, in, false, said);
+    if (outcome != DRIVEN_READY) {
+      *r = *kept;
+      *kept = (driven_law){.in = NULL};
+      return outcome;
+    }
+  }
+  if (!has_kernel_of(kept, in)) return driven_law_open(r, memory, in, false, said);
+  *r = *kept;
+  r->in = in;
+  r->memory = memory;
+  r->said = said;
+  r->opened = false;
+  r->model.values = in->material;
+  return suit_path(r);
 }
 
 void driven_law_columns(const driven_law *r, drive_table *out) {
@@ -174,7 +215,8 @@ void driven_law_columns(const driven_law *r, drive_table *out) {
 bool driven_law_march(const driven_law *r, drive_table *out, drive_band *band) {
   switch (driven_law_kind(r)) {
   case DRIVE_OF_FAMILIES:
-    return drive_family_run(r->in, r->model.law, r->law, r->parameters, r->initial, out, r->said);
+    return drive_family_run(r->in, r->model.law, r->law, r->gauge, r->parameters, r->initial, out,
+                            r->said);
   case DRIVE_OF_POINTS:
     return drive_point_run(r->in, r->law, r->parameters, r->initial, out, band, r->said);
   default:
@@ -183,6 +225,7 @@ bool driven_law_march(const driven_law *r, drive_table *out, drive_band *band) {
 }
 
 void driven_law_close(driven_law *r) {
+  if (r->opened && r->gauge) family_gauge_close(r->gauge);
   if (r->opened) model_close(&r->model);
   *r = (driven_law){.in = NULL};
 }

@@ -3,6 +3,7 @@
 #ifndef PERILAT_GENERATOR_DRIVEN_LAW_H
 #define PERILAT_GENERATOR_DRIVEN_LAW_H
 
+#include "generator/drive/drive_family.h"
 #include "generator/drive/drive_path.h"
 #include "generator/drive/drive_point.h"
 #include "generator/drive/drive_table.h"
@@ -13,8 +14,9 @@ typedef struct driven_law {
   arena *memory;     /* of what follows */
   diagnostics *said; /* what is wrong with the path */
   model model;       /* what is wrong with the law: model.said, where `opened` */
-  bool opened;
+  bool opened;       /* here, not borrowed */
   const pl_law *law;
+  family_gauge *gauge;          /* of families */
   double *parameters, *initial; /* initial [fields]: where state and damage begin */
 } driven_law;
 
@@ -29,6 +31,11 @@ typedef enum driven_outcome {
    be closed whatever the outcome. */
 driven_outcome driven_law_open(driven_law *r, arena *memory, const drive_input *in, bool compiled,
                                diagnostics *said);
+/* The same of many paths that drive one law, on the interpreter: it is read and planned for the
+   first of them, and kept in `kept`, empty at first, which must outlive all others and be closed
+   like them. Where a path asks for another file, or another kernel of it, that is opened. */
+driven_outcome driven_law_open_kept(driven_law *r, driven_law *kept, arena *memory,
+                                    const drive_input *in, diagnostics *said);
 void driven_law_close(driven_law *r);
 drive_kind driven_law_kind(const driven_law *r);
 /* A table without rows, with the columns that driving gives; to be freed. */

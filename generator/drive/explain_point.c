@@ -7,7 +7,6 @@
 #include "generator/drive/explain_values.h"
 #include "generator/lower/lower.h"
 #include "generator/lower/lower_inputs.h"
-#include "generator/lower/point_inputs.h"
 
 /* Whether the value is a state of a flow that is solved for. */
 static bool is_returned(const kernel_plan *p, ir_node n) {
@@ -59,48 +58,41 @@ static bool report_slope(const kernel_plan *p, ir_node n, const interpreter_inpu
   return !(slope < 0 && isfinite(slope));
 }
 
-static bool report_point(const kernel_plan *p, const interpreter_inputs *in, FILE *out) {
-  explained e = explain_values(p, PROGRAM_STEP, in);
+/* Whether none along z is without stress. */
+static bool report_along_z(const kernel_plan *p, lone_point *at, FILE *out) {
+  const along_z seen = lone_point_along_z(at, p->law);
+  fputs("  no strain along z is found that leaves no stress there", out);
+  if (seen.roots > 0)
+    fprintf(out, ", though one near %.6g does\n", seen.root);
+  else if (isfinite(seen.least))
+    fprintf(out, ": between %.6g and %.6g it is %.6g MPa in size at least, at %.6g\n", -seen.reach,
+            seen.reach, 1e-6 * seen.least, seen.least_at);
+  else
+    fputc('\n', out);
+  return seen.roots == 0 && isfinite(seen.least);
+}
+
+static point_fault report_point(const kernel_plan *p, lone_point *at, FILE *out) {
+  explained e = explain_values(p, PROGRAM_STEP, &at->in);
   const bool bad = e.bad < e.count, flow = bad && is_returned(p, e.named[e.bad]);
-  bool no_slope = false;
+  point_fault fault = POINT_FAULT_OTHER;
   if (bad)
     explain_line(p, e.named[e.bad],
                  flow ? "does not come back to its limit: the flow is not found"
                       : "stops being finite",
                  out);
-  if (flow)
-    no_slope = report_slope(p, e.named[e.bad], in, out);
-  else if (!bad && p->law->setting == SETTING_PLANE_STRESS)
-    fputs("  no strain along z is found that leaves no stress there\n", out);
+  if (flow && report_slope(p, e.named[e.bad], &at->in, out)) fault = POINT_FAULT_FLOW;
+  if (!bad && p->law->setting == SETTING_PLANE_STRESS && report_along_z(p, at, out))
+    fault = POINT_FAULT_FOLD;
   explained_free(&e);
-  return no_slope;
+  return fault;
 }
 
-bool explain_point(const kernel_plan *p, const double *parameters, const asked_point *at,
-                   FILE *out) {
-  const law *l = p->law;
-  const double none = 0, *point[POINT_INPUTS], *ends[ENDS_COUNT] = {[ENDS_TIME_STEP] = &at->step};
-  const double **given = must_calloc((size_t)l->parameters.count + 1, sizeof *given),
-               **own = must_calloc((size_t)l->parameters.count + 1, sizeof *own),
-               **field = must_calloc((size_t)l->fields.count + 1, sizeof *field);
-  for (int k = 0; k < POINT_INPUTS; k++)
-    point[k] = k == POINT_CELL_SIZE ? &at->size : &none;
-  for (int k = 0; k < PL_STRAINS(p->dimensions); k++)
-    point[POINT_STRAIN + point_component(p->dimensions, k)] = &at->strain[k];
-  for (int k = 0; k < l->parameters.count; k++)
-    given[k] = &parameters[k];
-  for (int k = 0; k < p->variation.varying_count; k++)
-    own[k] = &parameters[p->variation.varying[k]];
-  for (int k = 0; k < l->fields.count; k++)
-    field[k] = &at->field[k];
-  const interpreter_inputs in = {.values = {[IR_FROM_PARAMETER] = given,
-                                            [IR_FROM_BOND_PARAMETER] = own,
-                                            [IR_FROM_FIELD] = field,
-                                            [IR_FROM_ENDS] = ends,
-                                            [IR_FROM_POINT] = point}};
-  const bool no_slope = report_point(p, &in, out);
-  free(given);
-  free(own);
-  free(field);
-  return no_slope;
+point_fault explain_point(const kernel_plan *p, const double *parameters, const asked_point *at,
+                          FILE *out) {
+  lone_point point;
+  lone_point_open(&point, p, parameters, at);
+  const point_fault fault = report_point(p, &point, out);
+  lone_point_close(&point);
+  return fault;
 }

@@ -103,17 +103,18 @@ drive_input *path_input(arena *a, source_set *sources, const char *path, const m
 /* --- the solution on it ----------------------------------------------------------------------- */
 
 static bool refer(reference_law *r, arena *a, const drive_input *in, const char *solution,
-                  diagnostics *d) {
-  const driven_outcome outcome = reference_law_drive(r, a, in, solution, d);
+                  driven_law *kept, diagnostics *d) {
+  const driven_outcome outcome = reference_law_drive(r, a, in, solution, kept, d);
   if (outcome == DRIVEN_BAD_LAW && r->of.opened)
     diag_report(d, DIAG_FILE, in->material.item.where, "the solution `%s` has errors", solution);
   return outcome == DRIVEN_READY;
 }
 
-bool path_case_refer(path_case *c, arena *a, const char *solution, diagnostics *d) {
+bool path_case_refer(path_case *c, arena *a, const char *solution, driven_law *kept,
+                     diagnostics *d) {
   c->referenced = true;
-  if (!refer(&c->right, a, c->in, solution, d)) return false;
-  return !c->plain || refer(&c->right_plain, a, c->plain, solution, d);
+  if (!refer(&c->right, a, c->in, solution, kept, d)) return false;
+  return !c->plain || refer(&c->right_plain, a, c->plain, solution, kept, d);
 }
 
 static void add_varied(path_case *c, arena *a, const char *name) {

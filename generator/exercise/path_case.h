@@ -35,9 +35,10 @@ drive_input *input_suited(arena *a, const path_case *c, const drive_input *in,
    (an opened model, or NULL: none). NULL after messages. */
 drive_input *path_input(arena *a, source_set *sources, const char *path, const model *solution,
                         int *own_count, diagnostics *d);
-/* Drives the solution's file along c->in, and along c->plain where there is one. False after
-   messages. */
-bool path_case_refer(path_case *c, arena *a, const char *solution, diagnostics *d);
+/* Drives the solution's file along c->in, and along c->plain where there is one; `kept`:
+   driven_law_open_kept. False after messages. */
+bool path_case_refer(path_case *c, arena *a, const char *solution, driven_law *kept,
+                     diagnostics *d);
 /* What is otherwise in the path than at hand: the defaults of the law, and the sizes of `first`.
    Sets c->plain and c->varied. */
 void path_case_vary(path_case *c, arena *a, const model *solution, const drive_input *first);

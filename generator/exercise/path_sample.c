@@ -22,6 +22,8 @@ typedef struct sampling {
   uint64_t seed, drawn;
   double reach[DRIVE_QUANTITY_COUNT]; /* how far each quantity goes; 0: it is not prescribed */
   double duration;                    /* s */
+  const char *solution;
+  driven_law *kept; /* of the solution */
 } sampling;
 
 static double draw(sampling *s) {
@@ -108,16 +110,15 @@ static drive_input *varied(sampling *s, const drive_input *from, const double *d
 
 /* --- cases ------------------------------------------------------------------------------------ */
 
-static bool refer(sampling *s, path_case *c, const char *solution, diagnostics *d) {
+static bool refer(sampling *s, path_case *c, diagnostics *d) {
   c->plain = NULL;
-  if (path_case_refer(c, s->memory, solution, d)) return true;
+  if (path_case_refer(c, s->memory, s->solution, s->kept, d)) return true;
   path_case_close(c);
   return false;
 }
 
 /* Values that the law refuses are drawn nearer to those at hand; the last refusal is heard. */
-static bool make_case(sampling *s, path_case *c, const drive_input *from, const char *solution,
-                      diagnostics *d) {
+static bool make_case(sampling *s, path_case *c, const drive_input *from, diagnostics *d) {
   double *drawn = arena_alloc(s->memory, ((size_t)s->item->vary_count + 1) * sizeof *drawn);
   for (int k = 0; k < s->item->vary_count; k++)
     drawn[k] = draw(s);
@@ -126,17 +127,18 @@ static bool make_case(sampling *s, path_case *c, const drive_input *from, const 
     diagnostics unheard;
     diag_begin(&unheard, d->sources);
     c->in = varied(s, from, drawn, share);
-    const bool good = refer(s, c, solution, &unheard);
+    const bool good = refer(s, c, &unheard);
     diag_clear(&unheard);
     if (good) return true;
   }
-  return refer(s, c, solution, d);
+  return refer(s, c, d);
 }
 
 path_case *path_samples(arena *a, const exercise_item *item, const path_case *known,
-                        int known_count, const char *solution, uint64_t seed, int *count,
-                        diagnostics *d) {
-  sampling s = {.memory = a, .item = item, .seed = random_mix(seed)};
+                        int known_count, const char *solution, driven_law *kept, uint64_t seed,
+                        int *count, diagnostics *d) {
+  sampling s = {
+      .memory = a, .item = item, .seed = random_mix(seed), .solution = solution, .kept = kept};
   const bool given = item->found_count > 0;
   const int paths = (item->states + STATES_OF_ONE - 1) / STATES_OF_ONE,
             all = given       ? VARIANTS * known_count
@@ -152,7 +154,7 @@ path_case *path_samples(arena *a, const exercise_item *item, const path_case *kn
     *c =
         (path_case){.item = item, .number = *count + 1, .own_count = from->own_count, .varied = ""};
     if (!given) draw_path(&s, &path);
-    good = make_case(&s, c, &path, solution, d);
+    good = make_case(&s, c, &path, d);
     if (!good) break;
   }
   if (good) return cases;

@@ -33,6 +33,7 @@ static marks *judge_all(grading *g, const handed_in *answers, int count) {
     for (; good && begun < count && begun < k + beside; begun++)
       good = grading_begin(g, &answers[begun], &all[begun], &children[begun]);
     grading_end(g, &children[k]);
+    grading_keep(g, &children[k]);
     if (good) show(g, &all[k], k);
   }
   return good ? all : NULL;

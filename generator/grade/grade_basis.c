@@ -98,7 +98,8 @@ static bool refer_paths(grade_basis *b) {
   for (int k = 0; k < b->case_count; k++) {
     path_case *c = &b->cases[k];
     path_case_vary(c, b->memory, &b->solution, first);
-    if (!path_case_refer(c, b->memory, b->of->solution, &b->said) || !fix_expectations(b, c))
+    if (!path_case_refer(c, b->memory, b->of->solution, &b->kept, &b->said) ||
+        !fix_expectations(b, c))
       return false;
     let_laws_go(c);
     if (c->right.table.bad_row < 0) continue;
@@ -111,15 +112,15 @@ static bool refer_paths(grade_basis *b) {
 
 /* --- known wrong laws ------------------------------------------------------------------------- */
 
-static void drive_wrong(grade_basis *b, int path, int wrong) {
+static void drive_wrong(grade_basis *b, int path, int wrong, driven_law *kept) {
   const path_case *c = &b->cases[path];
   const char *missing;
   const drive_input *in = input_suited(b->memory, c, c->in, &b->declared[wrong], &missing);
   diagnostics unheard;
   diag_begin(&unheard, &b->sources);
   reference_law *r = &b->wrong[path * b->of->wrong_count + wrong];
-  if (missing ||
-      reference_law_drive(r, b->memory, in, b->of->wrong[wrong].path, &unheard) != DRIVEN_READY) {
+  if (missing || reference_law_drive(r, b->memory, in, b->of->wrong[wrong].path, kept, &unheard) !=
+                     DRIVEN_READY) {
     if (!missing) reference_law_close(r);
     *r = (reference_law){.skip = NULL};
   } else {
@@ -134,9 +135,11 @@ static void drive_all_wrong(grade_basis *b) {
   b->declared = arena_alloc(b->memory, ((size_t)e->wrong_count + 1) * sizeof *b->declared);
   b->wrong = arena_alloc(b->memory, (tables + 1) * sizeof *b->wrong);
   for (int w = 0; w < e->wrong_count; w++) {
+    driven_law kept = {.in = NULL};
     b->declared[w] = names_declared(b->memory, e->wrong[w].path);
     for (int k = 0; k < b->case_count && b->declared[w].count; k++)
-      drive_wrong(b, k, w);
+      drive_wrong(b, k, w, &kept);
+    driven_law_close(&kept);
   }
 }
 
@@ -186,6 +189,7 @@ void grade_basis_close(grade_basis *b) {
     if (b->wrong[k].table.memory) reference_law_close(&b->wrong[k]);
   for (int k = 0; k < b->case_count; k++)
     path_case_close(&b->cases[k]);
+  driven_law_close(&b->kept);
   if (b->has_solution) model_close(&b->solution);
   diag_clear(&b->said);
   source_clear(&b->sources);

@@ -12,6 +12,7 @@ typedef struct grade_basis {
   diagnostics said;
   model solution; /* read, where has_solution */
   bool has_solution;
+  driven_law kept;  /* the solution, as paths drive it */
   path_case *cases; /* of all items of paths that are judged, in their order */
   int case_count;
   declared_names *declared; /* [wrong_count] by known wrong laws; count 0: it does not even read */

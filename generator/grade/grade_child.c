@@ -18,6 +18,7 @@
 #include "generator/kernel/document.h"
 #include "runtime/base/clock.h"
 #include "runtime/base/confined.h"
+#include "runtime/base/processors.h"
 
 enum {
   MOST_COPIED = 20, /* laws beside an answer */
@@ -88,6 +89,7 @@ static void be_child(const judge_request *q, const char *folder, const confineme
   FILE *out = fdopen(pipe, "w");
   if (!out || !confine(folder, to) || !model_confine(q->answer, q->basis->of->folder)) _exit(3);
   hide_law_beside(q->basis->of);
+  processors_keep_to(1); /* other answers have the others */
   if (q->basis->of->of_answers)
     judge_table(q, out);
   else
@@ -150,7 +152,7 @@ static bool start(judging_child *c, const judge_request *q, const confinement *t
 bool grade_child_begin(judging_child *c, marks *m, const judge_request *q, const handed_in *answer,
                        const handed_text *text, const confinement *to) {
   judge_request here = *q;
-  *c = (judging_child){.m = m, .from = -1, .begun = monotonic_seconds()};
+  c->begun = monotonic_seconds();
   m->trouble = text->bad;
   if (m->trouble) return true;
   if (!make_folder(c->folder, sizeof c->folder)) {

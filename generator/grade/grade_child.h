@@ -13,6 +13,7 @@ typedef struct judging_child {
   char folder[4096]; /* "": none was made */
   int process, from; /* from: what it says; -1: there is no process */
   double begun;
+  const char *bare; /* handed_text_bare, or NULL */
 } judging_child;
 
 /* Begins to judge the text of an answer; several may run at the same time. q->answer is set here;

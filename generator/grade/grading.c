@@ -26,8 +26,8 @@ static bool draw_samples(grading *g, arena *a, const handed_text *text, judge_re
     int known, count;
     if (item->kind != ITEM_SAMPLE || !item_is_judged(item, g->o->only_public)) continue;
     const path_case *origins = sample_origins(&g->basis, item, &known);
-    path_case *more = path_samples(a, item, origins, known, e->solution, seed_of(g, item, text),
-                                   &count, &g->basis.said);
+    path_case *more = path_samples(a, item, origins, known, e->solution, &g->basis.kept,
+                                   seed_of(g, item, text), &count, &g->basis.said);
     if (!more) return false;
     path_case *all = arena_alloc(a, (size_t)(q->sample_count + count + 1) * sizeof *all);
     if (q->sample_count) memcpy(all, q->samples, (size_t)q->sample_count * sizeof *all);
@@ -38,12 +38,26 @@ static bool draw_samples(grading *g, arena *a, const handed_text *text, judge_re
   return true;
 }
 
+static const marks *judged_like(const grading *g, const char *bare) {
+  for (int k = 0; k < g->judged_count && bare; k++)
+    if (strcmp(g->judged[k].bare, bare) == 0) return g->judged[k].m;
+  return NULL;
+}
+
+void grading_keep(grading *g, const judging_child *c) {
+  if (!c->bare || !c->m->ended || judged_like(g, c->bare)) return;
+  g->judged = arena_room(g->memory, g->judged, g->judged_count, sizeof *g->judged);
+  g->judged[g->judged_count++] = (judged_law){c->bare, c->m};
+}
+
 bool grading_begin(grading *g, const handed_in *answer, marks *m, judging_child *c) {
   arena *a = arena_new();
   judge_request q = {.basis = &g->basis, .only_public = g->o->only_public};
   marks_open(m, answer->name, g->e->item_count);
   *c = (judging_child){.m = m, .from = -1};
   const handed_text text = handed_answer_read(a, answer->file);
+  c->bare = text.bad ? NULL : handed_text_bare(g->memory, &text);
+  q.like = judged_like(g, c->bare);
   const bool good = (text.bad || draw_samples(g, a, &text, &q)) &&
                     grade_child_begin(c, m, &q, answer, &text, &g->o->limits);
   for (int k = 0; k < q.sample_count; k++)

@@ -6,6 +6,12 @@
 #include "generator/grade/grade_child.h"
 #include "generator/grade/grade_options.h"
 
+/* A law that was judged, and what it got. */
+typedef struct judged_law {
+  const char *bare; /* handed_text_bare */
+  const marks *m;
+} judged_law;
+
 typedef struct grading {
   const grade_options *o;
   arena *memory;
@@ -13,7 +19,9 @@ typedef struct grading {
   diagnostics said;
   exercise *e;
   grade_basis basis;
-  bool opened; /* the basis is */
+  bool opened;        /* the basis is */
+  judged_law *judged; /* [judged_count] */
+  int judged_count;
 } grading;
 
 /* Reads the exercise and drives its laws. False, with messages kept for grading_close, where it is
@@ -25,6 +33,9 @@ void grading_close(grading *g);
    with a message kept; grading_end is to follow in any case, and fills the marks. */
 bool grading_begin(grading *g, const handed_in *answer, marks *m, judging_child *c);
 void grading_end(grading *g, judging_child *c);
+/* From here on who hands in the same law, comments and blanks aside, is not waited for while it
+   runs: its runs are those of this one, whose marks must outlive the grading. */
+void grading_keep(grading *g, const judging_child *c);
 /* Both. */
 bool grading_judge(grading *g, const handed_in *answer, marks *m);
 

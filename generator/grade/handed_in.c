@@ -72,6 +72,37 @@ handed_text handed_answer_read(arena *a, const char *file) {
   return t;
 }
 
+/* From `k` on to the end of a comment, or of blanks and comments. */
+static size_t behind_blanks(const handed_text *t, size_t k, bool *line_ends) {
+  for (bool comment = false; k < t->length; k++) {
+    const char c = t->text[k];
+    comment = (comment || c == '!') && c != '\n';
+    *line_ends = *line_ends || c == '\n';
+    if (!comment && !is_space(c)) return k;
+  }
+  return k;
+}
+
+char *handed_text_bare(arena *a, const handed_text *t) {
+  char *bare = arena_alloc(a, t->length + 2);
+  size_t length = 0;
+  bool quoted = false;
+  for (size_t k = 0; k < t->length;) {
+    const char c = t->text[k];
+    if (!quoted && (is_space(c) || c == '!')) {
+      bool line_ends = false;
+      k = behind_blanks(t, k, &line_ends);
+      bare[length++] = line_ends ? '\n' : ' ';
+      continue;
+    }
+    quoted = (c == '"') != quoted && c != '\n';
+    bare[length++] = c;
+    k++;
+  }
+  bare[length] = 0;
+  return strstr(bare, "include") ? NULL : bare; /* of other texts, which may differ */
+}
+
 uint64_t handed_text_seed(const handed_text *t) {
   uint64_t seed = HASH_START;
   for (size_t k = 0; k < t->length; k++)

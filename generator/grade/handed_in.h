@@ -25,5 +25,8 @@ handed_text handed_text_read(arena *a, const char *file);
 handed_text handed_answer_read(arena *a, const char *file);
 /* The same of the same answer, wherever its file lies and however its lines end. */
 uint64_t handed_text_seed(const handed_text *t);
+/* The text with one blank, or one end of a line, for all that are beside each other, and without
+   comments: laws that have the same are the same. NULL where it may include other texts. */
+char *handed_text_bare(arena *a, const handed_text *t);
 
 #endif

@@ -22,6 +22,7 @@ typedef struct judging {
   declared_names declared;
   path_outcome *outcomes; /* [case_count], of those that were driven */
   cases_seen seen;
+  driven_law kept; /* the answer, as paths drive it */
   runs_made runs;
   bool all_right;
   const char *first_error; /* "code: message" of a law that does not read */
@@ -136,7 +137,7 @@ static void judge_cases(judging *j, int k, path_case *cases, int count, path_out
   int passed = 0;
   bool said = false;
   for (int c = 0; c < count && j->reads; c++) {
-    judge_path(&outcomes[c], j->memory, &cases[c], j->q->answer, &j->declared, &j->seen);
+    judge_path(&outcomes[c], j->memory, &cases[c], j->q->answer, &j->declared, &j->kept, &j->seen);
     passed += outcomes[c].right;
     if (outcomes[c].right || said) continue;
     put_outcome(j, k, &cases[c], count, &outcomes[c]);
@@ -188,22 +189,22 @@ static bool is_right(const exercise_item *item, double value, double expected) {
 }
 
 /* "E is 6e+10, minus twice what it should be"; "E is 0". */
-static void say_number(FILE *out, const char *what, double value, double expected) {
+static void say_number(FILE *out, const char *what, double value, double expected, bool exact) {
   const double ratio = value / expected;
   fprintf(out, "%s is ", what);
   if (expected != 0 && fabs(ratio) >= 1e-9) fprintf(out, "%.5g, ", value);
   if (expected != 0)
-    ratio_say(ratio, "what it should be", out);
+    (exact ? exact_ratio_say : ratio_say)(ratio, "what it should be", out);
   else
     fprintf(out, "%.5g, not 0", value);
   rounding_say(ratio, out);
 }
 
-static char *number_words(arena *a, const char *what, double value, double expected) {
+static char *number_words(arena *a, const char *what, double value, double expected, bool exact) {
   char *text;
   size_t length;
   FILE *out = must_open_text(&text, &length);
-  say_number(out, what, value, expected);
+  say_number(out, what, value, expected, exact);
   must_close_text(out);
   char *words = arena_text(a, text, length);
   free(text);
@@ -222,7 +223,8 @@ static void put_number(judging *j, int k, double value, double expected, const c
   if (isnan(value))
     record_write(j->out, RECORD_WORDS, k, NULL, why);
   else
-    record_write(j->out, RECORD_WORDS, k, NULL, number_words(j->memory, what, value, expected));
+    record_write(j->out, RECORD_WORDS, k, NULL,
+                 number_words(j->memory, what, value, expected, item->kind != ITEM_RUN));
 }
 
 static void judge_implied(judging *j, int k) {
@@ -251,8 +253,20 @@ static void put_imbalance(judging *j, int k, double value, const char *why) {
           : arena_printf(j->memory, "the energies of the run miss %.3g of the largest", value));
 }
 
+/* As the same law got it. */
+static void repeat_run(judging *j, int k, const item_mark *mark) {
+  const double numbers[4] = {mark->share, mark->passed, mark->of, mark->value};
+  record_write(j->out, RECORD_MARK, k, numbers, NULL);
+  j->all_right = j->all_right && mark->share == 1;
+  if (mark->words) record_write(j->out, RECORD_WORDS, k, NULL, mark->words);
+}
+
 static void judge_run(judging *j, int k) {
   const exercise_item *item = &j->b->of->items[k];
+  if (j->q->like && j->q->like->items[k].judged) {
+    repeat_run(j, k, &j->q->like->items[k]);
+    return;
+  }
   const char *why = "";
   const double value =
       j->reads ? measure_run(j->memory, item, j->q->answer, NULL, 0, &j->runs, &why) : NAN;
@@ -378,6 +392,7 @@ void judge_answer(const judge_request *q, FILE *out) {
   record_write(out, RECORD_END, -1, NULL, NULL);
   for (int k = 0; k < b->case_count; k++)
     if (j.outcomes[k].table.memory) drive_table_free(&j.outcomes[k].table);
+  driven_law_close(&j.kept);
   free(j.seen.items);
   arena_free(j.memory);
 }

@@ -14,7 +14,8 @@ typedef struct judge_request {
   /* of sample items: [sample_count], of this answer's seed */
   path_case *samples;
   int sample_count;
-  bool measure; /* implied and run: tell the value, whatever is expected */
+  const marks *like; /* of an answer with the same law: its runs are those of this one; or NULL */
+  bool measure;      /* implied and run: tell the value, whatever is expected */
 } judge_request;
 
 /* Writes records (marks.h) as it goes; the last is RECORD_END. */

@@ -48,9 +48,9 @@ static bool march(path_outcome *out, const driven_law *of, cases_seen *seen) {
 }
 
 /* False after words. */
-static bool drive_along(path_outcome *out, arena *a, driven_law *of, const drive_input *in,
-                        cases_seen *seen, diagnostics *said) {
-  const driven_outcome outcome = driven_law_open(of, a, in, false, said);
+static bool drive_along(path_outcome *out, arena *a, driven_law *of, driven_law *kept,
+                        const drive_input *in, cases_seen *seen, diagnostics *said) {
+  const driven_outcome outcome = driven_law_open_kept(of, kept, a, in, said);
   if (outcome == DRIVEN_BAD_LAW && of->opened && of->model.said.errors > 0)
     out->words = arena_printf(a, "your law has errors");
   else if (outcome != DRIVEN_READY || !march(out, of, seen))
@@ -90,14 +90,14 @@ static bool agrees(const path_case *c, const drive_table *t, const reference_law
 
 /* Right with the values that are at hand, wrong with others: numbers stand where names should. */
 static bool only_at_hand(const path_outcome *out, arena *a, const path_case *c, const char *answer,
-                         const declared_names *declared, diagnostics *said) {
+                         const declared_names *declared, driven_law *kept, diagnostics *said) {
   const char *missing;
   path_outcome plain = {.words = NULL};
   driven_law of;
   if (!c->plain || agrees(c, &out->table, &c->right)) return false;
   const drive_input *in = input_here(a, c, c->plain, answer, declared, &missing);
   const bool good =
-      drive_along(&plain, a, &of, in, NULL, said) && agrees(c, &plain.table, &c->right_plain);
+      drive_along(&plain, a, &of, kept, in, NULL, said) && agrees(c, &plain.table, &c->right_plain);
   driven_law_close(&of);
   if (plain.table.memory) drive_table_free(&plain.table);
   return good;
@@ -119,18 +119,35 @@ static void compare(path_outcome *out, arena *a, const path_case *c) {
 /* --- against what the path expects ------------------------------------------------------------ */
 
 /* Where it says more than the numbers do. */
-static void say_known_ratio(double ratio, FILE *out) {
-  const bool rounding = ratio_is_rounding(ratio), known = rounding || ratio_words(fabs(ratio));
+static void say_known_ratio(double ratio, bool alike, FILE *out) {
+  char formula[64];
+  const bool rounding = alike && ratio_is_rounding(ratio),
+             known = rounding || ratio_words(fabs(ratio)) ||
+                     (alike && ratio_formula(fabs(ratio), formula, sizeof formula));
   if (!known || !isfinite(ratio) || fabs(ratio) < 1e-9) return;
   fputs(rounding ? ", " : ": ", out);
-  ratio_say(ratio, should, out);
+  exact_ratio_say(ratio, should, out);
   rounding_say(ratio, out);
+}
+
+/* All that fail do so by one factor: then that says something, however odd it is. */
+static bool fail_alike(const drive_input *in, const drive_verdict *verdicts) {
+  double low = INFINITY, high = -INFINITY;
+  for (int k = 0; k < in->expect_count; k++) {
+    if (verdicts[k].passed) continue;
+    const double ratio = verdicts[k].found / verdicts[k].expected;
+    if (!isfinite(ratio)) return false;
+    low = pl_fmin(low, ratio);
+    high = pl_fmax(high, ratio);
+  }
+  return high - low <= 2e-3 * fabs(high);
 }
 
 static void say_failures(path_outcome *out, arena *a, const drive_input *in,
                          const drive_verdict *verdicts) {
   char *text;
   size_t length;
+  const bool alike = fail_alike(in, verdicts);
   FILE *to = must_open_text(&text, &length);
   for (int k = 0; k < in->expect_count; k++) {
     const drive_verdict *v = &verdicts[k];
@@ -138,7 +155,7 @@ static void say_failures(path_outcome *out, arena *a, const drive_input *in,
     if (v->passed) continue;
     fprintf(to, "%s is %.6g, expected %.6g%s%s (at %.6g s)", in->expects[k].quantity,
             v->found + 0.0, v->expected + 0.0, *unit_text ? " " : "", unit_text, v->time);
-    say_known_ratio(v->found / v->expected, to);
+    say_known_ratio(v->found / v->expected, alike, to);
     fputc('\n', to);
   }
   must_close_text(to);
@@ -168,7 +185,7 @@ static void meet(path_outcome *out, arena *a, const driven_law *of, const drive_
 /* --- the whole -------------------------------------------------------------------------------- */
 
 void judge_path(path_outcome *out, arena *a, const path_case *c, const char *answer,
-                const declared_names *declared, cases_seen *seen) {
+                const declared_names *declared, driven_law *kept, cases_seen *seen) {
   const char *missing;
   source_set sources = {NULL, 0};
   diagnostics said;
@@ -181,12 +198,12 @@ void judge_path(path_outcome *out, arena *a, const path_case *c, const char *ans
     out->words = arena_printf(
         a, "your law has no parameter `%s`, which the exercise sets: keep those of the starter",
         missing);
-  } else if (drive_along(out, a, &of, in, seen, &said)) {
+  } else if (drive_along(out, a, &of, kept, in, seen, &said)) {
     if (expects)
       meet(out, a, &of, in, &said);
     else
       compare(out, a, c);
-    if (!out->right && !expects && only_at_hand(out, a, c, answer, declared, &said))
+    if (!out->right && !expects && only_at_hand(out, a, c, answer, declared, kept, &said))
       out->words = arena_printf(a,
                                 "right with the values of the starter, wrong with others (%s): "
                                 "did you write numbers for them?\n%s",

@@ -14,8 +14,8 @@ typedef struct path_outcome {
 } path_outcome;
 
 /* Texts in the arena; the table must be freed where it has memory. What of the answer's cases is
-   reached goes to `seen`. */
+   reached goes to `seen`; `kept`: driven_law_open_kept. */
 void judge_path(path_outcome *out, arena *a, const path_case *c, const char *answer,
-                const declared_names *declared, cases_seen *seen);
+                const declared_names *declared, driven_law *kept, cases_seen *seen);
 
 #endif

@@ -33,7 +33,10 @@ static const char *words_of(const judging *j, const answer_entry *right, const a
     return arena_printf(a, "%s is %s, not %s", right->name, needs, has);
   }
   const double ratio = x->value / right->value;
+  char formula[64];
   const char *known = isfinite(ratio) ? ratio_words(fabs(ratio)) : NULL;
+  if (isfinite(ratio) && !known && ratio_formula(fabs(ratio), formula, sizeof formula))
+    known = arena_printf(a, "%s times", formula);
   if (fabs(ratio) < 1e-9) return arena_printf(a, "%s is 0", right->name);
   if (known)
     return arena_printf(a, "%s is %s%s what it should be", right->name, ratio < 0 ? "minus " : "",

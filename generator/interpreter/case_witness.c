@@ -13,6 +13,8 @@ struct case_witness {
   const ir *graph;
   int count;            /* nodes */
   unsigned char *marks; /* [count] */
+  ir_node *choices;     /* [choice_count] that are cases of the law, where they are computed */
+  int choice_count;
   /* [count] of a choice that is a branch of one other choice alone, and nothing else: that one;
      else IR_NONE */
   ir_node *above;
@@ -93,15 +95,23 @@ static bool asks_for_protection(const ir *g, ir_node choice) {
   return false;
 }
 
+static void find_choices(case_witness *w) {
+  const ir *g = w->graph;
+  w->choices = must_calloc((size_t)w->count + 1, sizeof *w->choices);
+  for (ir_node n = 0; n < w->count; n++)
+    if (ir_operation(g, n) == IR_SELECT && !(w->marks[n] & IS_MOTION) && choice_is_case(g, n) &&
+        !asks_for_protection(g, n))
+      w->choices[w->choice_count++] = n;
+}
+
 /* Of laws of bonds the first state alone is a bond; others are lanes without one. */
 static void look(void *context, const interpreter *p, int count) {
   case_witness *w = context;
   const ir *g = w->graph;
   const int lanes = w->kernel->kind == PL_STATE ? count : 1;
-  for (ir_node n = 0; n < w->count; n++) {
-    if (ir_operation(g, n) != IR_SELECT || w->marks[n] & IS_MOTION || !interpreter_lanes(p, n) ||
-        !choice_is_case(g, n) || asks_for_protection(g, n))
-      continue;
+  for (int c = 0; c < w->choice_count; c++) {
+    const ir_node n = w->choices[c];
+    if (!interpreter_lanes(p, n)) continue;
     const double *guard = interpreter_lanes(p, ir_operand(g, n, 0));
     w->marks[n] |= IS_CASE;
     for (int k = 0; k < lanes; k++)
@@ -119,6 +129,7 @@ case_witness *case_witness_begin(const pl_law *kernel) {
   w->user = must_calloc((size_t)w->count + 1, sizeof *w->user);
   find_branches(w);
   find_motion(w);
+  find_choices(w);
   plan_interpreted_watch(kernel, look, w);
   return w;
 }
@@ -150,6 +161,7 @@ void case_witness_end(case_witness *w, cases_seen *seen) {
     one->was_false = one->was_false || w->marks[n] & SEEN_FALSE;
   }
   free(w->marks);
+  free(w->choices);
   free(w->above);
   free(w->user);
   free(w);

@@ -16,6 +16,13 @@ static void evaluate(runner *r, program_task task, int count) {
   if (run) interpreter_run(run, &r->in, count, r->result);
 }
 
+/* The same without copies: value k is interpreter_root(..., k). */
+static const interpreter *evaluate_there(runner *r, program_task task, int count) {
+  interpreter *run = r->run[task][0][0];
+  if (run) interpreter_run(run, &r->in, count, NULL);
+  return run;
+}
+
 /* --- strips ----------------------------------------------------------------------------------- */
 
 static const double *motion_of(const pl_strip *s, const ends_origin *o) {
@@ -46,30 +53,38 @@ static void point_at_bonds(runner *r, const pl_strip *s, long first, int count) 
     r->at[IR_FROM_BOND_PARAMETER][k] = s->parameter[k] + first;
 }
 
+/* Where the values of a root go; *absent: those of bonds that do not exist become 0, or are left. */
+static double *target_of(const segment_root *r, const pl_strip *s, bool *absent) {
+  *absent = r->target != TO_FIELD;
+  switch (r->target) {
+  case TO_FORCE:
+    return s->force[r->index];
+  case TO_FIELD:
+    return s->field[r->index];
+  case TO_DISSIPATED_STATE:
+    return s->dissipated_state;
+  case TO_DISSIPATED_RATE:
+    return s->dissipated_rate;
+  default:
+    return s->observed[r->index];
+  }
+}
+
 static void store(const segment_root *r, const pl_strip *s, long first, int count,
-                  const double *from) {
+                  const double *restrict from) {
+  bool absent;
   const int64_t *flags = s->flags + first;
   const int64_t present = PL_PRESENT(s->direction);
-  for (int k = 0; k < count; k++) {
-    bool here = (flags[k] & present) != 0;
-    long at = first + k;
-    switch (r->target) {
-    case TO_FORCE:
-      s->force[r->index][at] = here ? from[k] : 0;
-      break;
-    case TO_FIELD:
-      if (here) s->field[r->index][at] = from[k];
-      break;
-    case TO_DISSIPATED_STATE:
-      s->dissipated_state[at] += here ? from[k] : 0;
-      break;
-    case TO_DISSIPATED_RATE:
-      s->dissipated_rate[at] += here ? from[k] : 0;
-      break;
-    default:
-      s->observed[r->index][at] = here ? from[k] : 0;
-    }
-  }
+  double *restrict to = target_of(r, s, &absent) + first;
+  if (r->target == TO_DISSIPATED_STATE || r->target == TO_DISSIPATED_RATE)
+    for (int k = 0; k < count; k++)
+      to[k] += flags[k] & present ? from[k] : 0;
+  else if (absent)
+    for (int k = 0; k < count; k++)
+      to[k] = flags[k] & present ? from[k] : 0;
+  else
+    for (int k = 0; k < count; k++)
+      if (flags[k] & present) to[k] = from[k];
 }
 
 void interpreted_strip(runner *r, program_task task, const double *uniforms, const pl_strip *s) {
@@ -78,9 +93,9 @@ void interpreted_strip(runner *r, program_task task, const double *uniforms, con
   for (long first = 0; first < s->count; first += LANES) {
     const int count = lanes_left(s->count, first);
     point_at_bonds(r, s, first, count);
-    evaluate(r, task, count);
+    const interpreter *run = evaluate_there(r, task, count);
     for (int k = 0; k < a->root_count; k++)
-      store(&a->roots[k], s, first, count, r->result[k]);
+      store(&a->roots[k], s, first, count, interpreter_root(run, k));
   }
 }
 

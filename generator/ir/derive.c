@@ -36,8 +36,8 @@ static ir_node over(ir *g, ir_node d, ir_node a) {
 
 static ir_node choose(ir *g, ir_node condition, ir_node yes, ir_node no) {
   if (yes == no) return yes;
-  return ir_select(g, condition, yes == IR_NONE ? number(g, 0.0) : yes,
-                   no == IR_NONE ? number(g, 0.0) : no);
+  if (yes == IR_NONE) yes = number(g, 0.0);
+  return ir_select(g, condition, yes, no == IR_NONE ? number(g, 0.0) : no);
 }
 
 /* An operation q = op(a, b, c) and the derivatives of its operands. */
@@ -47,7 +47,10 @@ typedef struct term {
 } term;
 
 static ir_node of_product(ir *g, const term *t) {
-  if (t->a == t->b) return times(g, number(g, 2.0), times(g, t->a, t->da));
+  if (t->a == t->b) {
+    const ir_node product = times(g, t->a, t->da);
+    return times(g, number(g, 2.0), product);
+  }
   const ir_node first = times(g, t->b, t->da);
   return sum(g, first, times(g, t->a, t->db));
 }
@@ -78,14 +81,15 @@ static ir_node of_power(ir *g, const term *t) {
 }
 
 static ir_node of_cube_root(ir *g, const term *t) {
-  return over(g, t->da, ir_mul(g, number(g, 3.0), ir_mul(g, t->q, t->q)));
+  return over(g, t->da, ir_scaled(g, 3.0, ir_mul(g, t->q, t->q)));
 }
 
 /* Angle of (b, a): (b a' - a b')/(a^2 + b^2). */
 static ir_node of_angle(ir *g, const term *t) {
   const ir_node a_square = ir_mul(g, t->a, t->a), b_square = ir_mul(g, t->b, t->b);
   const ir_node first = times(g, t->b, t->da), second = times(g, t->a, t->db);
-  return over(g, difference(g, first, second), ir_add(g, a_square, b_square));
+  const ir_node square = ir_add(g, a_square, b_square);
+  return over(g, difference(g, first, second), square);
 }
 
 static ir_node of_least(ir *g, const term *t) {
@@ -98,7 +102,8 @@ static ir_node of_most(ir *g, const term *t) {
 
 /* 1 + q^2 and 1 - q^2, for tan and tanh. */
 static ir_node one_and_square(ir *g, ir_op op, ir_node q) {
-  return ir_make(g, op, number(g, 1.0), ir_mul(g, q, q), IR_NONE);
+  const ir_node square = ir_mul(g, q, q);
+  return ir_make(g, op, number(g, 1.0), square, IR_NONE);
 }
 
 /* The neighbours that attain the extreme. */
@@ -145,7 +150,7 @@ static ir_node of_operation(ir *g, const term *t) {
   case IR_POW:
     return of_power(g, t);
   case IR_INVERSE_ROOT:
-    return times(g, ir_mul(g, number(g, -0.5), ir_mul(g, t->q, ir_mul(g, t->q, t->q))), t->da);
+    return times(g, ir_scaled(g, -0.5, ir_mul(g, t->q, ir_mul(g, t->q, t->q))), t->da);
   case IR_CBRT:
     return of_cube_root(g, t);
   case IR_SIN:

@@ -2,6 +2,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,14 +12,22 @@
 typedef void (*lane_function)(int count, const double *a, const double *b, const double *c,
                               double *out);
 
+/* So many at a time without a rest to look after: strips are multiples of it. Numbers in a line of
+   the cache. */
+enum { AT_ONCE = 8, LINE = 8 };
+
 #define X(code, name, operands, traits, image, counted, weight, price, value)                      \
-  static void lanes_##code(int count, const double *pa, const double *pb, const double *pc,        \
+  static inline double one_##code(double a, double b, double c) {                                  \
+    (void)a, (void)b, (void)c;                                                                     \
+    return value;                                                                                  \
+  }                                                                                                \
+  static void lanes_##code(int count, const double *a, const double *b, const double *c,           \
                            double *restrict out) {                                                 \
-    for (int k = 0; k < count; k++) {                                                              \
-      const double a = pa[k], b = pb[k], c = pc[k];                                                \
-      (void)a, (void)b, (void)c;                                                                   \
-      out[k] = value;                                                                              \
-    }                                                                                              \
+    const int whole = count & ~(AT_ONCE - 1);                                                      \
+    for (int k = 0; k < whole; k++)                                                                \
+      out[k] = one_##code(a[k], b[k], c[k]);                                                       \
+    for (int k = whole; k < count; k++)                                                            \
+      out[k] = one_##code(a[k], b[k], c[k]);                                                       \
   }
 OPERATIONS_OF_NUMBERS(X)
 #undef X
@@ -51,12 +60,15 @@ typedef struct input_slot {
   ir_source source;
   int index;
   double *out;
+  double all; /* that the first `filled` lanes have */
+  int filled;
 } input_slot;
 
 struct interpreter {
   int slot_count;
   ir_node *nodes; /* [slot_count] the nodes needed, in evaluation order */
-  double *lanes;  /* [slot_count][INTERPRET_LANES] */
+  double *lanes;  /* [slot_count][INTERPRET_LANES], where a line of the cache begins */
+  void *space;    /* of the lanes */
   input_slot *inputs;
   int input_count;
   step *steps;
@@ -129,7 +141,7 @@ static void add_slot(interpreter *p, const ir *g, int slot) {
       lanes_of(p, slot)[k] = ir_value(g, n);
   } else if (ir_operation(g, n) == IR_INPUT) {
     p->inputs[p->input_count++] =
-        (input_slot){ir_input_source(g, n), ir_input_index(g, n), lanes_of(p, slot)};
+        (input_slot){ir_input_source(g, n), ir_input_index(g, n), lanes_of(p, slot), 0, 0};
   } else {
     step *made = &p->steps[p->step_count++];
     *made = step_of(p, g, slot);
@@ -151,7 +163,8 @@ interpreter *interpreter_new(const ir *g, const ir_node *roots, int root_count) 
   interpreter *p = must_calloc(1, sizeof(interpreter));
   find_needed(p, g, roots, root_count);
   const size_t slots = (size_t)p->slot_count;
-  p->lanes = must_calloc(slots * INTERPRET_LANES, sizeof(double));
+  p->space = must_calloc(slots * INTERPRET_LANES + LINE, sizeof(double));
+  p->lanes = (double *)p->space + (LINE - (uintptr_t)p->space / sizeof(double) % LINE) % LINE;
   p->inputs = must_calloc(slots, sizeof(input_slot));
   p->steps = must_calloc(slots, sizeof(step));
   p->searches = must_calloc(slots, sizeof(search));
@@ -172,22 +185,32 @@ void interpreter_free(interpreter *p) {
   free(p->searches);
   free(p->steps);
   free(p->inputs);
-  free(p->lanes);
+  free(p->space);
   free(p->nodes);
   free(p);
 }
 
+/* One value for all lanes, which most often have it from the run before. */
+static void fill(input_slot *slot, const double *value, int count) {
+  if (count <= slot->filled && memcmp(value, &slot->all, sizeof *value) == 0) return;
+  for (int lane = 0; lane < count; lane++)
+    slot->out[lane] = *value;
+  slot->all = *value;
+  slot->filled = count;
+}
+
 static void load(const interpreter *p, const interpreter_inputs *in, int first, int count) {
   for (int k = 0; k < p->input_count; k++) {
-    const input_slot *slot = &p->inputs[k];
+    input_slot *slot = &p->inputs[k];
     assert(in->values[slot->source] && in->values[slot->source][slot->index]);
     const double *from = in->values[slot->source][slot->index];
     const unsigned char *strides = in->stride[slot->source];
-    if (strides && strides[slot->index])
-      memcpy(slot->out, from + first, sizeof(double) * (size_t)count);
-    else
-      for (int lane = 0; lane < count; lane++)
-        slot->out[lane] = *from;
+    if (!strides || !strides[slot->index]) {
+      fill(slot, from, count);
+      continue;
+    }
+    memcpy(slot->out, from + first, sizeof(double) * (size_t)count);
+    slot->filled = 0;
   }
 }
 
@@ -231,10 +254,14 @@ void interpreter_run(interpreter *p, const interpreter_inputs *in, int count,
     const int lanes = left < INTERPRET_LANES ? left : INTERPRET_LANES;
     load(p, in, first, lanes);
     run_steps(p->steps, p->step_count, lanes);
-    for (int k = 0; k < p->root_count; k++)
+    for (int k = 0; k < p->root_count && outputs; k++)
       memcpy(outputs[k] + first, p->roots[k], sizeof(double) * (size_t)lanes);
     if (p->look) p->look(p->look_context, p, lanes);
   }
+}
+
+const double *interpreter_root(const interpreter *p, int root) {
+  return p->roots[root];
 }
 
 void interpreter_watch(interpreter *p, interpreter_look *look, void *context) {

@@ -26,6 +26,9 @@ typedef struct interpreter_inputs {
 /* outputs[k][0..count) receives root k. Any count; no allocation. */
 void interpreter_run(interpreter *p, const interpreter_inputs *in, int count,
                      double *const *outputs);
+/* After a run of at most INTERPRET_LANES states, whose outputs may be NULL: the values [count] of
+   root k, until the next run. */
+const double *interpreter_root(const interpreter *p, int root);
 
 /* From here on called after the states of each run, at most INTERPRET_LANES of them at a time, were
    evaluated; NULL: nothing is. */

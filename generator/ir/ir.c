@@ -400,6 +400,9 @@ ir_node ir_neg(ir *g, ir_node a) {
   return ir_make(g, IR_NEG, a, IR_NONE, IR_NONE);
 }
 
+ir_node ir_scaled(ir *g, double factor, ir_node a) {
+  return ir_mul(g, ir_constant(g, factor), a);
+}
 ir_node ir_sought(ir *g) {
   const ir_node n = ir_input(g, IR_FROM_SEARCH, 0, "sought", ON_POINT);
   g->nodes[n].sought = true;

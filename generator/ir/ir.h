@@ -77,6 +77,7 @@ ir_node ir_sub(ir *g, ir_node a, ir_node b);
 ir_node ir_mul(ir *g, ir_node a, ir_node b);
 ir_node ir_div(ir *g, ir_node a, ir_node b);
 ir_node ir_neg(ir *g, ir_node a);
+ir_node ir_scaled(ir *g, double factor, ir_node a);
 /* What ir_search looks for, in `step` and `open`. */
 ir_node ir_sought(ir *g);
 /* From `start` on, where a search by `step` ends that goes on where `open` is not 0 (pl_search). */

@@ -253,8 +253,8 @@ static ir_node factored_product(const rebuilding *r, ir_node old, const ir_node 
     moves = moves || (alone && part[k].factor != IR_NONE);
   }
   if (!moves) return again(g, old, operand);
-  return ir_mul(g, join_factors(g, part[0].factor, part[1].factor),
-                join_factors(g, part[0].rest, part[1].rest));
+  const ir_node rest = join_factors(g, part[0].rest, part[1].rest);
+  return ir_mul(g, join_factors(g, part[0].factor, part[1].factor), rest);
 }
 
 /* (u*x)/y = u*(x/y) */
@@ -577,7 +577,8 @@ static ir_node size_of_function(ir *g, ir_node n, int deep) {
   ir_node sum = ir_unary(g, IR_ABS, n);
   for (int k = 0; k < ir_arity(ir_operation(g, n)); k++) {
     const ir_node of = ir_operand(g, n, k), slope = ir_derivative(g, n, of);
-    sum = ir_add(g, sum, ir_mul(g, ir_unary(g, IR_ABS, slope), size_of(g, of, deep + 1)));
+    const ir_node size = size_of(g, of, deep + 1);
+    sum = ir_add(g, sum, ir_mul(g, ir_unary(g, IR_ABS, slope), size));
   }
   return sum;
 }

@@ -118,8 +118,8 @@ static vector turned_by(ir *g, quaternion q, vector n) {
 
 /* From one end to the other. */
 static quaternion relative(ir *g, quaternion i, quaternion j) {
-  const ir_node w = ir_add(g, ir_mul(g, i.w, j.w), dot(g, i.v, j.v));
-  const vector apart = difference(g, times(g, i.w, j.v), times(g, j.w, i.v));
+  const ir_node along = dot(g, i.v, j.v), w = ir_add(g, ir_mul(g, i.w, j.w), along);
+  const vector less = times(g, j.w, i.v), apart = difference(g, times(g, i.w, j.v), less);
   return (quaternion){w, cross_added(g, apart, i.v, j.v)};
 }
 
@@ -152,7 +152,8 @@ static void find_bending(ir *g, const end *t, ir_node expected, vector *theta, i
   *theta = times(g, ratio, t->sine);
   *h = ir_mul(g, ratio, t->cosine);
   const ir_node angle = dot(g, *theta, *theta);
-  const ir_node k_far = ir_div(g, ir_sub(g, one, *h), at_least(g, angle, 1e-200));
+  const ir_node below = at_least(g, angle, 1e-200);
+  const ir_node k_far = ir_div(g, ir_sub(g, one, *h), below);
   *k = choose(g, expected, polynomial(g, angle, series, 4), k_far);
 }
 
@@ -163,16 +164,17 @@ static void find_twist(ir *g, const moving_chord *c, quaternion q, ir_node expec
                                   35.0 / 128, 63.0 / 256, 231.0 / 1024};
   static const char *const names[] = {"turn_x", "turn_y", "turn_z"};
   const ir_node one = ir_constant(g, 1), zero = ir_constant(g, 0);
-  const ir_node other = ir_select(g, ir_binary(g, IR_LT, q.w, zero), ir_constant(g, -1), one);
+  const ir_node back = ir_constant(g, -1);
+  const ir_node other = ir_select(g, ir_binary(g, IR_LT, q.w, zero), back, one);
   const ir_node side = choose(g, expected, one, other), w = ir_mul(g, side, q.w);
   const vector v = times(g, side, q.v), e = from(c->e);
   const ir_node sine = dot(g, v, e), square = ir_mul(g, sine, sine);
   const ir_node rest = at_least(g, ir_sub(g, one, square), 1e-30);
   const ir_node far = ir_binary(g, IR_ATAN2, sine, ir_unary(g, IR_SQRT, rest));
   const ir_node near = ir_mul(g, kinematics_arc_sine_ratio(g, square), sine);
-  r->twist = ir_mul(g, ir_constant(g, 2), choose(g, expected, near, far));
-  const ir_node u =
-      choose(g, expected, polynomial(g, square, series, 7), ir_unary(g, IR_INVERSE_ROOT, rest));
+  r->twist = ir_scaled(g, 2, choose(g, expected, near, far));
+  const ir_node u_far = ir_unary(g, IR_INVERSE_ROOT, rest);
+  const ir_node u = choose(g, expected, polynomial(g, square, series, 7), u_far);
   r->along = ir_mul(g, u, w);
   keep(g, r->turn, times(g, u, cross(g, v, e)), names);
   ir_set_name(g, r->twist, "twist", (span){0, 0, 0});
@@ -225,7 +227,8 @@ bond_actions end_actions_in_plane(ir *g, const lowered_law *p, const ir_node *e,
 /* v + A M. */
 static vector carried(ir *g, vector v, vector moment, vector theta, ir_node h, ir_node k) {
   const ir_node along = ir_mul(g, k, dot(g, moment, theta));
-  return sum(g, sum(g, v, times(g, h, moment)), times(g, along, theta));
+  const vector by_theta = times(g, along, theta);
+  return sum(g, sum(g, v, times(g, h, moment)), by_theta);
 }
 
 bond_actions end_actions_in_space(ir *g, const lowered_law *p, const ir_node *direction,
@@ -243,7 +246,8 @@ bond_actions end_actions_in_space(ir *g, const lowered_law *p, const ir_node *di
   const vector of_i = carried(g, twisting, M_i, theta_i, r->h[0], r->k[0]),
                of_j = carried(g, twisting, M_j, theta_j, r->h[1], r->k[1]);
   const vector couple = cross(g, sum(g, of_i, of_j), e), along = times(g, about, e);
-  const vector force = difference(g, times(g, p->N, e), times(g, per_length, couple));
+  const vector shear = times(g, per_length, couple);
+  const vector force = difference(g, times(g, p->N, e), shear);
   const vector moment = difference(g, of_i, along);
   bond_actions a;
   for (int k = 0; k < 3; k++) {

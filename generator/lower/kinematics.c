@@ -76,7 +76,8 @@ static ir_node arc_sine_near_zero(ir *g, ir_node x) {
 }
 
 ir_node kinematics_arc_sine_ratio(ir *g, ir_node square) {
-  return ir_add(g, ir_constant(g, 1), ir_mul(g, square, arc_sine_series(g, square)));
+  const ir_node more = ir_mul(g, square, arc_sine_series(g, square));
+  return ir_add(g, ir_constant(g, 1), more);
 }
 
 /* How a bond's chord moves. */
@@ -139,21 +140,21 @@ static void rates_against_chord(ir *g, vector e, vector dv, ir_node per_length, 
    displacements are, and needs no division. */
 static ir_node stretch_of(ir *g, ir_node s, ir_node length, ir_node growth) {
   const ir_node rough = ir_sub(g, length, s), square = ir_mul(g, rough, rough);
-  const ir_node half_per_square = ir_div(g, ir_constant(g, 0.5), ir_mul(g, s, s));
+  const ir_node below = ir_mul(g, s, s), half_per_square = ir_div(g, ir_constant(g, 0.5), below);
   return ir_mul(g, ir_sub(g, growth, square), half_per_square);
 }
 
 /* Expected of a chord that has moved by the root of `square`. */
 static ir_node is_near(ir *g, ir_node s, ir_node square) {
-  const ir_node limit = ir_mul(g, ir_mul(g, s, s), ir_constant(g, 1.0 / 256));
+  const ir_node part = ir_constant(g, 1.0 / 256), limit = ir_mul(g, ir_mul(g, s, s), part);
   return ir_expect(g, ir_make(g, IR_LT, square, limit, IR_NONE));
 }
 
 static chord_motion motion_of_chord(ir *g, ir_node s) {
   const ir_node two = ir_constant(g, 2);
   chord_motion m = {.chord = inputs(g, ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y)};
-  m.d =
-      difference(g, inputs(g, ENDS_U_JX, ENDS_U_JY), inputs(g, ENDS_U_IX, ENDS_U_IY), "d_x", "d_y");
+  const vector u_i = inputs(g, ENDS_U_IX, ENDS_U_IY);
+  m.d = difference(g, inputs(g, ENDS_U_JX, ENDS_U_JY), u_i, "d_x", "d_y");
   m.now = sum(g, m.chord, m.d);
   named(g, m.now.x, "c_x");
   named(g, m.now.y, "c_y");
@@ -177,8 +178,9 @@ static ir_node inverse_length_near(ir *g, ir_node s, ir_node growth, ir_node squ
   const ir_node high = ir_add(g, c[2], ir_mul(g, growth, c[3]));
   const ir_node guess = ir_add(g, low, ir_mul(g, ir_mul(g, growth, growth), high));
   const ir_node e = ir_sub(g, one, ir_mul(g, ir_mul(g, square, guess), guess));
-  ir_node series = ir_add(g, ir_constant(g, 0.375), ir_mul(g, e, ir_constant(g, 0.3125)));
-  series = ir_add(g, ir_constant(g, 0.5), ir_mul(g, e, series));
+  ir_node series = ir_mul(g, e, ir_constant(g, 0.3125));
+  series = ir_mul(g, e, ir_add(g, ir_constant(g, 0.375), series));
+  series = ir_add(g, ir_constant(g, 0.5), series);
   return ir_add(g, guess, ir_mul(g, ir_mul(g, guess, e), series));
 }
 
@@ -208,8 +210,8 @@ bond_kinematics kinematics_bond(ir *g, bool rotations, bool twists) {
   k.e_x = named(g, e.x, "e_x");
   k.e_y = named(g, e.y, "e_y");
 
-  vector dv = difference(g, inputs(g, ENDS_V_JX, ENDS_V_JY), inputs(g, ENDS_V_IX, ENDS_V_IY),
-                         "dv_x", "dv_y");
+  const vector v_i = inputs(g, ENDS_V_IX, ENDS_V_IY);
+  vector dv = difference(g, inputs(g, ENDS_V_JX, ENDS_V_JY), v_i, "dv_x", "dv_y");
   const ir_node per_s = ir_div(g, ir_constant(g, 1), k.s);
   k.stretch_rate = named(g, ir_mul(g, dot(g, e, dv), per_s), "stretch_rate");
   k.theta_i = k.theta_j = k.theta_rate_i = k.theta_rate_j = IR_NONE;
@@ -257,8 +259,10 @@ static ir_node shortening_near(ir *g, ir_node h) {
                                0x1.ad0a63171877fp-3};
   enum { TERMS = sizeof fit / sizeof *fit };
   ir_node series = ir_constant(g, fit[TERMS - 1]);
-  for (int k = TERMS - 2; k >= 0; k--)
-    series = ir_add(g, ir_constant(g, fit[k]), ir_mul(g, series, h));
+  for (int k = TERMS - 2; k >= 0; k--) {
+    const ir_node higher = ir_mul(g, series, h);
+    series = ir_add(g, ir_constant(g, fit[k]), higher);
+  }
   return ir_mul(g, h, series);
 }
 

@@ -130,23 +130,24 @@ static ir_node before_flow(lowering *c, ir_node f, const ir_node *lambda) {
 
 /* 0, or no number: so that what is made of it is found, and told (explain_point.h). */
 static ir_node zero_if(ir *g, ir_node good) {
-  return ir_unary(g, IR_SQRT, ir_select(g, good, ir_constant(g, 0), ir_constant(g, -1)));
+  const ir_node zero = ir_constant(g, 0), bad = ir_constant(g, -1);
+  return ir_unary(g, IR_SQRT, ir_select(g, good, zero, bad));
 }
 
 /* Whether f is 0, to rounding. */
 static ir_node has_returned(ir *g, ir_node over) {
   static const double RETURNED = 1e-9; /* of what is added up to f */
-  const ir_node most = ir_mul(g, ir_constant(g, RETURNED), rewrite_size(g, over));
+  const ir_node most = ir_scaled(g, RETURNED, rewrite_size(g, over));
   return ir_binary(g, IR_LE, ir_unary(g, IR_ABS, over), most);
 }
 
 /* lambda with f = 0, where f is linear in it: f(0) by its slope, which is uniform in most laws. */
 static ir_node found_at_once(lowering *c, ir_node over, ir_node slope, ir_node lambda) {
   ir *g = c->graph;
+  const ir_node start = before_flow(c, over, &lambda), minus = ir_constant(g, -1);
   const ir_node falls = ir_binary(g, IR_LT, slope, ir_constant(g, 0));
-  const ir_node pace =
-      ir_div(g, ir_constant(g, -1), ir_select(g, falls, slope, ir_constant(g, -1)));
-  return ir_mul(g, before_flow(c, over, &lambda), ir_add(g, pace, zero_if(g, falls)));
+  const ir_node pace = ir_div(g, minus, ir_select(g, falls, slope, minus));
+  return ir_mul(g, start, ir_add(g, pace, zero_if(g, falls)));
 }
 
 /* Of the flow noted last: what explains that no return is found. */
@@ -337,9 +338,10 @@ static ir_node end_moment(lowering *c, law_result which, ir_node W, builtin_quan
   const components moment = components_of(c, c->law->results[which]),
                    shear = components_of(c, c->law->results[RESULT_V]);
   if (axis < moment.count) return moment.of[axis];
-  if (axis < shear.count)
-    return ir_div(g, ir_mul(g, shear.of[axis], lower_quantity(g, QUANTITY_LENGTH)),
-                  ir_constant(g, 2));
+  if (axis < shear.count) {
+    const ir_node two = ir_constant(g, 2), length = lower_quantity(g, QUANTITY_LENGTH);
+    return ir_div(g, ir_mul(g, shear.of[axis], length), two);
+  }
   if (W != IR_NONE) return ir_derivative(g, W, lower_bending(g, c->law, theta, axis));
   return lower_fail(c, c->law->tree->name_where, "the law gives no end moments");
 }
@@ -445,9 +447,10 @@ static void lower_tip(lowering *c, lowered_law *out) {
   for (int k = 0; k < LOWERED_TIP; k++) {
     const symbol *given = c->law->results[RESULT_GROW + k];
     out->tip[k] = lower_expr(c, given->rule->value);
-    if (k == 0) /* a truth value as a number */
-      out->tip[k] =
-          ir_select(c->graph, out->tip[k], ir_constant(c->graph, 1), ir_constant(c->graph, 0));
+    if (k == 0) { /* a truth value as a number */
+      const ir_node zero = ir_constant(c->graph, 0);
+      out->tip[k] = ir_select(c->graph, out->tip[k], ir_constant(c->graph, 1), zero);
+    }
     lower_name_node(c->graph, out->tip[k], names[k], given->rule->where);
   }
 }

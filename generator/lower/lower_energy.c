@@ -100,8 +100,7 @@ static ir_node path_energy(ir *g, const energy_parts *p) {
     for (int k = 0; k < p->count; k++) {
       ir_node here;
       ir_substitute(g, &p->force[k], 1, from, to, count, &here);
-      sum =
-          add_some(g, sum, ir_mul(g, ir_constant(g, 0.5 * weight[point % 2]), work(g, p, k, here)));
+      sum = add_some(g, sum, ir_scaled(g, 0.5 * weight[point % 2], work(g, p, k, here)));
     }
   }
   return sum;
@@ -181,6 +180,6 @@ ir_node lower_force_state_of_energy(lowering *c, ir_node W) {
                           "a force state cannot be derived from sums inside sums over the family");
     slope = ir_add(g, slope, ir_mul(g, ir_derivative(g, W, n), by));
   }
-  ir_node per_length = ir_div(g, ir_constant(g, 2), lower_quantity(g, QUANTITY_S));
+  const ir_node s = lower_quantity(g, QUANTITY_S), per_length = ir_div(g, ir_constant(g, 2), s);
   return ir_mul(g, per_length, slope);
 }

@@ -60,19 +60,21 @@ static components over(ir *g, components sums, ir_node divisor) {
 }
 
 static components mean_of(ir *g, components v) {
-  return over(g, sum_of(g, v), lower_family_size(g));
+  const ir_node size = lower_family_size(g);
+  return over(g, sum_of(g, v), size);
 }
 
 static components weighted_mean(ir *g, components v, ir_node weight) {
   for (int k = 0; k < v.count; k++)
     v.of[k] = ir_mul(g, weight, v.of[k]);
   v = tensor_settled(g, v);
-  return over(g, sum_of(g, v), family_sum(g, weight));
+  const ir_node weights = family_sum(g, weight);
+  return over(g, sum_of(g, v), weights);
 }
 
 static ir_node family_extreme(ir *g, ir_node n, ir_op op) {
-  ir_node none = ir_binary(g, IR_EQ, lower_family_size(g), ir_constant(g, 0));
-  return ir_select(g, none, ir_constant(g, 0), ir_unary(g, op, n));
+  const ir_node zero = ir_constant(g, 0), none = ir_binary(g, IR_EQ, lower_family_size(g), zero);
+  return ir_select(g, none, zero, ir_unary(g, op, n));
 }
 
 /* --- stress and strain of a family ------------------------------------------------------------ */
@@ -130,8 +132,10 @@ static components virtual_work(lowering *c, const expr *e, ir_node force) {
     v.of[k] = ir_is_number(g, n.of[k], 0)
                   ? n.of[k]
                   : ir_div(g, family_sum(g, ir_mul(g, moment, n.of[k])), twice);
-  if (c->law->setting == SETTING_PLANE_STRAIN)
-    v.of[TENSOR_ZZ] = ir_mul(g, poisson(c, e), ir_add(g, v.of[TENSOR_XX], v.of[TENSOR_YY]));
+  if (c->law->setting == SETTING_PLANE_STRAIN) {
+    const ir_node in_plane = ir_add(g, v.of[TENSOR_XX], v.of[TENSOR_YY]);
+    v.of[TENSOR_ZZ] = ir_mul(g, poisson(c, e), in_plane);
+  }
   return v;
 }
 
@@ -175,7 +179,7 @@ static ir_node uniform_force(ir *g, const law *l, components sigma) {
                      ir_mul(g, lower_inverse_shape(g, l, row, k), sigma.of[strain_part(l, k)]));
     along = ir_add(g, along, ir_mul(g, n.of[strain_part(l, row)], value));
   }
-  ir_node force = ir_mul(g, ir_mul(g, ir_constant(g, 2), lower_volume(g, l)), along);
+  ir_node force = ir_mul(g, ir_scaled(g, 2, lower_volume(g, l)), along);
   return l->irregular ? force : ir_div(g, force, lower_quantity(g, QUANTITY_S));
 }
 
@@ -239,7 +243,7 @@ components lower_family_call(lowering *c, const expr *e, const components *a) {
   case FUNCTION_J2:
     return scalar(tensor_J2(g, a[0]));
   case FUNCTION_VON_MISES:
-    return scalar(ir_unary(g, IR_SQRT, ir_mul(g, ir_constant(g, 3), tensor_J2(g, a[0]))));
+    return scalar(ir_unary(g, IR_SQRT, ir_scaled(g, 3, tensor_J2(g, a[0]))));
   case FUNCTION_TENSOR: {
     components v = {.count = TENSOR_COUNT};
     bool zero = true;

@@ -15,15 +15,17 @@ static components half_angle(const lowering *c) {
   for (int k = 0; k < h.count; k++) {
     const ir_node i = lower_bending(c->graph, c->law, QUANTITY_THETA_I, k),
                   j = lower_bending(c->graph, c->law, QUANTITY_THETA_J, k);
-    h.of[k] = ir_mul(c->graph, ir_constant(c->graph, 0.25), ir_add(c->graph, i, j));
+    h.of[k] = ir_scaled(c->graph, 0.25, ir_add(c->graph, i, j));
   }
   return h;
 }
 
 static ir_node series(ir *g, const double *fit, int count, ir_node x) {
   ir_node sum = ir_constant(g, fit[count - 1]);
-  for (int k = count - 2; k >= 0; k--)
-    sum = ir_add(g, ir_constant(g, fit[k]), ir_mul(g, sum, x));
+  for (int k = count - 2; k >= 0; k--) {
+    const ir_node higher = ir_mul(g, sum, x);
+    sum = ir_add(g, ir_constant(g, fit[k]), higher);
+  }
   return sum;
 }
 
@@ -40,10 +42,9 @@ static half_turn half_turn_in_space(ir *g, const components *h) {
   const ir_node size = ir_unary(g, IR_SQRT, ir_binary(g, IR_MAX, square, most));
   const ir_node far = ir_div(g, ir_unary(g, IR_SIN, size), size);
   const ir_node ratio = ir_select(g, small, series(g, sine_ratio, 4, square), far);
-  half_turn t = {.sine = {h->count, {0}},
-                 .square = ir_mul(g, ir_mul(g, ratio, ratio), square),
-                 .cosine =
-                     ir_select(g, small, series(g, cosine, 5, square), ir_unary(g, IR_COS, size))};
+  half_turn t = {.sine = {h->count, {0}}, .square = ir_mul(g, ir_mul(g, ratio, ratio), square)};
+  const ir_node cosine_far = ir_unary(g, IR_COS, size);
+  t.cosine = ir_select(g, small, series(g, cosine, 5, square), cosine_far);
   for (int k = 0; k < h->count; k++)
     t.sine.of[k] = ir_mul(g, ratio, h->of[k]);
   return t;
@@ -60,14 +61,14 @@ static half_turn half_turn_of(const lowering *c) {
 }
 
 static ir_node twice_length(ir *g) {
-  return ir_mul(g, ir_constant(g, 2), lower_quantity(g, QUANTITY_LENGTH));
+  return ir_scaled(g, 2, lower_quantity(g, QUANTITY_LENGTH));
 }
 
 static ir_node slip_of(const lowering *c) {
   ir *g = c->graph;
   const half_turn t = half_turn_of(c);
-  const ir_node growth =
-      ir_mul(g, lower_quantity(g, QUANTITY_S), lower_quantity(g, QUANTITY_STRETCH));
+  const ir_node stretch = lower_quantity(g, QUANTITY_STRETCH);
+  const ir_node growth = ir_mul(g, lower_quantity(g, QUANTITY_S), stretch);
   return ir_sub(g, growth, ir_mul(g, twice_length(g), t.square));
 }
 
@@ -85,7 +86,8 @@ components lower_slip_quantity(lowering *c, builtin_quantity q) {
   ir *g = c->graph;
   if (q == QUANTITY_GAP) return gap_of(c);
   if (q == QUANTITY_SLIP) return scalar(slip_of(c));
-  return scalar(ir_mul(g, lower_quantity(g, QUANTITY_S), lower_quantity(g, QUANTITY_STRETCH_RATE)));
+  const ir_node rate = lower_quantity(g, QUANTITY_STRETCH_RATE);
+  return scalar(ir_mul(g, lower_quantity(g, QUANTITY_S), rate));
 }
 
 static ir_node stand_in(lowering *c, slip_work *w, ir_node meant) {
@@ -101,7 +103,8 @@ slip_work lower_slip_work(lowering *c, ir_node N, const components *V) {
   ir *g = c->graph;
   slip_work w = {.count = 0};
   const components gap = gap_of(c);
-  w.energy = ir_mul(g, stand_in(c, &w, N), slip_of(c));
+  const ir_node slip = slip_of(c);
+  w.energy = ir_mul(g, stand_in(c, &w, N), slip);
   for (int k = 0; k < V->count; k++)
     w.energy = ir_add(g, w.energy, ir_mul(g, stand_in(c, &w, V->of[k]), gap.of[k]));
   return w;

@@ -32,8 +32,7 @@ static bool are_same(const components *a, const components *b) {
 }
 
 ir_node tensor_contract(ir *g, components a, components b) {
-  if (tensor_is_deviator(g, &a) && are_same(&a, &b))
-    return ir_mul(g, ir_constant(g, 2), tensor_J2(g, a));
+  if (tensor_is_deviator(g, &a) && are_same(&a, &b)) return ir_scaled(g, 2, tensor_J2(g, a));
   ir_node sum = ir_constant(g, 0);
   for (int k = 0; k < a.count; k++) {
     ir_node term = ir_mul(g, a.of[k], b.of[k]);
@@ -51,7 +50,7 @@ ir_node tensor_trace(ir *g, components a) {
 
 components tensor_deviator(ir *g, components a) {
   if (tensor_is_deviator(g, &a)) return a;
-  ir_node third = ir_div(g, tensor_trace(g, a), ir_constant(g, 3));
+  const ir_node three = ir_constant(g, 3), third = ir_div(g, tensor_trace(g, a), three);
   for (int k = 0; k < TENSOR_ZZ; k++)
     a.of[k] = ir_sub(g, a.of[k], third);
   return tensor_as_deviator(g, a);
@@ -65,7 +64,8 @@ static ir_node root(ir *g, ir_node n) {
 ir_node tensor_J2(ir *g, components a) {
   const components s = tensor_deviator(g, a);
   const ir_node xx = s.of[TENSOR_XX], yy = s.of[TENSOR_YY];
-  ir_node sum = ir_add(g, ir_mul(g, xx, ir_add(g, xx, yy)), ir_mul(g, yy, yy));
+  ir_node sum = ir_mul(g, yy, yy);
+  sum = ir_add(g, ir_mul(g, xx, ir_add(g, xx, yy)), sum);
   for (int k = TENSOR_XY; k < TENSOR_COUNT; k++)
     sum = ir_add(g, sum, ir_mul(g, s.of[k], s.of[k]));
   return sum;
@@ -84,33 +84,37 @@ static ir_node plane_principal(ir *g, components a, int which) {
   return ir_binary(g, IR_MAX, small, ir_binary(g, IR_MIN, large, third));
 }
 
+/* a b - c d */
+static ir_node minor_of(ir *g, ir_node a, ir_node b, ir_node c, ir_node d) {
+  const ir_node less = ir_mul(g, c, d);
+  return ir_sub(g, ir_mul(g, a, b), less);
+}
+
 static ir_node determinant(ir *g, components a) {
   const ir_node *m = a.of;
-  ir_node first =
-      ir_sub(g, ir_mul(g, m[TENSOR_YY], m[TENSOR_ZZ]), ir_mul(g, m[TENSOR_YZ], m[TENSOR_YZ]));
-  ir_node second =
-      ir_sub(g, ir_mul(g, m[TENSOR_XY], m[TENSOR_ZZ]), ir_mul(g, m[TENSOR_YZ], m[TENSOR_XZ]));
-  ir_node third =
-      ir_sub(g, ir_mul(g, m[TENSOR_XY], m[TENSOR_YZ]), ir_mul(g, m[TENSOR_YY], m[TENSOR_XZ]));
-  ir_node sum = ir_sub(g, ir_mul(g, m[TENSOR_XX], first), ir_mul(g, m[TENSOR_XY], second));
+  const ir_node first = minor_of(g, m[TENSOR_YY], m[TENSOR_ZZ], m[TENSOR_YZ], m[TENSOR_YZ]),
+                second = minor_of(g, m[TENSOR_XY], m[TENSOR_ZZ], m[TENSOR_YZ], m[TENSOR_XZ]),
+                third = minor_of(g, m[TENSOR_XY], m[TENSOR_YZ], m[TENSOR_YY], m[TENSOR_XZ]);
+  const ir_node sum = minor_of(g, m[TENSOR_XX], first, m[TENSOR_XY], second);
   return ir_add(g, sum, ir_mul(g, m[TENSOR_XZ], third));
 }
 
 /* Eigenvalues of a symmetric 3x3 tensor by the angle of its deviator (Smith 1961). */
 static ir_node space_principal(ir *g, components a, int which) {
-  ir_node mean = ir_div(g, tensor_trace(g, a), ir_constant(g, 3));
+  const ir_node three = ir_constant(g, 3), mean = ir_div(g, tensor_trace(g, a), three);
   components s = tensor_deviator(g, a);
-  ir_node size = root(g, ir_div(g, tensor_contract(g, s, s), ir_constant(g, 6)));
+  const ir_node six = ir_constant(g, 6);
+  ir_node size = root(g, ir_div(g, tensor_contract(g, s, s), six));
   ir_node cube = ir_mul(g, ir_mul(g, size, size), size);
-  ir_node safe = ir_binary(g, IR_MAX, ir_mul(g, ir_constant(g, 2), cube), ir_constant(g, 1e-290));
+  const ir_node least = ir_constant(g, 1e-290);
+  ir_node safe = ir_binary(g, IR_MAX, ir_scaled(g, 2, cube), least);
   ir_node ratio = ir_div(g, determinant(g, s), safe);
-  ir_node cosine =
-      ir_binary(g, IR_MAX, ir_binary(g, IR_MIN, ratio, ir_constant(g, 1)), ir_constant(g, -1));
-  ir_node sine =
-      root(g, ir_binary(g, IR_MAX, ir_sub(g, ir_constant(g, 1), ir_mul(g, cosine, cosine)),
-                        ir_constant(g, 0)));
-  ir_node angle = ir_div(g, ir_binary(g, IR_ATAN2, sine, cosine), ir_constant(g, 3));
-  ir_node twice = ir_mul(g, ir_constant(g, 2), size);
+  const ir_node back = ir_constant(g, -1), one = ir_constant(g, 1);
+  ir_node cosine = ir_binary(g, IR_MAX, ir_binary(g, IR_MIN, ratio, one), back);
+  const ir_node zero = ir_constant(g, 0), square = ir_mul(g, cosine, cosine);
+  ir_node sine = root(g, ir_binary(g, IR_MAX, ir_sub(g, one, square), zero));
+  ir_node angle = ir_div(g, ir_binary(g, IR_ATAN2, sine, cosine), three);
+  ir_node twice = ir_scaled(g, 2, size);
   ir_node first = ir_add(g, mean, ir_mul(g, twice, ir_unary(g, IR_COS, angle)));
   ir_node turned = ir_add(g, angle, ir_constant(g, 2.0943951023931954923)); /* 2 pi/3 */
   ir_node last = ir_add(g, mean, ir_mul(g, twice, ir_unary(g, IR_COS, turned)));
@@ -130,10 +134,12 @@ components tensor_hooke(ir *g, law_setting setting, components eps, ir_node E, i
   ir_node one = ir_constant(g, 1), two = ir_constant(g, 2);
   ir_node twice_mu = ir_div(g, E, ir_add(g, one, nu)), lambda, sum;
   if (setting == SETTING_PLANE_STRESS) {
-    lambda = ir_div(g, ir_mul(g, E, nu), ir_sub(g, one, ir_mul(g, nu, nu)));
+    const ir_node below = ir_sub(g, one, ir_mul(g, nu, nu));
+    lambda = ir_div(g, ir_mul(g, E, nu), below);
     sum = ir_add(g, eps.of[TENSOR_XX], eps.of[TENSOR_YY]);
   } else {
-    ir_node below = ir_mul(g, ir_add(g, one, nu), ir_sub(g, one, ir_mul(g, two, nu)));
+    const ir_node less = ir_sub(g, one, ir_mul(g, two, nu));
+    const ir_node below = ir_mul(g, ir_add(g, one, nu), less);
     lambda = ir_div(g, ir_mul(g, E, nu), below);
     sum = tensor_trace(g, eps);
   }

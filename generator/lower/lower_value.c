@@ -353,7 +353,8 @@ static components lower_diff(lowering *c, const expr *e) {
 }
 
 static ir_node soft_sign(ir *g, ir_node x) {
-  return ir_div(g, x, ir_add(g, ir_constant(g, 1), ir_unary(g, IR_ABS, x)));
+  const ir_node size = ir_unary(g, IR_ABS, x);
+  return ir_div(g, x, ir_add(g, ir_constant(g, 1), size));
 }
 
 /* What has the name of an operation is that operation, of more than two arguments the first with

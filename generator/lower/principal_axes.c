@@ -34,7 +34,8 @@ static components scaled(ir *g, components a, ir_node by) {
 
 /* 1/x, where x is too small for one that of 1. */
 static ir_node inverse(ir *g, ir_node x) {
-  return ir_div(g, ir_constant(g, 1), ir_binary(g, IR_MAX, x, ir_constant(g, 1e-290)));
+  const ir_node safe = ir_binary(g, IR_MAX, x, ir_constant(g, 1e-290));
+  return ir_div(g, ir_constant(g, 1), safe);
 }
 
 static ir_node both(ir *g, ir_node a, ir_node b) {
@@ -62,7 +63,8 @@ components tensor_product(ir *g, components a, components b) {
 static components larger_of_plane(ir *g, components a, ir_node *large, ir_node *small) {
   const ir_node middle = half(g, ir_add(g, a.of[TENSOR_XX], a.of[TENSOR_YY]));
   const ir_node d = half(g, ir_sub(g, a.of[TENSOR_XX], a.of[TENSOR_YY])), s = a.of[TENSOR_XY];
-  const ir_node r = ir_unary(g, IR_SQRT, ir_add(g, ir_mul(g, d, d), ir_mul(g, s, s)));
+  const ir_node square = ir_mul(g, s, s);
+  const ir_node r = ir_unary(g, IR_SQRT, ir_add(g, ir_mul(g, d, d), square));
   const ir_node some = ir_binary(g, IR_LT, ir_constant(g, 1e-145), r), by = inverse(g, r);
   components n = number_tensor(g, 0, 0, 0);
   const ir_node cosine = ir_mul(g, d, by), one = ir_constant(g, 1);
@@ -97,8 +99,8 @@ static components minors(ir *g, components a, ir_node value) {
   for (int i = 0; i < 3; i++)
     for (int j = i; j < 3; j++) {
       const int p = (i + 1) % 3, q = (i + 2) % 3, r = (j + 1) % 3, s = (j + 2) % 3;
-      v.of[place_of[i][j]] = ir_sub(g, ir_mul(g, a.of[place_of[p][r]], a.of[place_of[q][s]]),
-                                    ir_mul(g, a.of[place_of[p][s]], a.of[place_of[q][r]]));
+      const ir_node less = ir_mul(g, a.of[place_of[p][s]], a.of[place_of[q][r]]);
+      v.of[place_of[i][j]] = ir_sub(g, ir_mul(g, a.of[place_of[p][r]], a.of[place_of[q][s]]), less);
     }
   return v;
 }
@@ -144,8 +146,8 @@ static components space_direction(ir *g, components a, int which) {
   const components n = unit_dyad(g, minors(g, s, apart)),
                    across = difference(g, number_tensor(g, 1, 1, 1), n);
   const ir_node middle = ir_mul(g, ir_constant(g, -0.5), apart);
-  const components d =
-      difference(g, difference(g, s, scaled(g, n, apart)), scaled(g, across, middle));
+  const components in_plane = scaled(g, across, middle);
+  const components d = difference(g, difference(g, s, scaled(g, n, apart)), in_plane);
   const ir_node r = ir_unary(g, IR_SQRT, half(g, tensor_contract(g, d, d)));
   const ir_node told = ir_binary(g, IR_LT, ir_constant(g, 1e-13), r);
   components large = scaled(g, d, inverse(g, r));

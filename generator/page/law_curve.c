@@ -59,8 +59,13 @@ static char *path_text(const driver *r, double most, bool returns) {
 static bool run(const driver *r, const drive_input *in, const double *initial, drive_table *t,
                 diagnostics *d) {
   drive_band band;
-  if (r->of == DRIVE_OF_FAMILIES)
-    return drive_family_run(in, r->m->law, r->kernel, r->parameters, initial, t, d);
+  if (r->of == DRIVE_OF_FAMILIES) {
+    family_gauge gauge = {.plan = NULL};
+    const bool good =
+        drive_family_run(in, r->m->law, r->kernel, &gauge, r->parameters, initial, t, d);
+    family_gauge_close(&gauge);
+    return good;
+  }
   if (r->of == DRIVE_OF_POINTS)
     return drive_point_suits(in, r->kernel, d) &&
            drive_point_run(in, r->kernel, r->parameters, initial, t, &band, d);

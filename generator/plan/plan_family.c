@@ -66,8 +66,7 @@ static ir_node bond_force(const kernel_plan *plan, const lowered_law *of) {
   ir_node f = of->N;
   if (plan->law->tree->law == LAW_STATE) {
     ir_node other = ir_make(g, IR_NEIGHBOUR, of->F, IR_NONE, IR_NONE);
-    f = plan->form == FORM_LOOPS ? ir_mul(g, ir_constant(g, 0.5), ir_add(g, of->F, other))
-                                 : in_parts(plan, of);
+    f = plan->form == FORM_LOOPS ? ir_scaled(g, 0.5, ir_add(g, of->F, other)) : in_parts(plan, of);
   }
   ir_set_name(g, f, "bond_force", (span){0, 0, 0});
   return f;
@@ -137,7 +136,7 @@ static ir_node stored_energy(family_planner *p) {
   ir_node rate = lower_quantity(g, QUANTITY_STRETCH_RATE);
   ir_node stretch = lower_quantity(g, QUANTITY_STRETCH), s = lower_quantity(g, QUANTITY_S);
   if (l->tree->law != LAW_STATE)
-    return ir_mul(g, ir_constant(g, 0.5), family_sum(g, lower_stored_energy(g, l, &p->frozen)));
+    return ir_scaled(g, 0.5, family_sum(g, lower_stored_energy(g, l, &p->frozen)));
   ir_node F, W = p->frozen.W;
   if (W != IR_NONE) {
     rewrite_zero(g, &W, 1, &rate, 1, &W);
@@ -148,7 +147,7 @@ static ir_node stored_energy(family_planner *p) {
   if (rewrite_depends(g, &F, 1, &length, 1) || rewrite_degree(g, F, &stretch, 1) != 1)
     return IR_NONE;
   ir_node work = ir_mul(g, ir_mul(g, F, stretch), s);
-  return ir_mul(g, ir_constant(g, 0.25), family_sum(g, work));
+  return ir_scaled(g, 0.25, family_sum(g, work));
 }
 
 /* --- roots ------------------------------------------------------------------------------------ */
@@ -241,7 +240,8 @@ program_motion plan_motion(const kernel_plan *plan, bool reference) {
   from[n] = lower_quantity(g, QUANTITY_STRETCH_RATE), to[n++] = k.stretch_rate;
   from[n] = lower_quantity(g, QUANTITY_LENGTH), to[n++] = k.length;
   from[n] = present(g, PER_LENGTH);
-  to[n++] = reference ? ir_div(g, ir_constant(g, 1), lower_quantity(g, QUANTITY_S)) : k.per_length;
+  const ir_node s = lower_quantity(g, QUANTITY_S);
+  to[n++] = reference ? ir_div(g, ir_constant(g, 1), s) : k.per_length;
   for (int d = 0; d < plan->dimensions; d++) {
     from[n] = present(g, DIRECTION + d);
     to[n++] = reference ? k.reference[d] : k.now[d];

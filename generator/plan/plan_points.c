@@ -105,7 +105,7 @@ static ir_node root_of_line(planner *p, const along_z *a) {
 /* Whether more of sigma_zz is left than this part of what is added up to it; of no number, too. */
 static ir_node is_left(planner *p, ir_node sigma_zz, double part) {
   ir *g = p->graph;
-  const ir_node most = ir_mul(g, ir_constant(g, part), rewrite_size(g, sigma_zz));
+  const ir_node most = ir_scaled(g, part, rewrite_size(g, sigma_zz));
   return ir_unary(g, IR_NOT, ir_binary(g, IR_LE, ir_unary(g, IR_ABS, sigma_zz), most));
 }
 
@@ -116,7 +116,7 @@ static ir_node is_far(planner *p, ir_node step) {
   ir_node size = ir_unary(g, IR_ABS, p->strain[0]);
   for (int k = 1; k < p->strains; k++)
     size = ir_add(g, size, ir_unary(g, IR_ABS, p->strain[k]));
-  size = ir_mul(g, ir_constant(g, NEAR), ir_add(g, size, ir_unary(g, IR_ABS, p->z)));
+  size = ir_scaled(g, NEAR, ir_add(g, size, ir_unary(g, IR_ABS, p->z)));
   return ir_unary(g, IR_NOT, ir_binary(g, IR_LE, ir_unary(g, IR_ABS, step), size));
 }
 
@@ -143,7 +143,8 @@ static ir_node unless_free(planner *p, ir_node sigma_zz, ir_node z) {
   ir *g = p->graph;
   ir_node left = is_left(p, sigma_zz, FREE); /* of z itself, not of the way to it */
   ir_substitute(g, &left, 1, &p->z, &z, 1, &left);
-  return ir_unary(g, IR_SQRT, ir_select(g, left, ir_constant(g, -1), ir_constant(g, 0)));
+  const ir_node good = ir_constant(g, 0);
+  return ir_unary(g, IR_SQRT, ir_select(g, left, ir_constant(g, -1), good));
 }
 
 /* How z follows a strain of the plane where sigma_zz stays: -D_zb/D_zz. */
@@ -180,10 +181,10 @@ static void find_tangent(planner *p, bool z_is_free) {
     for (int b = 0; b < p->strains; b++) {
       const ir_node stress = p->step.sigma[point_component(p->plan->dimensions, a)];
       ir_node D = ir_derivative(g, stress, p->strain[b]);
-      if (z_is_free)
-        D = ir_add(g, D,
-                   ir_mul(g, ir_derivative(g, stress, p->z),
-                          follows(p, p->step.sigma[TENSOR_ZZ], p->strain[b])));
+      if (z_is_free) {
+        const ir_node by = follows(p, p->step.sigma[TENSOR_ZZ], p->strain[b]);
+        D = ir_add(g, D, ir_mul(g, ir_derivative(g, stress, p->z), by));
+      }
       const bool shear = point_component(p->plan->dimensions, b) >= TENSOR_XY;
       p->tangent[a * p->strains + b] = shear ? half(g, D) : D;
     }
@@ -303,8 +304,7 @@ static ir_node path_energy(planner *p, const ir_node *stress) {
     for (int k = 0; k < p->strains; k++)
       there[k] = ir_mul(g, fraction, p->strain[k]);
     ir_substitute(g, stress, p->strains, p->strain, there, p->strains, here);
-    const ir_node part =
-        ir_mul(g, ir_constant(g, 0.5 * weight[point % 2]), contract(p, here, p->strain));
+    const ir_node part = ir_scaled(g, 0.5 * weight[point % 2], contract(p, here, p->strain));
     sum = sum == IR_NONE ? part : ir_add(g, sum, part);
   }
   return sum;
@@ -372,8 +372,8 @@ static ir_node lost_to_states(planner *p, const seen_points *t) {
   const ir_node kept = with_new_fields(p, t->stored), after = with_new_fields(p, t->still_power);
   const ir_node lost = kept == t->stored ? ir_constant(g, 0) : ir_sub(g, t->stored, kept);
   if (t->stress == FORCES_OF_BOTH || after == t->still_power) return lost;
-  const ir_node half_step = ir_mul(g, ir_constant(g, t->stress == FORCES_OF_NEW ? -0.5 : 0.5),
-                                   kinematics_input(g, ENDS_TIME_STEP));
+  const double part = t->stress == FORCES_OF_NEW ? -0.5 : 0.5;
+  const ir_node half_step = ir_scaled(g, part, kinematics_input(g, ENDS_TIME_STEP));
   return ir_add(g, lost, ir_mul(g, half_step, ir_sub(g, t->still_power, after)));
 }
 
@@ -382,8 +382,9 @@ static void plan_ledger(planner *p, const seen_points *t, segment *a) {
   ir *g = p->graph;
   plan_step(p, t, a);
   want(p, a, lost_to_states(p, t), TO_DISSIPATED_STATE, PL_LOST_TO_STATES);
-  want(p, a, ir_mul(g, with_new_fields(p, t->rate_power), kinematics_input(g, ENDS_TIME_STEP)),
-       TO_DISSIPATED_RATE, PL_LOST_TO_RATES);
+  const ir_node step = kinematics_input(g, ENDS_TIME_STEP);
+  want(p, a, ir_mul(g, with_new_fields(p, t->rate_power), step), TO_DISSIPATED_RATE,
+       PL_LOST_TO_RATES);
 }
 
 static void plan_observe(planner *p, const seen_points *t, segment *a) {

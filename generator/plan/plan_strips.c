@@ -196,9 +196,10 @@ static void plan_ledger(planner *p, const seen_law *t, segment *a) {
   ir_node kept = with_new_fields(p, t, t->stored), zero = ir_constant(g, 0);
   ir_node lost = kept == t->stored ? zero : ir_sub(g, t->stored, kept);
   ir_node rate_lost = zero;
-  if (t->rate_power != IR_NONE)
-    rate_lost =
-        ir_mul(g, with_new_fields(p, t, t->rate_power), kinematics_input(g, ENDS_TIME_STEP));
+  if (t->rate_power != IR_NONE) {
+    const ir_node step = kinematics_input(g, ENDS_TIME_STEP);
+    rate_lost = ir_mul(g, with_new_fields(p, t, t->rate_power), step);
+  }
   want(p->plan, a, lost, TO_DISSIPATED_STATE, 0);
   want(p->plan, a, rate_lost, TO_DISSIPATED_RATE, 0);
 }

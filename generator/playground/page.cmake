@@ -2,6 +2,7 @@
 file(READ ${ROOT}/generator/playground/page/page.html PAGE)
 file(READ ${ROOT}/generator/playground/page/page.css STYLE)
 file(READ ${ROOT}/generator/playground/page/page.js SCRIPT)
+file(READ ${ROOT}/generator/playground/page/program.js CALLS)
 file(READ ${PROGRAM}/playground.js GLUE)
 
 # Texts stand in scripts that no browser runs; what would end one cannot occur in them.
@@ -27,7 +28,7 @@ foreach(text ${PUBLISHED})
   add_text(${text} ${OUT}/${text})
 endforeach()
 
-foreach(part STYLE FILES GLUE SCRIPT)
+foreach(part STYLE FILES GLUE CALLS SCRIPT)
   string(FIND "${PAGE}" "@${part}@" at)
   string(LENGTH "@${part}@" length)
   math(EXPR behind "${at} + ${length}")

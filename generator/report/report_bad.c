@@ -35,12 +35,12 @@ static void write_bad_point(const run *r, const bad_state *b) {
 }
 
 /* What its law says there, line by line. */
-static bool explain_bad_point(const run *r, const bad_state *b) {
+static point_fault explain_bad_point(const run *r, const bad_state *b) {
   const simulation_law *l = &r->laws[b->interaction];
   const point_state *p = b->point;
   const asked_point at = {p->strain, p->field, p->size, simulation_step_limit(r->simulation)->step};
-  return r->model_of[b->interaction] &&
-         explain_point(r->model_of[b->interaction]->plan, l->parameters, &at, stderr);
+  if (!r->model_of[b->interaction]) return POINT_FAULT_OTHER;
+  return explain_point(r->model_of[b->interaction]->plan, l->parameters, &at, stderr);
 }
 
 static void print_fields(const pl_law *kernel, const double *values, bool on_particles) {
@@ -93,10 +93,16 @@ static void report_bad_energy(const run *r, const bad_state *b) {
   tell_of_steps(r, true);
 }
 
+static const char *const MENDS[] = {
+    [POINT_FAULT_OTHER] = "a smaller `step_safety` or a law that stays finite there mends it",
+    [POINT_FAULT_FLOW] = "no smaller step mends it, but a law whose flow comes back",
+    [POINT_FAULT_FOLD] = "no smaller step finds one: a law whose stress along z rises with the "
+                         "strain there mends it, or plane strain"};
+
 void report_bad(const run *r) {
   bad_state b = simulation_bad(r->simulation);
   char place_text[ROWS_PLACE_TEXT], when[MOMENT_TEXT];
-  bool no_return = false;
+  point_fault fault = POINT_FAULT_OTHER;
   if (b.particle < 0) {
     report_bad_energy(r, &b);
     return;
@@ -108,7 +114,7 @@ void report_bad(const run *r) {
   if (b.family) print_family(r, &b);
   if (b.point) {
     print_point(r, &b);
-    no_return = explain_bad_point(r, &b);
+    fault = explain_bad_point(r, &b);
     write_bad_point(r, &b);
   }
   if (b.bond_particle >= 0) {
@@ -122,10 +128,5 @@ void report_bad(const run *r) {
     write_bad_bond(r, &b);
   }
   tell_of_steps(r, true);
-  fputs(no_return
-            ? "  what was computed until then is in the result; no smaller step mends it, but a "
-              "law whose flow comes back\n"
-            : "  what was computed until then is in the result; a smaller `step_safety` or a "
-              "law that stays finite there mends it\n",
-        stderr);
+  fprintf(stderr, "  what was computed until then is in the result; %s\n", MENDS[fault]);
 }

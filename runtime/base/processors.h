@@ -6,5 +6,7 @@
    batch system or the cpuset of a container says so. A container's share of time is not looked
    at. */
 int usable_processors(void);
+/* From here on this process uses no more than `most`, whatever it may. */
+void processors_keep_to(int most);
 
 #endif

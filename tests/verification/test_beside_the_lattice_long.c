@@ -7,9 +7,10 @@
 #include <cmocka.h>
 
 #include "tests/verification/beside.h"
+#include "tests/verification/cohesive_neck.h"
 
 /* The stress at the sides of the neck is above the mean, and the crack begins there while the
-   middle is sound: less than the strength of all of the neck. */
+   middle is sound: less than the strength of all of the neck, as of a cohesive crack. */
 static void the_larger_dog_bone(void **state) {
   (void)state;
   const double theory = 57.96e3,
@@ -18,6 +19,9 @@ static void the_larger_dog_bone(void **state) {
                plastic = beside_check(
                    &(beside){"dog_bone", "d_continuum", "10.8 ms", theory, 0.9, 0.98, NULL});
   assert_true(fabs(brittle / plastic - 1) < 0.03);
+  const double two_lines = brittle / theory - cohesive_dog_bone(0.4, 85.57, false),
+               softly = plastic / theory - cohesive_dog_bone(0.4, 85.57, true);
+  assert_true(two_lines > 0 && two_lines < 0.01 && softly > 0 && softly < 0.016);
 }
 
 int main(void) {

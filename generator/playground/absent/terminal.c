@@ -23,8 +23,10 @@ void terminal_paint_with(FILE *out, terminal_paint paint) {
   (void)out, (void)paint;
 }
 
+/* Nothing is kept of it. */
 void terminal_record_begin(terminal_record *t) {
-  (void)t;
+  static char nothing[1];
+  *t = (terminal_record){.texts = {nothing, nothing}};
 }
 
 void terminal_record_end(terminal_record *t) {

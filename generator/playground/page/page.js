@@ -3,42 +3,13 @@
 // is said by the program's own commands; the page only shows it.
 
 const $ = id => document.getElementById(id);
-let program = null, words = {}, printed = [], complained = [], table = null, chosen = null;
+let words = {}, table = null, chosen = null, wasm = null;
 
 /* --- the program --------------------------------------------------------------------------------- */
 
-// One command: its exit status and what it printed.
-function command(...line) {
-  printed = [];
-  complained = [];
-  const status = program.ccall('play_command', 'number', ['string'], [line.join('\n')]);
-  return { status, out: printed.join('\n'), err: complained.join('\n') };
-}
-
-const write = (name, text) => program.FS.writeFile(name, text);
-const read = name => program.FS.readFile(name, { encoding: 'utf8' });
-
-function forget(name) {
-  try { program.FS.unlink(name); } catch (missing) { /* nothing was written */ }
-}
-
-// Models stand beside the law, where laws and paths find them; exercises in their folders.
-function lay_down(file) {
-  const name = file.name.replace(/^models\//, ''), folders = name.split('/').slice(0, -1);
-  let at = '';
-  for (const folder of folders) {
-    at += folder;
-    if (!program.FS.analyzePath(at).exists) program.FS.mkdir(at);
-    at += '/';
-  }
-  write(name, file.text);
-}
-
 async function start(wasmBinary) {
-  program = await load_perilat({
-    print: line => printed.push(line), printErr: line => complained.push(line), wasmBinary,
-  });
-  for (const file of files.values()) lay_down(file);
+  wasm = wasmBinary;
+  await open_program(wasm, [...files.values()]);
   for (const line of program.ccall('play_words', 'string', [], []).trim().split('\n')) {
     const [kind, ...all] = line.split(' ');
     words[kind] = new Set(all);
@@ -309,35 +280,50 @@ function drive() {
 
 /* --- marks ------------------------------------------------------------------------------------------- */
 
+// Runs take up to half a minute, so a worker makes them and the page goes on.
+let marker = null;
+
 function forget_marks() {
+  if (marker) marker.terminate();
+  marker = null;
   $('marks').replaceChildren();
   $('marked').textContent = '';
 }
 
-// Runs leave result files, which a page has none of.
-const is_judged = item => item.judged && item.kind !== 'run';
-
 function mark_item(item) {
-  if (!is_judged(item))
-    return one_item(`${item.title}: ${item.points}, judged ${item.judged ? 'by `perilat grade` at a terminal' : 'by the teacher'}`, '');
+  if (!item.judged) return one_item(`${item.title}: ${item.points}, judged by the teacher`, '');
   const li = one_item(`${item.title}: ${item.got} of ${item.points}`, item.got === item.points ? 'pass' : 'fail');
   for (const words of [item.words, item.state]) if (typeof words === 'string') li.append(piece(words, 'hint'));
   return li;
 }
 
-function mark() {
-  write('law.plm', $('law').value);
-  const said = command('grade', chosen.exercise, 'law.plm', '--public', '--json');
+function show_marks(said) {
+  forget_marks();
   let answer;
   try { answer = JSON.parse(said.out).answers[0]; } catch (broken) { answer = null; }
   if (!answer) {
     $('marks').replaceChildren(one_item(said.err || 'it could not be marked', 'fail'));
     return;
   }
-  const sum = key => answer.items.filter(is_judged).reduce((all, item) => all + item[key], 0);
+  const sum = key => answer.items.filter(item => item.judged).reduce((all, item) => all + item[key], 0);
   $('marked').textContent = `${sum('got')} of the ${sum('points')} points that can be judged here`;
   const words = [answer.sentence, answer.trouble, ...answer.notes].filter(w => typeof w === 'string').map(w => one_item(w, 'fail'));
   $('marks').replaceChildren(...words, ...answer.items.map(mark_item));
+}
+
+function mark() {
+  forget_marks();
+  $('marked').textContent = 'being marked; runs take a while ...';
+  const scripts = ['glue', 'program'].map(id => $(id).textContent + '\n');
+  const at = URL.createObjectURL(new Blob(scripts, { type: 'text/javascript' }));
+  marker = new Worker(at);
+  marker.onmessage = answer => {
+    URL.revokeObjectURL(at);
+    show_marks(answer.data);
+  };
+  marker.onerror = trouble => show_marks({ out: '', err: trouble.message });
+  const law = { name: 'law.plm', text: $('law').value };
+  marker.postMessage({ wasm, files: [...files.values(), law], line: ['grade', chosen.exercise, 'law.plm', '--public', '--json'] });
 }
 
 /* --- the whole -------------------------------------------------------------------------------------- */

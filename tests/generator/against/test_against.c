@@ -129,6 +129,26 @@ static void one_side(void **state) {
 }
 
 /* Two rows, of the first step of 3e-6. */
+/* How far, and where it begins to break: at S_t, where EA S_t = 2598 N. */
+static void how_far_and_from_where(void **state) {
+  workplace *w = *state;
+  variant v = right;
+  v.end = "(1.3*S_u)";
+  differs(w, &v, cycle, "after it lost energy: there it is too large by up to ");
+  v.end = "(0.8*S_u)";
+  differs(w, &v, cycle, "after it lost energy: there it is too small by up to ");
+  v = right;
+  v.opened = "(1 - 0*omega)*EA*stretch";
+  differs(w, &v, cycle, "; it loses no energy, and should from N = 25");
+  write_law(w, "answer.plm", &right);
+  write_law(w, "right.plm", &v);
+  expect(w, "drive answer.plm path.nml --against right.plm", 2, "; it loses energy from N = 25");
+  v = right;
+  v.before = "  kappa = max(kappa, 1.3*stretch)\n"; /* gives way too soon */
+  differs(w, &v, "&path quantity = 'stretch' times = 0, '1 s', '2 s'  values = 0, 6e-4, 0 /\n",
+          "; it begins to lose energy at N = 19");
+}
+
 static void the_first_state_that_differs(void **state) {
   variant v = right;
   v.opened = "(1 - omega)*EA*stretch*(1 + stretch/S_u)";
@@ -333,6 +353,8 @@ static void rounded_constants_are_told(void **state) {
           "the force N is off by 0.0029 % in all states: is a constant rounded? write sqrt(3)/2");
   v.stiffness = "0.87*E*s*t";
   differs(*state, &v, cycle, "the force N is off by 0.46 % in all states: is a constant");
+  v.stiffness = "sqrt(3)/2*E*s*t*8/9";
+  differs(*state, &v, cycle, "the force N is 8/9 times that of the reference in all states");
   v.stiffness = "0.88*E*s*t";
   differs(*state, &v, cycle, "the force N is 1.016 times that of the reference in all states");
 }
@@ -345,6 +367,31 @@ static void said_ratio(double ratio, const char *wanted) {
   must_close_text(out);
   assert_string_equal(text, wanted);
   free(text);
+}
+
+static void is_formula(double ratio, const char *wanted) {
+  char text[64] = "none";
+  assert_int_equal(ratio_formula(ratio, text, sizeof text), strcmp(wanted, "none") != 0);
+  assert_string_equal(text, wanted);
+}
+
+static void ratios_are_told_as_fractions(void **state) {
+  (void)state;
+  is_formula(3. / 4, "3/4");
+  is_formula(8. / 15, "8/15");
+  is_formula(2 / (3 * sqrt(3)), "2/(3 sqrt(3))");
+  is_formula(sqrt(3) / 4, "sqrt(3)/4");
+  is_formula(5 * sqrt(2) / 3, "5 sqrt(2)/3");
+  is_formula(1 / (2 * sqrt(2)), "1/(2 sqrt(2))");
+  is_formula(3.14159265358979323846 / 4, "pi/4");
+  is_formula(2 / 3.14159265358979323846, "2/pi");
+  is_formula(3.14159265358979323846 * sqrt(3) / 6, "pi sqrt(3)/6");
+  is_formula(1 / sqrt(3.14159265358979323846), "1/sqrt(pi)");
+  is_formula(0.7, "none");
+  is_formula(3. / 4 * (1 + 2e-5), "none");
+  is_formula(0.123456, "none");
+  is_formula(0, "none");
+  is_formula(INFINITY, "none");
 }
 
 static void ratios_have_their_sign(void **state) {
@@ -365,6 +412,7 @@ int main(void) {
                                      TEST(one_step_late),
                                      TEST(a_total_tells),
                                      TEST(one_side),
+                                     TEST(how_far_and_from_where),
                                      TEST(the_first_state_that_differs),
                                      TEST(something_that_is_no_number),
                                      TEST(a_row_at_a_jump_is_left_out),
@@ -374,6 +422,7 @@ int main(void) {
                                      cmocka_unit_test(rounding_is_no_difference),
                                      TEST(rounded_constants_are_told),
                                      cmocka_unit_test(what_is_small_of_its_kind_says_little),
+                                     cmocka_unit_test(ratios_are_told_as_fractions),
                                      cmocka_unit_test(ratios_have_their_sign)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

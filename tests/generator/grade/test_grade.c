@@ -12,6 +12,7 @@
 
 #include "generator/exercise/answer_table.h"
 #include "generator/exercise/exercise_grammar.h"
+#include "generator/grade/handed_in.h"
 #include "generator/grade/mark_files.h"
 #include "generator/grade/mark_page.h"
 #include "generator/grade/mark_text.h"
@@ -92,6 +93,18 @@ static void others_get_general_words(void **state) {
          "s|(S_u - kappa)|(2*S_u - kappa)|; s|/(S_u - S_t)|/(2*S_u - S_t)|; s|kappa < S_u|kappa "
          "< 2*S_u|",
          "the force N is wrong only where it is stretched after it lost energy");
+}
+
+/* One factor of all that fails says something, one that each has for itself does not. */
+static void factors_are_told_where_all_have_one(void **state) {
+  workplace *w = *state;
+  graded(w, RIGIDITY "sqrt(3)/2*8/9*E*s*t|", "8/9 times what it should be");
+  says(w, "final N is -2309.4, expected -2598.08 N (at 2 s): 8/9 times what it should be");
+  graded(w,
+         "s/^    | EA\\*stretch  *otherwise/    | 0.996*EA*stretch otherwise/; "
+         "s/(1 - omega)\\*EA/(1 - omega)*8\\/9*EA/",
+         "final N is ");
+  does_not_say(w, "constant rounded");
 }
 
 static void numbers_for_names_are_told(void **state) {
@@ -244,6 +257,46 @@ static void runs_are_of_the_law_that_is_marked(void **state) {
     assert_int_equal(shell(w, "cut -d, -f1,8 marks.csv"), 0);
     says(w, "\"ada\",10\n\"bob\",0\n");
   }
+}
+
+/* Runs of the same law are those of the first that had it, whoever that was; nearly the same is
+   not. Two are judged at a time: the same follow behind. */
+static void the_same_law_has_the_same_runs(void **state) {
+  workplace *w = *state;
+  assert_int_equal(
+      shell(w, "cp -r '" SOURCE_DIR "/examples/course/06_damping' run; mkdir class; cp "
+               "run/teacher/solution.plm class/a.plm; cp run/teacher/wrong/half.plm class/b.plm; "
+               "for k in c d e; do cp class/a.plm class/$k.plm; done; for k in 1 2 3 4; do cp "
+               "class/a.plm class/f$k.plm; (echo '! mine'; sed 's/^  //; s/$/  ! \"so\"/; s/=/  "
+               "=/' class/b.plm) > class/g$k.plm; done; sed 's/2.zeta/2.2*zeta/' class/a.plm > "
+               "class/h.plm; ! cmp -s class/a.plm class/h.plm"),
+      0);
+  expect(w, "grade run class --csv marks.csv", 2, "");
+  assert_int_equal(shell(w, "cut -d, -f1,2,8 marks.csv; tail -1 marks.csv"), 0);
+  says(w, "\"a\",90,10\n\"b\",20,0\n\"c\",90,10\n\"d\",90,10\n\"e\",90,10\n\"f1\",90,10\n");
+  says(w, "\"g4\",20,0\n\"h\",20,0\n");
+}
+
+static void is_bare(const char *text, const char *wanted) {
+  arena *a = arena_new();
+  const handed_text t = {.text = text, .length = strlen(text)};
+  const char *bare = handed_text_bare(a, &t);
+  if (wanted)
+    assert_string_equal(bare, wanted);
+  else
+    assert_null(bare);
+  arena_free(a);
+}
+
+static void bare_texts_say_the_same(void **state) {
+  (void)state;
+  is_bare("a = 1 ! one\n\n  ! more\n\tb  = 2\r\n", "a = 1\nb = 2\n");
+  is_bare("a = 12", "a = 12");
+  is_bare("a = 1 2", "a = 1 2");
+  is_bare("a \"x ! y  z\" ! \"k\"\nb", "a \"x ! y  z\"\nb");
+  is_bare("a \"open\nb ! c\nd", "a \"open\nb\nd");
+  is_bare("a ! include\nb", "a\nb");
+  is_bare("include \"other.plm\"\n", NULL);
 }
 
 /* --- a class ---------------------------------------------------------------------------------- */
@@ -526,6 +579,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {TEST(right_answers_get_all_points),
                                      TEST(known_wrong_answers_get_their_sentence),
                                      TEST(others_get_general_words),
+                                     TEST(factors_are_told_where_all_have_one),
                                      TEST(numbers_for_names_are_told),
                                      TEST(errors_are_told_at_their_line),
                                      TEST(messages_name_the_file_that_was_given),
@@ -537,6 +591,8 @@ int main(void) {
                                      TEST(what_nobody_names_is_not_published),
                                      TEST(formulas_are_not_the_students),
                                      TEST(runs_are_of_the_law_that_is_marked),
+                                     TEST(the_same_law_has_the_same_runs),
+                                     cmocka_unit_test(bare_texts_say_the_same),
                                      TEST(a_class_has_a_row_each),
                                      TEST(public_paths_have_curves),
                                      TEST(further_laws_are_their_owners),

@@ -324,6 +324,30 @@ static void the_process_may_do_little(void **state) {
   assert_true(exists(w, "tmp/own"));
 }
 
+/* Beside an answer, in its own folder, of which it may include laws; the honest one is last. */
+static void folders_that_hold_no_laws(void **state) {
+  workplace *w = *state;
+  assert_int_equal(
+      shell(w,
+            "cd class; for k in pipe sparse folder ring self missing; do mkdir $k; sed 's/^model "
+            "answer/&\\n  include \"a.plm\"/' ../right.plm > $k/answer.plm; done; mkfifo "
+            "pipe/a.plm; truncate -s 1G sparse/a.plm; mkdir folder/a.plm; echo 'include "
+            "\"b.plm\"' > ring/a.plm; echo 'include \"a.plm\"' > ring/b.plm; cp "
+            "self/answer.plm self/a.plm; mkdir huge many order; truncate -s 1G huge/answer.plm; "
+            "mkdir order/answer.plm; cp ../right.plm many/answer.plm; for k in $(seq 300); do "
+            "echo > many/l$k.plm; done; ln -s . loop; mkdir zz; cp ../right.plm zz/answer.plm"),
+      0);
+  assert_int_equal(shell(w, "TMPDIR=$PWD/tmp $P grade memory class --time '4 s' --csv c.csv; cut "
+                            "-d, -f1,2 c.csv; ls tmp"),
+                   0);
+  assert_non_null(strstr(w->said, "`a.plm` cannot be read [include]"));
+  assert_non_null(strstr(w->said, "a text cannot include itself [include]"));
+  assert_non_null(strstr(w->said,
+                         "\"folder\",0\n\"huge\",0\n\"many\",90\n\"missing\",0\n\"order\",0\n"
+                         "\"pipe\",0\n\"ring\",0\n\"self\",0\n\"sparse\",0\n\"zz\",90\n"));
+  assert_true(is_clean(w->said));
+}
+
 /* The class goes on behind each of them. */
 static void others_are_judged_as_ever(void **state) {
   workplace *w = *state;
@@ -341,7 +365,7 @@ static void time_and_memory_run_out(void **state) {
   size_t length;
   FILE *out = must_open_text(&text, &length);
   fputs(head, out);
-  for (int k = 0; k < 2500; k++)
+  for (int k = 0; k < 6000; k++)
     fprintf(out, "  state z%d on bond = 0\n  z%d = max(z%d, stretch)\n", k, k, k);
   fputs(tail, out);
   must_close_text(out);
@@ -367,6 +391,7 @@ int main(void) {
                                      TEST(strange_numbers),
                                      TEST(laws_of_other_things),
                                      TEST(the_process_may_do_little),
+                                     TEST(folders_that_hold_no_laws),
                                      TEST(others_are_judged_as_ever),
                                      TEST(time_and_memory_run_out)};
   return cmocka_run_group_tests(tests, NULL, NULL);

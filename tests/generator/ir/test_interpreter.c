@@ -150,6 +150,40 @@ static void every_operation(void **unused) {
   ir_free(g);
 }
 
+/* One value for all lanes is kept between runs: more lanes, another value, and values of their own
+   in between must all be seen. */
+static void one_value_for_all_is_followed(void **unused) {
+  (void)unused;
+  ir *g = ir_new();
+  const ir_node root = ir_add(g, bond(g, 0), ir_constant(g, 1));
+  interpreter *p = interpreter_new(g, &root, 1);
+  double value = 2, out[40], many[40];
+  double *const outputs[] = {out};
+  const double *quantities[] = {&value};
+  unsigned char varies[] = {0};
+  const interpreter_inputs in = {.values = {[IR_FROM_QUANTITY] = quantities},
+                                 .stride = {[IR_FROM_QUANTITY] = varies}};
+  interpreter_run(p, &in, 3, outputs);
+  interpreter_run(p, &in, 40, outputs);
+  for (int k = 0; k < 40; k++)
+    assert_true(out[k] == 3);
+  value = 5;
+  interpreter_run(p, &in, 40, NULL);
+  assert_true(interpreter_root(p, 0)[0] == 6 && interpreter_root(p, 0)[39] == 6);
+  for (int k = 0; k < 40; k++)
+    many[k] = k;
+  quantities[0] = many;
+  varies[0] = 1;
+  interpreter_run(p, &in, 40, outputs);
+  assert_true(out[0] == 1 && out[39] == 40);
+  quantities[0] = &value;
+  varies[0] = 0;
+  interpreter_run(p, &in, 40, outputs);
+  assert_true(out[0] == 6 && out[39] == 6);
+  interpreter_free(p);
+  ir_free(g);
+}
+
 /* Both sides of a case are evaluated and the other one's NaN does not leak. */
 static void cases_do_not_leak(void **unused) {
   (void)unused;
@@ -269,9 +303,10 @@ static void searches_find_roots(void **unused) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(strips_of_any_count), cmocka_unit_test(every_operation),
-      cmocka_unit_test(cases_do_not_leak),   cmocka_unit_test(first_bad_node_is_found),
-      cmocka_unit_test(graph_may_grow),      cmocka_unit_test(searches_find_roots),
+      cmocka_unit_test(strips_of_any_count),           cmocka_unit_test(every_operation),
+      cmocka_unit_test(one_value_for_all_is_followed), cmocka_unit_test(cases_do_not_leak),
+      cmocka_unit_test(first_bad_node_is_found),       cmocka_unit_test(graph_may_grow),
+      cmocka_unit_test(searches_find_roots),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -118,7 +118,21 @@ static void a_lost_thickness_stops_the_run(void **state) {
   workplace *w = *state;
   write_bar(w, "pinched", pinched_law, "plane_stress", "-300 m/s");
   expect(w, "run bar.nml", 2, "no strain along z is found that leaves no stress there");
+  expect(w, "run bar.nml", 2, " MPa in size at least, at -");
+  expect(w, "run bar.nml", 2, "; no smaller step finds one: a law whose stress along z rises");
   expect(w, "drive bar_bad_point.nml", 2, "no strain along z is found that leaves no stress there");
+}
+
+/* As the volume shrinks the stress along z stops rising, before there is no energy any more. What
+   only has cases jumps as other laws do. */
+static void check_tells_folds_from_jumps(void **state) {
+  workplace *w = *state;
+  expect(w, "check '" SOURCE_DIR "/tests/generator/check/physics/continuity_point_fold.plm'", 0,
+         "the strain along z that leaves no stress there ends here");
+  assert_int_equal(shell(w, "sed 's/for plane_stress.*/for plane_stress/' '" SOURCE_DIR
+                            "/tests/generator/check/physics/continuity_point.plm' > halves.plm"),
+                   0);
+  expect(w, "check halves.plm", 0, "let the values of the cases meet where one ends");
 }
 
 static void check_says_so(void **state) {
@@ -134,6 +148,7 @@ int main(void) {
       cmocka_unit_test(the_same_law_goes_in_small_steps),
       cmocka_unit_test(a_lost_thickness_stops_the_run),
       cmocka_unit_test(check_says_so),
+      cmocka_unit_test(check_tells_folds_from_jumps),
   };
   return cmocka_run_group_tests(tests, set_up_workplace, tear_down_workplace);
 }

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include <cmocka.h>
+#include <omp.h>
 #include <sched.h>
 
 #include "runtime/base/processors.h"
@@ -29,7 +30,20 @@ static void as_many_as_it_may_use(void **state) {
   assert_int_equal(usable_processors(), count);
 }
 
+/* Other answers of a class have the others. */
+static void no_more_than_it_keeps_to(void **state) {
+  (void)state;
+  const int count = usable_processors();
+  processors_keep_to(1);
+  assert_int_equal(usable_processors(), 1);
+  assert_int_equal(omp_get_max_threads(), 1);
+  processors_keep_to(count + 5);
+  assert_int_equal(usable_processors(), count);
+  assert_int_equal(omp_get_max_threads(), count);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(as_many_as_it_may_use)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(as_many_as_it_may_use),
+                                     cmocka_unit_test(no_more_than_it_keeps_to)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
