@@ -1,5 +1,6 @@
 #include "generator/drive/point_control.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -10,7 +11,10 @@ enum { MOST = PL_MAX_STRAINS, NOTHING = -1 };
 
 static const double REACHED = 1e-13; /* of stiffness times strain: as near as rounding lets it */
 static const double SUDDEN = 1e-9;   /* of a step: how long it takes to begin */
-static const double ALL_BUT_REACHED = 1e-9; /* of the same, where it comes no nearer */
+static const double ALL_BUT_REACHED = 1e-9; /* of the stresses, where it comes no nearer */
+static const double MOST_LOST = 1e-7;       /* of the stresses: what rounding may leave open */
+static const double LEAST_GAIN = 1e-4;      /* of what a step promises */
+static const double SINGULAR = 1e-13;       /* of a matrix's largest entry */
 
 /* --- who prescribes what ---------------------------------------------------------------------- */
 
@@ -168,6 +172,7 @@ typedef struct search {
   strained at;
   stressed answer;
   double gap[MOST], residual; /* what is left, Pa; the largest */
+  bool too_far;               /* a step was left out: its stresses are lost in rounding */
 } search;
 
 /* The rates of the strains that are found follow from them. */
@@ -212,13 +217,22 @@ static void jacobian(search *s, double matrix[MOST][MOST]) {
   }
 }
 
-/* Gauss's elimination with pivots. False where the matrix is singular. */
+static double largest(int count, double a[MOST][MOST]) {
+  double most = 0;
+  for (int row = 0; row < count; row++)
+    for (int column = 0; column < count; column++)
+      most = pl_fmax(most, fabs(a[row][column]));
+  return most;
+}
+
+/* Gauss's elimination with pivots. False where the matrix is singular, as far as rounding tells. */
 static bool solve(int count, double a[MOST][MOST], double *x) {
+  const double least = SINGULAR * largest(count, a);
   for (int k = 0; k < count; k++) {
     int pivot = k;
     for (int row = k + 1; row < count; row++)
       if (fabs(a[row][k]) > fabs(a[pivot][k])) pivot = row;
-    if (!(fabs(a[pivot][k]) > 0) || !isfinite(a[pivot][k])) return false;
+    if (!(fabs(a[pivot][k]) > least) || !isfinite(a[pivot][k])) return false;
     for (int c = 0; c < count && pivot != k; c++) {
       const double kept = a[k][c];
       a[k][c] = a[pivot][c];
@@ -242,63 +256,139 @@ static bool solve(int count, double a[MOST][MOST], double *x) {
   return true;
 }
 
-/* One step, shortened until it leads nearer. False where none does. */
-static bool go_nearer(search *s) {
-  enum { HALVINGS = 12 };
-  double matrix[MOST][MOST], change[MOST];
-  const search here = *s;
+/* --- what is near enough ---------------------------------------------------------------------- */
+
+/* Stiffness times strain, Pa: stresses are differences of such, C:(strain - eps_p). */
+static double summand(const search *s) {
+  double strain = 0;
+  for (int k = 0; k < s->control->strains; k++)
+    strain = pl_fmax(strain, fabs(s->at.strain[k]));
+  return strain * s->control->stiffness;
+}
+
+/* Pa: what rounding leaves open of them. */
+static double rounding(const search *s) {
+  return 16 * DBL_EPSILON * summand(s);
+}
+
+/* Pa: the largest stress that was asked for or borne, this step's with it. What a law bears where
+   strains are prescribed counts if it is more than rounding: strains that run away have no say. */
+static double size_of(const search *s) {
+  double size = s->control->size;
+  for (int k = 0; k < s->point->stresses; k++) {
+    const double found = fabs(s->answer.stress[k]);
+    if (k < s->control->strains && s->control->by_stress[k])
+      size = pl_fmax(size, fabs(s->wanted[k]));
+    else if (rounding(s) <= MOST_LOST * found)
+      size = pl_fmax(size, found);
+  }
+  return size;
+}
+
+/* Whether the stresses can still be told from what rounding leaves open. */
+static bool is_told(const search *s) {
+  const double size = size_of(s);
+  return !(size > 0 && rounding(s) > MOST_LOST * size);
+}
+
+/* Measured by the stresses, never by the strain that was found for them: a law that flows at a
+   constant stress gives any strain. */
+static bool is_found(const search *s) {
+  return is_told(s) && s->residual <= pl_fmax(ALL_BUT_REACHED * size_of(s), rounding(s));
+}
+
+/* As near as rounding lets it. */
+static bool is_exact(const search *s) {
+  double stress = size_of(s);
+  for (int k = 0; k < s->control->strains; k++)
+    stress = pl_fmax(stress, fabs(s->answer.stress[k]));
+  return !(s->residual > REACHED * (summand(s) + stress));
+}
+
+/* --- steps ------------------------------------------------------------------------------------ */
+
+/* False where the tangent is singular: the law flows at a constant stress. */
+static bool newton_step(search *s, double *change) {
+  double matrix[MOST][MOST];
   jacobian(s, matrix);
-  memcpy(change, s->gap, sizeof change);
-  if (!solve(s->count, matrix, change)) return false;
+  memcpy(change, s->gap, sizeof s->gap);
+  return solve(s->count, matrix, change);
+}
+
+/* That of a body as stiff as the law is at first: from a flat tangent it unloads. */
+static bool stiff_step(const search *s, double *change) {
+  for (int n = 0; n < s->count; n++)
+    change[n] = s->gap[n] / s->control->stiffness;
+  return s->control->stiffness > 0;
+}
+
+/* A step, shortened until it leads nearer by some of what it promises: where a law comes to its
+   largest stress, small gains lead far away. False, and nothing moved, where none does. */
+static bool take(search *s, const double *change) {
+  enum { HALVINGS = 12 };
+  const search here = *s;
   double part = 1;
   for (int k = 0; k < HALVINGS; k++, part *= 0.5) {
     for (int n = 0; n < s->count; n++)
       s->at.strain[s->unknown[n]] = here.at.strain[s->unknown[n]] + part * change[n];
     settle(s);
-    if (s->residual < here.residual) return true;
+    if (!(s->residual < (1 - LEAST_GAIN * part) * here.residual)) continue;
+    if (is_told(s)) return true;
+    s->too_far = true;
   }
+  const bool too_far = s->too_far;
   *s = here;
-  settle(s);
+  s->too_far = too_far;
   return false;
 }
 
-/* Pa: the size of what such stresses are sums of. */
-static double scale_of(const search *s) {
-  double strain = 0, stress = 0;
-  for (int k = 0; k < s->control->strains; k++) {
-    strain = pl_fmax(strain, fabs(s->at.strain[k]));
-    stress = pl_fmax(stress, fabs(s->answer.stress[k]));
-  }
-  return strain * s->control->stiffness + stress;
+static bool go_nearer(search *s) {
+  double change[MOST];
+  if (newton_step(s, change) && take(s, change)) return true;
+  if (stiff_step(s, change) && take(s, change)) return true;
+  settle(s);
+  return false;
 }
 
 static bool converge(search *s) {
   enum { MOST_STEPS = 60 };
   settle(s);
-  for (int step = 0; step < MOST_STEPS && s->residual > REACHED * scale_of(s); step++)
+  for (int step = 0; step < MOST_STEPS && !is_exact(s); step++)
     if (!go_nearer(s)) break;
-  return s->residual <= ALL_BUT_REACHED * scale_of(s) || s->residual == 0;
+  return is_found(s);
+}
+
+/* The unknown that misses most, rather one that a path prescribes. */
+static int worst_of(const search *s) {
+  int worst = 0, by_path = -1;
+  for (int n = 0; n < s->count; n++) {
+    if (!(fabs(s->gap[n]) <= fabs(s->gap[worst]))) worst = n;
+    if (s->control->follows[s->unknown[n]] == NOTHING) continue;
+    if (by_path < 0 || !(fabs(s->gap[n]) <= fabs(s->gap[by_path]))) by_path = n;
+  }
+  return by_path >= 0 && fabs(s->gap[by_path]) > ALL_BUT_REACHED * size_of(s) ? by_path : worst;
 }
 
 static void report(const search *s, double time, diagnostics *d) {
-  int worst = 0;
-  for (int n = 1; n < s->count; n++)
-    if (!(fabs(s->gap[n]) <= fabs(s->gap[worst]))) worst = n;
-  const int k = s->unknown[worst];
+  const int worst = worst_of(s), k = s->unknown[worst];
   const char *name = point_component_name(s->point->kernel->dimensions, k);
   diag_report(d, DIAG_OUT_OF_BOUNDS, s->control->where[k],
               "at %.6g s no strain is found that gives a stress_%s of %.6g Pa; the nearest gives "
-              "%.6g Pa",
-              time, name, s->wanted[k], s->answer.stress[k]);
+              "%.6g Pa, %.2g Pa off",
+              time, name, s->wanted[k], s->answer.stress[k], fabs(s->gap[worst]));
+  if (s->too_far || !is_told(s))
+    diag_note(d, s->control->where[k],
+              "strains so large that rounding leaves %.2g Pa of the stresses open are left out",
+              MOST_LOST * size_of(s));
   diag_hint(d,
             "beyond its largest stress a law is driven by strain (strain_%s); else more "
             "`steps` help",
             name);
 }
 
-bool point_control_reach(const point_control *c, const drive_input *in, driven_point *p,
-                         double time, double inside, const strained *before, strained *to,
-                         stressed *answer, diagnostics *d) {
+bool point_control_reach(point_control *c, const drive_input *in, driven_point *p, double time,
+                         double inside, const strained *before, strained *to, stressed *answer,
+                         diagnostics *d) {
   static const strained rest = {.step = 0};
   const bool sudden = !before && p->kernel->reads_rates;
   search s = {.control = c,
@@ -319,6 +409,7 @@ bool point_control_reach(const point_control *c, const drive_input *in, driven_p
     }
   }
   const bool found = converge(&s);
+  if (found) c->size = size_of(&s);
   *to = s.at;
   *answer = s.answer;
   bool finite = true; /* else the row says so */

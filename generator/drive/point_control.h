@@ -12,6 +12,7 @@ typedef struct point_control {
   int follows[PL_MAX_STRAINS];    /* the drive_quantity whose paths it takes, or -1: it is 0 */
   span where[PL_MAX_STRAINS];     /* what says so */
   double stiffness;               /* Pa: largest entry of the first tangent */
+  double size;                    /* Pa: largest stress asked for or borne so far */
 } point_control;
 
 /* False, with a message, where the path and its test do not go together. */
@@ -22,7 +23,7 @@ bool point_control_read(const drive_input *in, int dimensions, point_control *ou
    Without `before` the path begins: the point was at rest, and what resists rates has not yielded.
    The point's fields wait to be accepted. False, with a message, where no strain gives these
    stresses. */
-bool point_control_reach(const point_control *c, const drive_input *in, driven_point *p,
+bool point_control_reach(point_control *c, const drive_input *in, driven_point *p,
                          double time, double inside, const strained *before, strained *to,
                          stressed *answer, diagnostics *d);
 
