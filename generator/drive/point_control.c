@@ -13,7 +13,6 @@ static const double REACHED = 1e-13; /* of stiffness times strain: as near as ro
 static const double SUDDEN = 1e-9;   /* of a step: how long it takes to begin */
 static const double ALL_BUT_REACHED = 1e-9; /* of the stresses, where it comes no nearer */
 static const double MOST_LOST = 1e-7;       /* of the stresses: what rounding may leave open */
-static const double LEAST_GAIN = 1e-4;      /* of what a step promises */
 static const double SINGULAR = 1e-13;       /* of a matrix's largest entry */
 
 /* --- who prescribes what ---------------------------------------------------------------------- */
@@ -322,8 +321,8 @@ static bool stiff_step(const search *s, double *change) {
   return s->control->stiffness > 0;
 }
 
-/* A step, shortened until it leads nearer by some of what it promises: where a law comes to its
-   largest stress, small gains lead far away. False, and nothing moved, where none does. */
+/* A step, shortened until it leads nearer, and not where stresses are lost in rounding. False, and
+   nothing moved, where none does. */
 static bool take(search *s, const double *change) {
   enum { HALVINGS = 12 };
   const search here = *s;
@@ -332,7 +331,7 @@ static bool take(search *s, const double *change) {
     for (int n = 0; n < s->count; n++)
       s->at.strain[s->unknown[n]] = here.at.strain[s->unknown[n]] + part * change[n];
     settle(s);
-    if (!(s->residual < (1 - LEAST_GAIN * part) * here.residual)) continue;
+    if (!(s->residual < here.residual)) continue;
     if (is_told(s)) return true;
     s->too_far = true;
   }
