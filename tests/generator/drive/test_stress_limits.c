@@ -38,8 +38,8 @@ static void drive_both(workplace *w, int status, const char *wanted, const char 
 
 static const char *const settings[] = {"plane_stress", "plane_strain", "space"};
 
-/* What the point bears along x where y is free: f_y; in plane strain z holds, too, and with nu = 0.3
-   the last of it is 2/sqrt(3) f_y, after yield at f_y/sqrt(1 - nu + nu^2). */
+/* What the point bears along x where y is free is f_y; 2/sqrt(3) f_y in the end in plane strain,
+   which holds z: after the first yield z comes to half of x. */
 static void tension_beyond_yield(void **state) {
   workplace *w = *state;
   for (int k = 0; k < 3; k++) {
