@@ -23,8 +23,8 @@ bool point_control_read(const drive_input *in, int dimensions, point_control *ou
    Without `before` the path begins: the point was at rest, and what resists rates has not yielded.
    The point's fields wait to be accepted. False, with a message, where no strain gives these
    stresses. */
-bool point_control_reach(point_control *c, const drive_input *in, driven_point *p,
-                         double time, double inside, const strained *before, strained *to,
-                         stressed *answer, diagnostics *d);
+bool point_control_reach(point_control *c, const drive_input *in, driven_point *p, double time,
+                         double inside, const strained *before, strained *to, stressed *answer,
+                         diagnostics *d);
 
 #endif
