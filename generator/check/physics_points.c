@@ -9,6 +9,7 @@
 #include "generator/check/physics_point_bench.h"
 #include "generator/check/physics_point_flows.h"
 #include "generator/check/physics_point_turns.h"
+#include "generator/interpreter/bad_origin.h"
 #include "generator/interpreter/lone_point.h"
 #include "generator/ir/random_values.h"
 #include "runtime/base/eigen.h"
@@ -35,6 +36,9 @@ static const char MEND_ROOT[] =
     "a root of a strain that is 0 has no slope: write `strain : strain` for `norm(strain)**2`, or "
     "keep roots off 0";
 
+static const char MEND_AT_REST[] =
+    "its guard holds at rest: f must be below 0 there, with all parameters within their bounds";
+
 static const char MEND_JUMP[] = "let the values of the cases meet where one ends, or write `jump` "
                                 "at the end of the line if the jump is meant";
 static const char MEND_FOLD[] =
@@ -51,15 +55,23 @@ static const char MEND_NOT_FOUND[] =
 
 /* --- along z ---------------------------------------------------------------------------------- */
 
+/* The point by itself at this strain, with the states at hand. *field is to be freed after it. */
+static void open_lone(const point_bench *b, const double *strain, lone_point *point,
+                      asked_point *at, double **field) {
+  *field = must_calloc((size_t)b->law->fields.count + 1, sizeof **field);
+  for (int k = 0; k < b->law->fields.count; k++)
+    (*field)[k] = b->old_field[k][0];
+  *at = (asked_point){strain, *field, b->size[0], TIME_STEP};
+  lone_point_open(point, b->plan, b->parameters, at);
+}
+
 /* How many strains along z leave no stress there at this strain; 1 where that is no question. */
 static int roots_along_z(const point_bench *b, const double *strain) {
   if (b->setting.setting != SETTING_PLANE_STRESS) return 1;
-  double *field = must_calloc((size_t)b->law->fields.count + 1, sizeof *field);
-  for (int k = 0; k < b->law->fields.count; k++)
-    field[k] = b->old_field[k][0];
-  const asked_point at = {strain, field, b->size[0], TIME_STEP};
+  double *field;
+  asked_point at;
   lone_point point;
-  lone_point_open(&point, b->plan, b->parameters, &at);
+  open_lone(b, strain, &point, &at, &field);
   const along_z seen = lone_point_along_z(&point, &b->setting);
   lone_point_close(&point);
   free(field);
@@ -81,6 +93,51 @@ static double size_of_stress(point_bench *b) {
   return scale;
 }
 
+/* To be freed. */
+static char *text_of(const expr *e) {
+  char *text;
+  size_t length;
+  FILE *out = must_open_text(&text, &length);
+  expr_print(e, out);
+  must_close_text(out);
+  return text;
+}
+
+/* How to keep a divisor off 0. To be freed. */
+static char *mend_of_divisor(const expr *e, const char *divisor) {
+  const bool stress = dim_equal(e->dim, dimension_of("Pa"));
+  char *text;
+  size_t length;
+  FILE *out = must_open_text(&text, &length);
+  fprintf(out, "keep it off 0: write `max(%s, %s)`%s", divisor, stress ? "1 [Pa]" : "small",
+          stress ? "" : ", `small` far below its usual size");
+  must_close_text(out);
+  return text;
+}
+
+/* The divisor that is 0, or the flow, that leaves no number at rest. */
+static void say_not_a_number(point_bench *b, const double *rest) {
+  static const char what[] = "the stress of the virgin point at rest is not a number";
+  double *field;
+  asked_point at;
+  lone_point point;
+  open_lone(b, rest, &point, &at, &field);
+  const bad_origin from = bad_origin_of_point(&b->setting, &point.in);
+  lone_point_close(&point);
+  free(field);
+  if (from.kind == BAD_DIVISION) {
+    char *divisor = text_of(from.of->right), *mend = mend_of_divisor(from.of->right, divisor);
+    point_bench_say_at(b, from.of->where, DIAG_REST_FORCE, NULL, mend,
+                       "%s: this divides by `%s`, which is 0 there", what, divisor);
+    free(mend);
+    free(divisor);
+  } else {
+    point_bench_say(b, DIAG_REST_FORCE, NULL, from.kind == BAD_RETURN ? MEND_AT_REST : MEND_ROOT,
+                    from.kind == BAD_RETURN ? "%s: a flow that is returned is not found" : "%s",
+                    what);
+  }
+}
+
 static void check_rest(point_bench *b) {
   double strain[MOST] = {0}, stress[MOST];
   const double scale = size_of_stress(b);
@@ -90,9 +147,8 @@ static void check_rest(point_bench *b) {
   if (scale <= 0 && isfinite(found))
     point_bench_say(b, DIAG_STIFFNESS, strain, "let the stress depend on `strain`",
                     "the virgin point has no stress when it is strained");
-  else if (!isfinite(found))
-    point_bench_say(b, DIAG_REST_FORCE, NULL, MEND_ROOT,
-                    "the stress of the virgin point at rest is not a number");
+  else if (!isfinite(found) && !b->failed[DIAG_FLOW])
+    say_not_a_number(b, strain);
   else if (!(found <= REST_TOLERANCE * scale) && isfinite(scale))
     point_bench_say(b, DIAG_REST_FORCE, NULL, "take the stress of rest away from it",
                     "the virgin point at rest has a stress of %.6g Pa", found);
@@ -118,6 +174,7 @@ static void check_stiffness(point_bench *b) {
   point_bench_strain(b, rest, NULL);
   point_bench_run(b, b->kernel->point_tangent, TIME_STEP);
   if (!isfinite(point_bench_tangent_size(b))) {
+    if (b->failed[DIAG_FLOW]) return; /* f may be above 0 at rest with these parameters */
     point_bench_say(b, DIAG_STIFFNESS, NULL, MEND_ROOT,
                     "the stiffness of the virgin point is not finite");
     return;
