@@ -12,6 +12,9 @@
 #include "generator/interpreter/bad_origin.h"
 #include "generator/interpreter/lone_point.h"
 #include "generator/ir/random_values.h"
+#include "generator/ir/rewrite.h"
+#include "generator/lower/lower.h"
+#include "generator/lower/lower_inputs.h"
 #include "runtime/base/eigen.h"
 
 enum { MOST = POINT_MOST, USUAL_SEED = 20 };
@@ -475,7 +478,57 @@ static void check_continuity(point_bench *b, bool meant) {
 typedef struct round_trip {
   double strain[MOST], stress[MOST], first[MOST], worst[MOST];
   double total, size, lost_least;
+  bool *gone; /* [fields] the state whose first component this is went back to its first value */
 } round_trip;
+
+/* Whether a state, from component k on, was something else before the last step and is now what the
+   virgin point has. */
+static bool goes_back(const point_bench *b, int k, int components) {
+  bool moved = false, back = true;
+  for (int i = k; i < k + components; i++) {
+    const double first = b->law->fields.items[i]->initial;
+    moved = moved || b->old_field[i][0] != first;
+    back = back && b->new_field[i][0] == first;
+  }
+  return moved && back;
+}
+
+static const symbol *whole_of(const symbol *s) {
+  return s->component_of ? s->component_of : s;
+}
+
+static void note_gone(const point_bench *b, round_trip *t) {
+  const symbol_list *fields = &b->law->fields;
+  for (int k = 0, next; k < fields->count; k = next) {
+    const symbol *whole = whole_of(fields->items[k]);
+    for (next = k + 1; next < fields->count && whole_of(fields->items[next]) == whole;)
+      next++;
+    t->gone[k] = t->gone[k] || goes_back(b, k, next - k);
+  }
+}
+
+/* A state whose rule reads what it was, by other names perhaps, and that has lost it all the same:
+   the rule gives the increment alone. NULL without one. */
+static const symbol *forgotten(const point_bench *b, const round_trip *t) {
+  const symbol_list *fields = &b->law->fields;
+  const symbol *found = NULL;
+  arena *memory = arena_new();
+  ir *graph = ir_new();
+  diagnostics said = {0};
+  lowered_law step;
+  const bool lowered = lower_law(&b->setting, graph, LOWER_STEP, memory, &step, &said);
+  for (int k = 0; lowered && k < fields->count && !found; k++) {
+    const ir_node old = lower_field(graph, &b->setting, k);
+    const stmt *rule = fields->items[k]->rule;
+    if (t->gone[k] && rule->kind == STMT_DEFINITION &&
+        rewrite_depends(graph, &step.fields[k], 1, &old, 1))
+      found = whole_of(fields->items[k]);
+  }
+  ir_free(graph);
+  arena_free(memory);
+  diag_clear(&said);
+  return found;
+}
 
 static void go(point_bench *b, round_trip *t, const double *next) {
   double change[MOST], rate[MOST], after[MOST];
@@ -493,6 +546,7 @@ static void go(point_bench *b, round_trip *t, const double *next) {
   }
   t->total += point_bench_work(b, t->stress, change, &t->size);
   memcpy(t->stress, after, sizeof after);
+  if (point_bench_largest(next, b->strains) > 0) note_gone(b, t);
   point_bench_keep(b);
   for (int k = 0; k < PL_LOSSES; k++)
     if (b->lost[k][0] < t->lost_least) {
@@ -527,31 +581,49 @@ static bool knows_losses(const law *l) {
   return known;
 }
 
+/* What is wrong with a law that gains on its way, in `text`. */
+static const char *mend_of_gain(const point_bench *b, const round_trip *t, bool conserves,
+                                char *text, size_t size) {
+  const symbol *forgets = forgotten(b, t);
+  if (forgets) {
+    const char *name = forgets->name;
+    snprintf(text, size,
+             "the state `%s` forgets: in a step that adds nothing it goes back to %.4g; write `%s "
+             "= %s + ...`",
+             name, forgets->initial, name, name);
+    return text;
+  }
+  if (conserves) return b->law->results[RESULT_SIGMA] ? MEND_ENERGY : MEND_KINK;
+  return "let what a state or a rate adds to the stress take work, never give it: softer on the "
+         "way back than on the way out";
+}
+
 /* What is done must be at least what is stored and lost. */
-static void check_paths(point_bench *b) {
-  enum { STEPS = 200 };
-  round_trip t = {.total = 0};
-  go_around(b, &t, STEPS);
+static void judge_path(point_bench *b, const round_trip *t, int steps) {
   const bool conserves = b->law->fields.count == 0 && !b->kernel->reads_rates;
-  if (!isfinite(t.total)) return; /* said elsewhere */
-  const bool has_energy = !b->law->results[RESULT_SIGMA];
-  const char *mend = conserves ? has_energy ? MEND_KINK : MEND_ENERGY
-                               : "let what a state or a rate adds to the stress take work, never "
-                                 "give it: softer on the way back than on the way out";
   const bool may_gain = conserves && b->law->nonconservative; /* one way around, then */
   const double gain = b->law->nonconservative ? GAIN_OF_NONCONSERVATIVE : 1e-3;
-  if (!may_gain && t.total < -gain * t.size)
-    point_bench_say(b, DIAG_CLOSED_PATH, t.first, mend,
-                    "around a closed path of strain the point gains %.3g of the work that is done",
-                    -t.total / t.size);
-  else if (conserves && !b->law->nonconservative && t.total > 1e-3 * t.size)
-    point_bench_say(b, DIAG_CLOSED_PATH, t.first, mend,
-                    "around a closed path of strain the point loses %.3g of the work that is done",
-                    t.total / t.size);
-  if (knows_losses(b->law) && !b->failed[DIAG_CLOSED_PATH] &&
-      t.lost_least < -PATH_TOLERANCE * t.size / STEPS)
-    point_bench_say(b, DIAG_DISSIPATION, t.worst, mend,
-                    "a step of strain loses a negative energy, %.3g J/m^3", t.lost_least);
+  const bool gains = !may_gain && t->total < -gain * t->size;
+  const bool loses = conserves && !b->law->nonconservative && t->total > 1e-3 * t->size;
+  const bool creates = knows_losses(b->law) && t->lost_least < -PATH_TOLERANCE * t->size / steps;
+  char text[512];
+  if (!gains && !loses && !creates) return;
+  const char *mend = mend_of_gain(b, t, conserves, text, sizeof text);
+  if (gains || loses)
+    point_bench_say(b, DIAG_CLOSED_PATH, t->first, mend,
+                    "around a closed path of strain the point %s %.3g of the work that is done",
+                    gains ? "gains" : "loses", fabs(t->total) / t->size);
+  if (creates && !b->failed[DIAG_CLOSED_PATH])
+    point_bench_say(b, DIAG_DISSIPATION, t->worst, mend,
+                    "a step of strain loses a negative energy, %.3g J/m^3", t->lost_least);
+}
+
+static void check_paths(point_bench *b) {
+  enum { STEPS = 200 };
+  round_trip t = {.gone = must_calloc((size_t)b->law->fields.count + 1, sizeof(bool))};
+  go_around(b, &t, STEPS);
+  if (isfinite(t.total)) judge_path(b, &t, STEPS); /* what is not is said elsewhere */
+  free(t.gone);
 }
 
 /* --- a law ------------------------------------------------------------------------------------ */
