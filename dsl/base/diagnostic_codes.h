@@ -29,6 +29,7 @@ X(OPTION, "option", SEVERITY_ERROR)
 X(NOT_SUPPORTED, "not-supported", SEVERITY_ERROR)
 X(UNUSED_DAMAGE, "unused-damage", SEVERITY_ERROR)
 X(UNUSED, "unused", SEVERITY_WARNING)
+X(LAST_STEP, "last-step", SEVERITY_WARNING)
 X(DAMAGE_RANGE, "damage-range", SEVERITY_WARNING)
 /* physics: what a law does, found by driving it on the interpreter */
 X(EXCHANGE, "exchange", SEVERITY_ERROR)

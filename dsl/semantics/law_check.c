@@ -5,6 +5,7 @@
 #include "dsl/semantics/calls.h"
 #include "dsl/semantics/declarations.h"
 #include "dsl/semantics/holes.h"
+#include "dsl/semantics/increments.h"
 #include "dsl/semantics/names.h"
 #include "dsl/semantics/order.h"
 #include "dsl/semantics/parameters.h"
@@ -676,6 +677,7 @@ law *law_check(arena *memory, tree *t, const source_set *sources, const law_choi
   if (d->errors == errors) {
     mark_used(&ck);
     report_unused(&ck);
+    report_increments(&ck);
     list_rules(&ck);
     split_tensors(&ck);
   }

@@ -9,8 +9,12 @@
 #include "generator/check/physics_point_bench.h"
 #include "generator/check/physics_point_flows.h"
 #include "generator/check/physics_point_turns.h"
+#include "generator/interpreter/bad_origin.h"
 #include "generator/interpreter/lone_point.h"
 #include "generator/ir/random_values.h"
+#include "generator/ir/rewrite.h"
+#include "generator/lower/lower.h"
+#include "generator/lower/lower_inputs.h"
 #include "runtime/base/eigen.h"
 
 enum { MOST = POINT_MOST, USUAL_SEED = 20 };
@@ -35,6 +39,9 @@ static const char MEND_ROOT[] =
     "a root of a strain that is 0 has no slope: write `strain : strain` for `norm(strain)**2`, or "
     "keep roots off 0";
 
+static const char MEND_AT_REST[] =
+    "its guard holds at rest: f must be below 0 there, with all parameters within their bounds";
+
 static const char MEND_JUMP[] = "let the values of the cases meet where one ends, or write `jump` "
                                 "at the end of the line if the jump is meant";
 static const char MEND_FOLD[] =
@@ -51,15 +58,23 @@ static const char MEND_NOT_FOUND[] =
 
 /* --- along z ---------------------------------------------------------------------------------- */
 
+/* The point by itself at this strain, with the states at hand. *field is to be freed after it. */
+static void open_lone(const point_bench *b, const double *strain, lone_point *point,
+                      asked_point *at, double **field) {
+  *field = must_calloc((size_t)b->law->fields.count + 1, sizeof **field);
+  for (int k = 0; k < b->law->fields.count; k++)
+    (*field)[k] = b->old_field[k][0];
+  *at = (asked_point){strain, *field, b->size[0], TIME_STEP};
+  lone_point_open(point, b->plan, b->parameters, at);
+}
+
 /* How many strains along z leave no stress there at this strain; 1 where that is no question. */
 static int roots_along_z(const point_bench *b, const double *strain) {
   if (b->setting.setting != SETTING_PLANE_STRESS) return 1;
-  double *field = must_calloc((size_t)b->law->fields.count + 1, sizeof *field);
-  for (int k = 0; k < b->law->fields.count; k++)
-    field[k] = b->old_field[k][0];
-  const asked_point at = {strain, field, b->size[0], TIME_STEP};
+  double *field;
+  asked_point at;
   lone_point point;
-  lone_point_open(&point, b->plan, b->parameters, &at);
+  open_lone(b, strain, &point, &at, &field);
   const along_z seen = lone_point_along_z(&point, &b->setting);
   lone_point_close(&point);
   free(field);
@@ -81,6 +96,51 @@ static double size_of_stress(point_bench *b) {
   return scale;
 }
 
+/* To be freed. */
+static char *text_of(const expr *e) {
+  char *text;
+  size_t length;
+  FILE *out = must_open_text(&text, &length);
+  expr_print(e, out);
+  must_close_text(out);
+  return text;
+}
+
+/* How to keep a divisor off 0. To be freed. */
+static char *mend_of_divisor(const expr *e, const char *divisor) {
+  const bool stress = dim_equal(e->dim, dimension_of("Pa"));
+  char *text;
+  size_t length;
+  FILE *out = must_open_text(&text, &length);
+  fprintf(out, "keep it off 0: write `max(%s, %s)`%s", divisor, stress ? "1 [Pa]" : "small",
+          stress ? "" : ", `small` far below its usual size");
+  must_close_text(out);
+  return text;
+}
+
+/* The divisor that is 0, or the flow, that leaves no number at rest. */
+static void say_not_a_number(point_bench *b, const double *rest) {
+  static const char what[] = "the stress of the virgin point at rest is not a number";
+  double *field;
+  asked_point at;
+  lone_point point;
+  open_lone(b, rest, &point, &at, &field);
+  const bad_origin from = bad_origin_of_point(&b->setting, &point.in);
+  lone_point_close(&point);
+  free(field);
+  if (from.kind == BAD_DIVISION) {
+    char *divisor = text_of(from.of->right), *mend = mend_of_divisor(from.of->right, divisor);
+    point_bench_say_at(b, from.of->where, DIAG_REST_FORCE, NULL, mend,
+                       "%s: this divides by `%s`, which is 0 there", what, divisor);
+    free(mend);
+    free(divisor);
+  } else {
+    point_bench_say(b, DIAG_REST_FORCE, NULL, from.kind == BAD_RETURN ? MEND_AT_REST : MEND_ROOT,
+                    from.kind == BAD_RETURN ? "%s: a flow that is returned is not found" : "%s",
+                    what);
+  }
+}
+
 static void check_rest(point_bench *b) {
   double strain[MOST] = {0}, stress[MOST];
   const double scale = size_of_stress(b);
@@ -90,9 +150,8 @@ static void check_rest(point_bench *b) {
   if (scale <= 0 && isfinite(found))
     point_bench_say(b, DIAG_STIFFNESS, strain, "let the stress depend on `strain`",
                     "the virgin point has no stress when it is strained");
-  else if (!isfinite(found))
-    point_bench_say(b, DIAG_REST_FORCE, NULL, MEND_ROOT,
-                    "the stress of the virgin point at rest is not a number");
+  else if (!isfinite(found) && !b->failed[DIAG_FLOW])
+    say_not_a_number(b, strain);
   else if (!(found <= REST_TOLERANCE * scale) && isfinite(scale))
     point_bench_say(b, DIAG_REST_FORCE, NULL, "take the stress of rest away from it",
                     "the virgin point at rest has a stress of %.6g Pa", found);
@@ -118,6 +177,7 @@ static void check_stiffness(point_bench *b) {
   point_bench_strain(b, rest, NULL);
   point_bench_run(b, b->kernel->point_tangent, TIME_STEP);
   if (!isfinite(point_bench_tangent_size(b))) {
+    if (b->failed[DIAG_FLOW]) return; /* f may be above 0 at rest with these parameters */
     point_bench_say(b, DIAG_STIFFNESS, NULL, MEND_ROOT,
                     "the stiffness of the virgin point is not finite");
     return;
@@ -418,7 +478,57 @@ static void check_continuity(point_bench *b, bool meant) {
 typedef struct round_trip {
   double strain[MOST], stress[MOST], first[MOST], worst[MOST];
   double total, size, lost_least;
+  bool *gone; /* [fields] the state whose first component this is went back to its first value */
 } round_trip;
+
+/* Whether a state, from component k on, was something else before the last step and is now what the
+   virgin point has. */
+static bool goes_back(const point_bench *b, int k, int components) {
+  bool moved = false, back = true;
+  for (int i = k; i < k + components; i++) {
+    const double first = b->law->fields.items[i]->initial;
+    moved = moved || b->old_field[i][0] != first;
+    back = back && b->new_field[i][0] == first;
+  }
+  return moved && back;
+}
+
+static const symbol *whole_of(const symbol *s) {
+  return s->component_of ? s->component_of : s;
+}
+
+static void note_gone(const point_bench *b, round_trip *t) {
+  const symbol_list *fields = &b->law->fields;
+  for (int k = 0, next; k < fields->count; k = next) {
+    const symbol *whole = whole_of(fields->items[k]);
+    for (next = k + 1; next < fields->count && whole_of(fields->items[next]) == whole;)
+      next++;
+    t->gone[k] = t->gone[k] || goes_back(b, k, next - k);
+  }
+}
+
+/* A state whose rule reads what it was, by other names perhaps, and that has lost it all the same:
+   the rule gives the increment alone. NULL without one. */
+static const symbol *forgotten(const point_bench *b, const round_trip *t) {
+  const symbol_list *fields = &b->law->fields;
+  const symbol *found = NULL;
+  arena *memory = arena_new();
+  ir *graph = ir_new();
+  diagnostics said = {0};
+  lowered_law step;
+  const bool lowered = lower_law(&b->setting, graph, LOWER_STEP, memory, &step, &said);
+  for (int k = 0; lowered && k < fields->count && !found; k++) {
+    const ir_node old = lower_field(graph, &b->setting, k);
+    const stmt *rule = fields->items[k]->rule;
+    if (t->gone[k] && rule->kind == STMT_DEFINITION &&
+        rewrite_depends(graph, &step.fields[k], 1, &old, 1))
+      found = whole_of(fields->items[k]);
+  }
+  ir_free(graph);
+  arena_free(memory);
+  diag_clear(&said);
+  return found;
+}
 
 static void go(point_bench *b, round_trip *t, const double *next) {
   double change[MOST], rate[MOST], after[MOST];
@@ -436,6 +546,7 @@ static void go(point_bench *b, round_trip *t, const double *next) {
   }
   t->total += point_bench_work(b, t->stress, change, &t->size);
   memcpy(t->stress, after, sizeof after);
+  if (point_bench_largest(next, b->strains) > 0) note_gone(b, t);
   point_bench_keep(b);
   for (int k = 0; k < PL_LOSSES; k++)
     if (b->lost[k][0] < t->lost_least) {
@@ -470,31 +581,49 @@ static bool knows_losses(const law *l) {
   return known;
 }
 
+/* What is wrong with a law that gains on its way, in `text`. */
+static const char *mend_of_gain(const point_bench *b, const round_trip *t, bool conserves,
+                                char *text, size_t size) {
+  const symbol *forgets = forgotten(b, t);
+  if (forgets) {
+    const char *name = forgets->name;
+    snprintf(text, size,
+             "the state `%s` forgets: in a step that adds nothing it goes back to %.4g; write `%s "
+             "= %s + ...`",
+             name, forgets->initial, name, name);
+    return text;
+  }
+  if (conserves) return b->law->results[RESULT_SIGMA] ? MEND_ENERGY : MEND_KINK;
+  return "let what a state or a rate adds to the stress take work, never give it: softer on the "
+         "way back than on the way out";
+}
+
 /* What is done must be at least what is stored and lost. */
-static void check_paths(point_bench *b) {
-  enum { STEPS = 200 };
-  round_trip t = {.total = 0};
-  go_around(b, &t, STEPS);
+static void judge_path(point_bench *b, const round_trip *t, int steps) {
   const bool conserves = b->law->fields.count == 0 && !b->kernel->reads_rates;
-  if (!isfinite(t.total)) return; /* said elsewhere */
-  const bool has_energy = !b->law->results[RESULT_SIGMA];
-  const char *mend = conserves ? has_energy ? MEND_KINK : MEND_ENERGY
-                               : "let what a state or a rate adds to the stress take work, never "
-                                 "give it: softer on the way back than on the way out";
   const bool may_gain = conserves && b->law->nonconservative; /* one way around, then */
   const double gain = b->law->nonconservative ? GAIN_OF_NONCONSERVATIVE : 1e-3;
-  if (!may_gain && t.total < -gain * t.size)
-    point_bench_say(b, DIAG_CLOSED_PATH, t.first, mend,
-                    "around a closed path of strain the point gains %.3g of the work that is done",
-                    -t.total / t.size);
-  else if (conserves && !b->law->nonconservative && t.total > 1e-3 * t.size)
-    point_bench_say(b, DIAG_CLOSED_PATH, t.first, mend,
-                    "around a closed path of strain the point loses %.3g of the work that is done",
-                    t.total / t.size);
-  if (knows_losses(b->law) && !b->failed[DIAG_CLOSED_PATH] &&
-      t.lost_least < -PATH_TOLERANCE * t.size / STEPS)
-    point_bench_say(b, DIAG_DISSIPATION, t.worst, mend,
-                    "a step of strain loses a negative energy, %.3g J/m^3", t.lost_least);
+  const bool gains = !may_gain && t->total < -gain * t->size;
+  const bool loses = conserves && !b->law->nonconservative && t->total > 1e-3 * t->size;
+  const bool creates = knows_losses(b->law) && t->lost_least < -PATH_TOLERANCE * t->size / steps;
+  char text[512];
+  if (!gains && !loses && !creates) return;
+  const char *mend = mend_of_gain(b, t, conserves, text, sizeof text);
+  if (gains || loses)
+    point_bench_say(b, DIAG_CLOSED_PATH, t->first, mend,
+                    "around a closed path of strain the point %s %.3g of the work that is done",
+                    gains ? "gains" : "loses", fabs(t->total) / t->size);
+  if (creates && !b->failed[DIAG_CLOSED_PATH])
+    point_bench_say(b, DIAG_DISSIPATION, t->worst, mend,
+                    "a step of strain loses a negative energy, %.3g J/m^3", t->lost_least);
+}
+
+static void check_paths(point_bench *b) {
+  enum { STEPS = 200 };
+  round_trip t = {.gone = must_calloc((size_t)b->law->fields.count + 1, sizeof(bool))};
+  go_around(b, &t, STEPS);
+  if (isfinite(t.total)) judge_path(b, &t, STEPS); /* what is not is said elsewhere */
+  free(t.gone);
 }
 
 /* --- a law ------------------------------------------------------------------------------------ */

@@ -418,7 +418,8 @@ components lower_value(lowering *c, const expr *e) {
                               "with its functions expanded the law is too large to compile");
   components v = lower_kind(c, e);
   if (e->kind == EXPR_BINARY || (e->kind == EXPR_CALL && e->builtin >= 0))
-    lower_note_place(c, v.of[0], e);
+    for (int k = 0; k < v.count; k++)
+      lower_note_place(c, v.of[k], e);
   return v;
 }
 

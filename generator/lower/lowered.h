@@ -32,6 +32,7 @@ typedef struct lowered_line { /* a case line with a guard */
 typedef struct lowered_place { /* an operation that is not defined everywhere */
   ir_node node;
   span where;
+  const expr *of;
 } lowered_place;
 typedef struct lowered_flow {
   const stmt *rule;

@@ -99,7 +99,7 @@ void lower_note_place(lowering *c, ir_node n, const expr *e) {
   for (int k = 0; k < t->place_count; k++)
     if (t->places[k].node == n) return;
   t->places = one_more(t->places, t->place_count, sizeof *t->places);
-  t->places[t->place_count++] = (lowered_place){n, e->where};
+  t->places[t->place_count++] = (lowered_place){n, e->where, e};
 }
 
 void lower_note_line(lowering *c, const expr *cases, int line, ir_node guard) {

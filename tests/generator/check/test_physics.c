@@ -273,6 +273,36 @@ static void a_check_evaluates_few_states(void **state) {
   free(entries);
 }
 
+/* What is no number at rest has one cause, and so has a law that gains because a state forgets:
+   they are named with their remedies. A state that is a function of the strain forgets nothing. */
+static void causes_are_named_with_their_remedies(void **state) {
+  (void)state;
+  static const struct {
+    const char *law;
+    diag_code code;
+    const char *message, *hint;
+  } cases[] = {
+      {"rest_force_divisor.plm", DIAG_REST_FORCE, "divides by `von_mises(trial)`, which is 0",
+       "`max(von_mises(trial), 1 [Pa])`"},
+      {"rest_force_return.plm", DIAG_REST_FORCE, "a flow that is returned is not found", "at rest"},
+      {"dissipation_forgets.plm", DIAG_DISSIPATION, "negative energy", "`eps_p = eps_p + ...`"},
+      {"dissipation_remembers.plm", DIAG_DISSIPATION, "negative energy", "softer on the way back"}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    model m;
+    int found = 0;
+    open_law(&m, FOLDER, cases[k].law);
+    physics_check(m.law, NULL, &m.said, NULL);
+    for (int i = 0; i < m.said.count; i++) {
+      if (m.said.items[i].code != cases[k].code) continue;
+      found++;
+      assert_non_null(strstr(m.said.items[i].message, cases[k].message));
+      assert_non_null(strstr(m.said.items[i].hint, cases[k].hint));
+    }
+    assert_int_equal(found, 1);
+    model_close(&m);
+  }
+}
+
 /* The same seed says the same thing. */
 static void findings_are_reproducible(void **state) {
   (void)state;
@@ -456,6 +486,7 @@ int main(void) {
       cmocka_unit_test(shipped_laws_pass_with_any_option),
       cmocka_unit_test(legal_laws_pass_with_any_seed),
       cmocka_unit_test(a_check_evaluates_few_states),
+      cmocka_unit_test(causes_are_named_with_their_remedies),
       cmocka_unit_test(findings_are_reproducible),
       cmocka_unit_test(the_parameters_given_decide),
       cmocka_unit_test(drawn_parameters_keep_their_bounds),
