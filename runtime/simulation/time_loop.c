@@ -99,7 +99,9 @@ static void take_sample(simulation *s) {
   if (s->deck->output.energy) sample_energies(s);
   history_add(&s->history, at->samples++, time);
   at->next_sample = s->relaxation ? at->samples : next_sample(s);
-  if (at->status != STEP_OK) s->go_on = false;
+  if (frame_times_look(&s->frame_times, s->monitors, time, s->history.sampled, at) ||
+      at->status != STEP_OK)
+    s->go_on = false;
 }
 
 static void record_sample(simulation *s) {
@@ -204,7 +206,7 @@ static void end_increment(simulation *s) {
     s->clock.at.status = s->clock.at.status == STEP_OK ? STEP_END : s->clock.at.status;
   else
     relaxation_next(s->relaxation, s->clock.at.step);
-  if (s->clock.at.status != STEP_OK || frames_due(s->frames)) s->go_on = false;
+  if (s->clock.at.status != STEP_OK || frame_times_due(&s->frame_times)) s->go_on = false;
 }
 
 static void look_at_loads(simulation *s) {
@@ -324,7 +326,7 @@ static int64_t next_stop(const simulation *s, long steps) {
   const int64_t step = s->clock.at.step, end = s->clock.step_count;
   const int64_t until = steps < end - step ? step + steps : end;
   if (s->relaxation) return until;
-  const int64_t frame = frames_next(s->frames);
+  const int64_t frame = frame_times_next(&s->frame_times);
   return frame < until ? frame : until;
 }
 
@@ -401,7 +403,7 @@ static void stand_on(simulation *s) {
   bool more = s->clock.at.status == STEP_OK && !(s->interrupted && *s->interrupted);
   while (more) {
     stand(s);
-    more = s->clock.at.status == STEP_OK && !frames_due(s->frames) &&
+    more = s->clock.at.status == STEP_OK && !frame_times_due(&s->frame_times) &&
            !(s->interrupted && *s->interrupted);
   }
 }
