@@ -78,8 +78,10 @@ bool frame_times_look(frame_times *f, const monitors *m, double time, const doub
     if (frame->at_count > 0 || f->came[n] >= 0 || !monitors_meet(m, &frame->event, time, values))
       continue;
     f->came[n] = time;
-    at->event = some = true;
+    some = true;
   }
+  some = some && at->last_frame_step != at->step;
+  if (some) at->event = 1;
   return some;
 }
 

@@ -26,7 +26,7 @@ void frame_times_close(frame_times *f);
 int64_t frame_times_next(const frame_times *f);
 /* A frame's time has been reached, and it is not taken yet. */
 bool frame_times_due(const frame_times *f);
-/* Values just sampled: whether an event has come for the first time. */
+/* Values just sampled: whether an event has come for the first time, and a frame is due for it. */
 bool frame_times_look(frame_times *f, const monitors *m, double time, const double *values,
                       run_progress *at);
 /* That after a frame was taken at the present step: which one is next. */

@@ -157,8 +157,8 @@ static bool is_reachable(const simulation *s, const run_progress *at) {
   if (at->samples < (at->step > 0) || at->samples > at->next_sample + 1) return false;
   if (at->samples > s->history.capacity - (at->step < s->clock.step_count)) return false;
   if (s->relaxation && at->samples > run_clock_end(&s->clock) + 1) return false;
-  return at->next_frame >= 0 && at->next_frame <= s->frame_times.count && at->last_frame_step >= -1 &&
-         at->last_frame_step <= at->step && at->frames.count >= 0;
+  return at->next_frame >= 0 && at->next_frame <= s->frame_times.count &&
+         at->last_frame_step >= -1 && at->last_frame_step <= at->step && at->frames.count >= 0;
 }
 
 /* Places that the set-up chose: they index arrays, and no file may move them. */

@@ -99,7 +99,8 @@ static void take_sample(simulation *s) {
   if (s->deck->output.energy) sample_energies(s);
   history_add(&s->history, at->samples++, time);
   at->next_sample = s->relaxation ? at->samples : next_sample(s);
-  if (frame_times_look(&s->frame_times, s->monitors, time, s->history.sampled, at) ||
+  if (at->status == STEP_BAD ||
+      frame_times_look(&s->frame_times, s->monitors, time, s->history.sampled, at) ||
       at->status != STEP_OK)
     s->go_on = false;
 }
@@ -416,9 +417,11 @@ step_status time_loop_run(simulation *s, long steps, const volatile sig_atomic_t
   const double begun = s->profile ? monotonic_seconds() : 0;
   begin(s);
   s->observe = s->clock.at.samples == 0;
-  if (s->relaxation && s->relaxation->deck->solved) s->go_on = false;
+  const bool solved = s->relaxation && s->relaxation->deck->solved;
+  const int64_t event = s->clock.at.event;
+  if (solved) s->go_on = false;
   run_team(s);
-  if (s->relaxation && s->relaxation->deck->solved) stand_on(s);
+  if (solved && s->clock.at.event == event) stand_on(s);
   if (s->profile) {
     s->profile->elapsed += monotonic_seconds() - begun;
     profile_sum(s->profile, s->bodies, s->body_count, s->blocks);

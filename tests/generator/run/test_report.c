@@ -42,7 +42,7 @@ static void quasi_static_runs_count_increments(void **state) {
          "8 of them without balance after 20 steps\n");
   write_text(w, "stop.nml", quiet);
   assert_int_equal(shell(w, "echo \"&stop monitor = 'moved' above = 0.4e-6 /\" >> stop.nml"), 0);
-  expect(w, "run stop.nml", 0, "ended early at increment 4 of 8: moved was above 4e-07\n");
+  expect(w, "run stop.nml", 0, "ended early at increment 4 of 8: moved was above 4e-07 m\n");
 }
 
 static void dynamic_runs_have_times(void **state) {
@@ -90,7 +90,7 @@ static void results_tell_how_the_run_ended(void **state) {
       shell(w, "(cat beam.nml; echo \"&stop monitor = 'load' above = 1000 /\") > s.nml"), 0);
   expect(w, "run s.nml --threads 1", 0, "ended early");
   expect_ending(w, "beam.h5", "stopped by &stop at t = 0.", 0);
-  expect(w, "info beam.h5", 0, " ms: load was above 1000 (status 0); ");
+  expect(w, "info beam.h5", 0, " ms: load was above 1000 N (status 0); ");
   expect(w, "run beam.nml --threads 1 --set \"drive.velocity=-1e5 m/s\" --set drive.rise=", 2,
          "error: ");
   expect_ending(w, "beam.h5", "failed at t = ", 2);
