@@ -670,6 +670,7 @@ DECK_LIST(stop, .identity = "monitor", .check = check_stop,
 static void check_times(deck_reader *r, const namelist_group *from, const deck_frame *item) {
   static const char *const others[] = {"below", "above", "of", "after"};
   const double end = r->k->simulation.end_time;
+  const namelist_key *at = namelist_find(from, "at");
   for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
     const namelist_key *key = namelist_find(from, others[k]);
     if (!key) continue;
@@ -677,10 +678,12 @@ static void check_times(deck_reader *r, const namelist_group *from, const deck_f
                 others[k]);
     diag_hint(r->d, "write a `&frame` of its own for what a monitor decides");
   }
-  for (int k = 0; k < item->at_count; k++)
-    if (end > 0 && item->at[k] > end)
-      diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "at"),
-                  "a frame at %g s would be after the end of the run, %g s", item->at[k], end);
+  for (int k = 0; k < item->at_count && k < at->value_count; k++) {
+    if (end <= 0 || item->at[k] <= end) continue;
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, at->values[k].where,
+                "a frame at %g s would be after the end of the run, %g s", item->at[k], end);
+    diag_hint(r->d, "the state at the end of a run is stored in any case");
+  }
 }
 
 static void check_frame(deck_reader *r, const namelist_group *from, void *into) {
