@@ -616,7 +616,8 @@ static const deck_key_info frame_keys[] = {
     {.name = "monitor",
      .type = DECK_NAME,
      DECK_AT(frame, event.monitor),
-     .doc = "name of the monitor that decides, if not `at`: one frame, at the first sample when"},
+     .doc = "in place of `at`: name of the monitor that decides; one frame, of the first sample "
+            "when what it waits for holds"},
     EVENT_KEYS(DECK_AT(frame, event.after), "a frame"),
 };
 
@@ -697,6 +698,5 @@ static void check_frame(deck_reader *r, const namelist_group *from, void *into) 
 }
 
 DECK_LIST(frame, .identity = "monitor", .check = check_frame,
-          .doc = "Stores frames beside those of `&output`: at given times, or when something comes "
-                 "for the first time (it is looked at at samples). Give `at`, or `monitor` with "
-                 "`below` or `above`.");
+          .doc = "Stores a frame beside those of `&output`: at given times, or once, at the first "
+                 "sample when a monitor says so. Give `at`, or `monitor` with `below` or `above`.");
