@@ -117,13 +117,18 @@ void tell_result(const run *r) {
          frames == 1 ? "" : "s");
 }
 
-/* "load was below 5 % of its peak" */
-static void describe_stop(const deck_stop *s, char *text, size_t size) {
-  const char *side = s->below ? "below" : "above";
-  if (s->of_peak)
-    snprintf(text, size, "%s was %s %.4g %% of its peak", s->monitor, side, 100 * s->level);
-  else
-    snprintf(text, size, "%s was %s %.6g", s->monitor, side, s->level);
+/* "load was below 5 % of its peak", with `link` = " was "; "load above 5000 N", with " ". */
+static void describe_event(const run *r, const deck_stop *s, const char *link, char *text,
+                           size_t size) {
+  const char *side = s->below ? "below" : "above", *unit_name;
+  if (s->of_peak) {
+    snprintf(text, size, "%s%s%s %.4g %% of its peak", s->monitor, link, side, 100 * s->level);
+    return;
+  }
+  simulation_series(r->simulation, deck_find_monitor(r->deck, s->monitor), &unit_name, NULL);
+  const bool pure = unit_is_pure(unit_name);
+  snprintf(text, size, "%s%s%s %.6g%s%s", s->monitor, link, side, s->level, pure ? "" : " ",
+           pure ? "" : unit_name);
 }
 
 /* "ended early at t = 25.9 ms: load was below 5 % of its peak". */
@@ -131,8 +136,22 @@ void print_stop(const run *r) {
   const deck_stop *s = simulation_stopped_by(r->simulation);
   if (!s) return;
   char text[MOMENT_TEXT], why[256];
-  describe_stop(s, why, sizeof why);
+  describe_event(r, s, " was ", why, sizeof why);
   printf("  ended early at %s: %s\n", moment(r, simulation_time(r->simulation), text), why);
+}
+
+void print_frames(const run *r) {
+  for (int k = 0; k < r->deck->frame_count; k++) {
+    const deck_frame *f = &r->deck->frames[k];
+    const double came = simulation_frame_came(r->simulation, k);
+    char text[MOMENT_TEXT], why[256];
+    if (f->at_count > 0) continue;
+    describe_event(r, &f->event, came < 0 ? " " : " was ", why, sizeof why);
+    if (came < 0)
+      printf("  no frame for %s: it never was\n", why);
+    else
+      printf("  frame at %s: %s\n", moment(r, came, text), why);
+  }
 }
 
 void describe_end(const run *r, const run_end *end, char *text, size_t size) {
@@ -143,7 +162,7 @@ void describe_end(const run *r, const run_end *end, char *text, size_t size) {
     const bad_state b = simulation_bad(r->simulation);
     snprintf(text, size, "failed at %s: %s in step %ld", now, b.what, b.step);
   } else if (end->status == STEP_STOPPED && s) {
-    describe_stop(s, why, sizeof why);
+    describe_event(r, s, " was ", why, sizeof why);
     snprintf(text, size, "stopped by &stop at %s: %s", now, why);
   } else if (end->status == STEP_OK)
     snprintf(text, size, "interrupted at %s%s", now, r->is_kept ? ": the run can be resumed" : "");

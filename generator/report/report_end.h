@@ -11,6 +11,8 @@ void conclude(const run *r, double seconds, long steps);
 void tell_result(const run *r);
 /* Which &stop ended the run early. */
 void print_stop(const run *r);
+/* Whether and when what each &frame with a monitor waits for came. */
+void print_frames(const run *r);
 /* "end of the run", "stopped by &stop: load was below 5 % of its peak": how a run ended. */
 void describe_end(const run *r, const run_end *end, char *text, size_t size);
 

@@ -312,6 +312,7 @@ static int execute(run *r) {
   }
   terminal_record_show(&said);
   tell_result(r);
+  if (!stopped_by_user) print_frames(r);
   if (status == STEP_STOPPED) print_stop(r);
   if (r->options->profile) print_profile(r, seconds, simulation_step_done(r->simulation) - first);
   if (stopped_by_user) print_stopped(r, saved);

@@ -332,6 +332,13 @@ typedef struct deck_stop {
   double after; /* s: not before; default 0 */
 } deck_stop;
 
+typedef struct deck_frame { /* taken beside those of &output */
+  deck_item item;
+  const double *at; /* [at_count] s */
+  int at_count;     /* 0: when `event` comes for the first time */
+  deck_stop event;
+} deck_frame;
+
 /* In the order of the deck's word. Without a note: a mean over the region, or at a place. */
 typedef enum monitor_kind {
   MONITOR_REACTION,         /* N: force of a support or drive on the body; on it with scale = -1 */
@@ -500,6 +507,7 @@ typedef struct deck_file { /* a table that a load was read from */
   LIST(initial_displacement)                                                                       \
   LIST(monitor)                                                                                    \
   LIST(stop)                                                                                       \
+  LIST(frame)                                                                                      \
   ONE(output)                                                                                      \
   ONE(checkpoint)                                                                                  \
   ONE(study)

@@ -574,34 +574,51 @@ static const char *unit_of(const deck_reader *r, const deck_monitor *m) {
 
 /* --- stops ------------------------------------------------------------------------------------ */
 
+/* Of a group: what is so when a monitor's value is below or above a level. */
+#define EVENT_KEYS(event, what)                                                                    \
+  {.name = "below",                                                                                \
+   .type = DECK_LATER,                                                                             \
+   .unit = "as the monitor",                                                                       \
+   DECK_NOT_KEPT,                                                                                  \
+   .doc = what " when its absolute value is less"},                                                \
+      {.name = "above",                                                                            \
+       .type = DECK_LATER,                                                                         \
+       .unit = "as the monitor",                                                                   \
+       DECK_NOT_KEPT,                                                                              \
+       .doc = what " when its absolute value is more"},                                            \
+      {.name = "of",                                                                               \
+       .type = DECK_WORD,                                                                          \
+       .choices = "peak",                                                                          \
+       DECK_NOT_KEPT,                                                                              \
+       .doc = "`below` is a fraction of the largest absolute value so far"},                       \
+  {                                                                                                \
+    .name = "after", .type = DECK_REAL, .unit = "s", .bound = BOUND_NOT_NEGATIVE, .fallback = "0", \
+    event, .doc = "not before this time"                                                           \
+  }
+
 static const deck_key_info stop_keys[] = {
     {.name = "monitor",
      .type = DECK_NAME,
      .required = true,
      DECK_AT(stop, monitor),
      .doc = "name of the monitor that decides"},
-    {.name = "below",
-     .type = DECK_LATER,
-     .unit = "as the monitor",
-     DECK_NOT_KEPT,
-     .doc = "stop when its absolute value is less"},
-    {.name = "above",
-     .type = DECK_LATER,
-     .unit = "as the monitor",
-     DECK_NOT_KEPT,
-     .doc = "stop when its absolute value is more"},
-    {.name = "of",
-     .type = DECK_WORD,
-     .choices = "peak",
-     DECK_NOT_KEPT,
-     .doc = "`below` is a fraction of the largest absolute value so far"},
-    {.name = "after",
-     .type = DECK_REAL,
+    EVENT_KEYS(DECK_AT(stop, after), "stop"),
+};
+
+static const deck_key_info frame_keys[] = {
+    {.name = "at",
+     .type = DECK_REALS,
      .unit = "s",
      .bound = BOUND_NOT_NEGATIVE,
-     .fallback = "0",
-     DECK_AT(stop, after),
-     .doc = "not before this time"},
+     DECK_AT(frame, at),
+     DECK_COUNT_AT(frame, at_count),
+     .doc = "a frame at each of these times"},
+    {.name = "monitor",
+     .type = DECK_NAME,
+     DECK_AT(frame, event.monitor),
+     .doc = "in place of `at`: name of the monitor that decides; one frame, of the first sample "
+            "when what it waits for holds"},
+    EVENT_KEYS(DECK_AT(frame, event.after), "a frame"),
 };
 
 static void check_level(deck_reader *r, const namelist_key *key, deck_stop *item,
@@ -626,8 +643,7 @@ static const namelist_key *either(deck_reader *r, const namelist_group *from, co
   return a && b ? NULL : a ? a : b;
 }
 
-static void check_stop(deck_reader *r, const namelist_group *from, void *into) {
-  deck_stop *item = into;
+static void check_event(deck_reader *r, const namelist_group *from, deck_stop *item) {
   const namelist_key *of = namelist_find(from, "of"), *key = either(r, from, "below", "above");
   deck_warn_late(r, &item->item, "after", item->after);
   const bool found = deck_monitor_known(r, deck_where(&item->item, "monitor"), item->monitor);
@@ -643,5 +659,44 @@ static void check_stop(deck_reader *r, const namelist_group *from, void *into) {
   if (!m->item.faulty) check_level(r, key, item, of ? "1" : unit_of(r, m));
 }
 
+static void check_stop(deck_reader *r, const namelist_group *from, void *into) {
+  check_event(r, from, into);
+}
+
 DECK_LIST(stop, .identity = "monitor", .check = check_stop,
           .doc = "Ends the run early, at a sample. Give `below` or `above`.");
+
+/* --- frames ----------------------------------------------------------------------------------- */
+
+static void check_times(deck_reader *r, const namelist_group *from, const deck_frame *item) {
+  static const char *const others[] = {"below", "above", "of", "after"};
+  const double end = r->k->simulation.end_time;
+  const namelist_key *at = namelist_find(from, "at");
+  for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
+    const namelist_key *key = namelist_find(from, others[k]);
+    if (!key) continue;
+    diag_report(r->d, DIAG_CONFLICT, key->name_where, "`%s` goes with `monitor`, not with `at`",
+                others[k]);
+    diag_hint(r->d, "write a `&frame` of its own for what a monitor decides");
+  }
+  for (int k = 0; k < item->at_count && k < at->value_count; k++) {
+    if (end <= 0 || item->at[k] <= end) continue;
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, at->values[k].where,
+                "a frame at %g s would be after the end of the run, %g s", item->at[k], end);
+    diag_hint(r->d, "the state at the end of a run is stored in any case");
+  }
+}
+
+static void check_frame(deck_reader *r, const namelist_group *from, void *into) {
+  deck_frame *item = into;
+  item->event.item = item->item;
+  if (!either(r, from, "at", "monitor")) return;
+  if (item->event.monitor)
+    check_event(r, from, &item->event);
+  else
+    check_times(r, from, item);
+}
+
+DECK_LIST(frame, .identity = "monitor", .check = check_frame,
+          .doc = "Stores a frame beside those of `&output`: at given times, or once, at the first "
+                 "sample when a monitor says so. Give `at`, or `monitor` with `below` or `above`.");

@@ -143,7 +143,8 @@ static const deck_key_info output_keys[] = {
      .fallback = "20",
      .most = 100000,
      DECK_AT(output, frames),
-     .doc = "states stored after the initial one, which is frame 0; evenly spaced"},
+     .doc = "states stored after the initial one, which is frame 0; evenly spaced; `&frame` adds "
+            "others"},
     {.name = "sample",
      .type = DECK_REAL,
      .unit = "s",

@@ -916,36 +916,3 @@ bool frames_check(const deck_output *o, const run_body *bodies, int bodies_count
   free(names);
   return good;
 }
-
-/* --- when ------------------------------------------------------------------------------------- */
-
-/* Position at which a frame is due; the first is that of the undeformed body. */
-static int64_t position_of(const frame_set *f, int64_t frame) {
-  const int64_t end = run_clock_end(f->clock), count = f->asked->frames;
-  return (int64_t)llround((double)frame * (double)end / (double)count);
-}
-
-/* The first frame after the present position, from `frame` on. */
-static int64_t frame_after(const frame_set *f, int64_t frame) {
-  const int64_t here = run_clock_position(f->clock), count = f->asked->frames;
-  while (count > 0 && frame <= count && position_of(f, frame) <= here)
-    frame++;
-  return frame;
-}
-
-int64_t frames_next(const frame_set *f) {
-  const int64_t count = f->asked->frames, frame = frame_after(f, f->clock->at.next_frame);
-  return count > 0 && frame <= count ? position_of(f, frame) : INT64_MAX;
-}
-
-bool frames_due(const frame_set *f) {
-  const run_progress *at = &f->clock->at;
-  if (f->asked->frames <= 0 || at->last_frame_step == at->step) return false;
-  if (at->status != STEP_OK) return true; /* the last state is always worth a frame */
-  return frame_after(f, at->next_frame) > at->next_frame;
-}
-
-void frames_taken(const frame_set *f, run_progress *at) {
-  at->last_frame_step = at->step;
-  at->next_frame = frame_after(f, at->next_frame);
-}

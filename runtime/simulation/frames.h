@@ -1,4 +1,4 @@
-/* What is stored in frames, when, and its values in the order of results: particles of all bodies,
+/* What is stored in frames, and its values in the order of results: particles of all bodies,
    body by body, bonds of each for themselves, cracks across the lines of monitors. A field of
    particles that a body does not have is NaN there, a damage 0. */
 #ifndef PERILAT_RUNTIME_FRAMES_H
@@ -27,12 +27,5 @@ void frames_free(frame_set *f);
 int frames_fields(const frame_set *f, const frame_field **fields);
 /* Values of a field in the state observed. */
 void frames_values(const frame_set *f, int field, double *values);
-
-/* Position of the first frame after the present one; INT64_MAX without. */
-int64_t frames_next(const frame_set *f);
-/* A frame's time has been reached, and it is not taken yet. */
-bool frames_due(const frame_set *f);
-/* That after a frame was taken at the present step: which one is next. */
-void frames_taken(const frame_set *f, run_progress *at);
 
 #endif

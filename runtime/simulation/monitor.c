@@ -95,7 +95,7 @@ void monitors_sample(monitors *all, long step, double time, double *values) {
   }
 }
 
-static bool applies(const monitors *all, const deck_stop *stop, double time, const double *values) {
+bool monitors_meet(const monitors *all, const deck_stop *stop, double time, const double *values) {
   const int i = deck_find_monitor(all->deck, stop->monitor);
   if (i < 0 || time < stop->after) return false;
   const double peak = fabs(all->items[i].state.peak), value = fabs(values[i]);
@@ -106,6 +106,6 @@ static bool applies(const monitors *all, const deck_stop *stop, double time, con
 
 int monitors_stop(const monitors *all, double time, const double *values) {
   for (int i = 0; i < all->deck->stop_count; i++)
-    if (applies(all, &all->deck->stops[i], time, values)) return i;
+    if (monitors_meet(all, &all->deck->stops[i], time, values)) return i;
   return -1;
 }

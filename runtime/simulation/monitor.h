@@ -84,6 +84,8 @@ bool monitors_due(const monitors *m, long step);
 void monitors_look(monitors *m, long step, long position);
 /* Values of all monitors in the state observed; remembers peaks. */
 void monitors_sample(monitors *m, long step, double time, double *values);
+/* Whether it applies to values just sampled. */
+bool monitors_meet(const monitors *m, const deck_stop *event, double time, const double *values);
 /* Which &stop of the deck is the first that applies to values just sampled; -1: none. */
 int monitors_stop(const monitors *m, double time, const double *values);
 

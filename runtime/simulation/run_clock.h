@@ -26,6 +26,7 @@ typedef struct run_progress { /* first part of a checkpoint: the sizes of others
   int64_t samples;            /* taken */
   int64_t next_sample;        /* in multiples of the interval */
   int64_t next_frame, last_frame_step;
+  int64_t event;     /* of a &frame: it has come, its frame is not taken */
   int64_t stop;      /* which &stop has ended the run; -1: none */
   frame_mark frames; /* of the caller */
 } run_progress;

@@ -254,6 +254,7 @@ static bool open_monitors(simulation *s, diagnostics *d) {
 
 static bool open_frames(simulation *s, diagnostics *d) {
   const frame_field *fields;
+  frame_times_open(&s->frame_times, s->deck, &s->clock);
   s->frames = frames_new(&s->deck->output, s->bodies, s->body_count, s->monitors, &s->clock);
   const int count = frames_fields(s->frames, &fields);
   return fields_fit_result(s->deck, s->bodies, fields, count, d);
@@ -321,6 +322,7 @@ void simulation_free(simulation *s) {
   if (!s) return;
   monitors_free(s->monitors);
   frames_free(s->frames);
+  frame_times_close(&s->frame_times);
   relaxation_free(s->relaxation);
   history_free(&s->history);
   bad_search_free(s->bad);
@@ -453,6 +455,10 @@ double simulation_point_mass(const simulation *s, int index, long *particles) {
   return sum;
 }
 
+double simulation_frame_came(const simulation *s, int frame) {
+  return s->frame_times.came[frame];
+}
+
 const deck_stop *simulation_stopped_by(const simulation *s) {
   return s->clock.at.stop >= 0 ? &s->deck->stops[s->clock.at.stop] : NULL;
 }
@@ -541,11 +547,11 @@ void simulation_frame_values(simulation *s, int field, double *values) {
 }
 
 bool simulation_frame_due(const simulation *s) {
-  return frames_due(s->frames);
+  return frame_times_due(&s->frame_times);
 }
 
 void simulation_frame_taken(simulation *s) {
-  frames_taken(s->frames, &s->clock.at);
+  frame_times_taken(&s->frame_times, &s->clock.at);
 }
 
 double simulation_monitor_peak(const simulation *s, int index, double *time) {

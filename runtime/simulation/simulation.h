@@ -105,6 +105,9 @@ double simulation_loaded_length(const simulation *s, int force, long *particles)
 /* kg: the deck's point mass of that number in all, and on how many particles. */
 double simulation_point_mass(const simulation *s, int index, long *particles);
 
+/* s: when what the deck's &frame of that number waits for came; negative: it has not. */
+double simulation_frame_came(const simulation *s, int frame);
+
 /* The &stop of the deck that ended the run (STEP_STOPPED), or NULL. */
 const deck_stop *simulation_stopped_by(const simulation *s);
 

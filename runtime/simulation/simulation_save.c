@@ -126,6 +126,8 @@ static part_list parts_of(const simulation *s, run_progress *head) {
   if (s->relaxation) add_relaxation(&l, s->relaxation);
   for (int m = 0; m < s->monitors->count; m++)
     add_part(&l, s->deck->monitors[m].name, &s->monitors->items[m].state, sizeof(monitor_state));
+  if (s->deck->frame_count > 0)
+    add_part(&l, "events", s->frame_times.came, (size_t)s->deck->frame_count * sizeof(double));
   add_part(&l, "rings", s->monitors->ring_memory, (size_t)s->monitors->ring_size * sizeof(double));
   add_part(&l, "time", s->history.time, samples);
   for (int k = 0; k < s->history.series_count; k++)
@@ -146,17 +148,17 @@ bool simulation_save(const simulation *s, const char *path, const char *fingerpr
 /* Numbers that a run can have reached: array sizes and loops rely on them. Every sample takes at
    least one multiple of the interval, the one at the end perhaps none. */
 static bool is_reachable(const simulation *s, const run_progress *at) {
-  const int64_t frames = s->deck->output.frames > 0 ? s->deck->output.frames : 0;
   if (at->begun != 0 && at->begun != 1) return false;
   if (at->status < STEP_OK || at->status > STEP_BAD) return false;
   if (at->stop < -1 || at->stop >= s->deck->stop_count) return false;
+  if (at->event != 0 && at->event != 1) return false;
   if (at->step < 0 || at->step > s->clock.step_count || (!at->begun && at->step > 0)) return false;
   if (at->next_sample < 0 || at->next_sample > s->history.capacity) return false;
   if (at->samples < (at->step > 0) || at->samples > at->next_sample + 1) return false;
   if (at->samples > s->history.capacity - (at->step < s->clock.step_count)) return false;
   if (s->relaxation && at->samples > run_clock_end(&s->clock) + 1) return false;
-  return at->next_frame >= 0 && at->next_frame <= frames + 1 && at->last_frame_step >= -1 &&
-         at->last_frame_step <= at->step && at->frames.count >= 0;
+  return at->next_frame >= 0 && at->next_frame <= s->frame_times.count &&
+         at->last_frame_step >= -1 && at->last_frame_step <= at->step && at->frames.count >= 0;
 }
 
 /* Places that the set-up chose: they index arrays, and no file may move them. */

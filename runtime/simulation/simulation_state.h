@@ -8,6 +8,7 @@
 #include "runtime/parts/run_contact.h"
 #include "runtime/parts/run_link.h"
 #include "runtime/parts/step_choice.h"
+#include "runtime/simulation/frame_times.h"
 #include "runtime/simulation/frames.h"
 #include "runtime/simulation/history.h"
 #include "runtime/simulation/monitor.h"
@@ -41,6 +42,7 @@ struct simulation {
   run_clock clock;
   history history;
   frame_set *frames;
+  frame_times frame_times;
   bad_search *bad;
   /* The time loop's: */
   int step_stages;       /* of a step: as many as the body with the most has */

@@ -99,7 +99,10 @@ static void take_sample(simulation *s) {
   if (s->deck->output.energy) sample_energies(s);
   history_add(&s->history, at->samples++, time);
   at->next_sample = s->relaxation ? at->samples : next_sample(s);
-  if (at->status != STEP_OK) s->go_on = false;
+  if (at->status == STEP_BAD ||
+      frame_times_look(&s->frame_times, s->monitors, time, s->history.sampled, at) ||
+      at->status != STEP_OK)
+    s->go_on = false;
 }
 
 static void record_sample(simulation *s) {
@@ -204,7 +207,7 @@ static void end_increment(simulation *s) {
     s->clock.at.status = s->clock.at.status == STEP_OK ? STEP_END : s->clock.at.status;
   else
     relaxation_next(s->relaxation, s->clock.at.step);
-  if (s->clock.at.status != STEP_OK || frames_due(s->frames)) s->go_on = false;
+  if (s->clock.at.status != STEP_OK || frame_times_due(&s->frame_times)) s->go_on = false;
 }
 
 static void look_at_loads(simulation *s) {
@@ -324,7 +327,7 @@ static int64_t next_stop(const simulation *s, long steps) {
   const int64_t step = s->clock.at.step, end = s->clock.step_count;
   const int64_t until = steps < end - step ? step + steps : end;
   if (s->relaxation) return until;
-  const int64_t frame = frames_next(s->frames);
+  const int64_t frame = frame_times_next(&s->frame_times);
   return frame < until ? frame : until;
 }
 
@@ -401,7 +404,7 @@ static void stand_on(simulation *s) {
   bool more = s->clock.at.status == STEP_OK && !(s->interrupted && *s->interrupted);
   while (more) {
     stand(s);
-    more = s->clock.at.status == STEP_OK && !frames_due(s->frames) &&
+    more = s->clock.at.status == STEP_OK && !frame_times_due(&s->frame_times) &&
            !(s->interrupted && *s->interrupted);
   }
 }
@@ -414,9 +417,11 @@ step_status time_loop_run(simulation *s, long steps, const volatile sig_atomic_t
   const double begun = s->profile ? monotonic_seconds() : 0;
   begin(s);
   s->observe = s->clock.at.samples == 0;
-  if (s->relaxation && s->relaxation->deck->solved) s->go_on = false;
+  const bool solved = s->relaxation && s->relaxation->deck->solved;
+  const int64_t event = s->clock.at.event;
+  if (solved) s->go_on = false;
   run_team(s);
-  if (s->relaxation && s->relaxation->deck->solved) stand_on(s);
+  if (solved && s->clock.at.event == event) stand_on(s);
   if (s->profile) {
     s->profile->elapsed += monotonic_seconds() - begun;
     profile_sum(s->profile, s->bodies, s->body_count, s->blocks);

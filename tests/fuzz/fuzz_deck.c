@@ -53,6 +53,8 @@ static void check_deck(const deck *k) {
   }
   for (int m = 0; m < k->stop_count; m++)
     MUST(deck_find_monitor(k, k->stops[m].monitor) >= 0);
+  for (int m = 0; m < k->frame_count; m++)
+    MUST(k->frames[m].at_count > 0 || deck_find_monitor(k, k->frames[m].event.monitor) >= 0);
 }
 
 static bool keep(const char *group, const char *key) {

@@ -42,7 +42,33 @@ static void quasi_static_runs_count_increments(void **state) {
          "8 of them without balance after 20 steps\n");
   write_text(w, "stop.nml", quiet);
   assert_int_equal(shell(w, "echo \"&stop monitor = 'moved' above = 0.4e-6 /\" >> stop.nml"), 0);
-  expect(w, "run stop.nml", 0, "ended early at increment 4 of 8: moved was above 4e-07\n");
+  expect(w, "run stop.nml", 0, "ended early at increment 4 of 8: moved was above 4e-07 m\n");
+}
+
+/* Frames are at increments 3, where the beam has moved 0.375 um, 6 and 8, the end. */
+static void runs_say_whether_frames_came(void **state) {
+  workplace *w = *state;
+  write_text(w, "framed.nml", quiet);
+  assert_int_equal(shell(w, "printf \"&frame monitor = 'moved' above = '0.3 um' /\n"
+                            "&frame monitor = 'moved' above = '2 um' /\n"
+                            "&frame monitor = 'moved' below = 0.5 of = 'peak' /\n"
+                            "&frame at = 0.75 /\n\" >> framed.nml"),
+                   0);
+  expect(w, "run framed.nml --set output.frames=0", 0, "written    quiet.h5 (3 frames)");
+  assert_non_null(strstr(w->said, "  frame at increment 3 of 8: moved was above 3e-07 m\n"
+                                  "  no frame for moved above 2e-06 m: it never was\n"
+                                  "  no frame for moved below 50 % of its peak: it never was\n"));
+  assert_null(strstr(w->said, "0.75"));
+  char error[1000];
+  long count;
+  result_file *f = result_read(in_workplace(w, "quiet.h5"), error, sizeof error);
+  if (!f) fail_msg("%s", error);
+  double *times = result_read_frame_times(f, &count);
+  assert_int_equal(count, 3);
+  for (int k = 0; k < 3; k++)
+    assert_true(fabs(8 * times[k] - (const double[]){3, 6, 8}[k]) < 1e-12);
+  free(times);
+  result_read_close(f);
 }
 
 static void dynamic_runs_have_times(void **state) {
@@ -90,7 +116,7 @@ static void results_tell_how_the_run_ended(void **state) {
       shell(w, "(cat beam.nml; echo \"&stop monitor = 'load' above = 1000 /\") > s.nml"), 0);
   expect(w, "run s.nml --threads 1", 0, "ended early");
   expect_ending(w, "beam.h5", "stopped by &stop at t = 0.", 0);
-  expect(w, "info beam.h5", 0, " ms: load was above 1000 (status 0); ");
+  expect(w, "info beam.h5", 0, " ms: load was above 1000 N (status 0); ");
   expect(w, "run beam.nml --threads 1 --set \"drive.velocity=-1e5 m/s\" --set drive.rise=", 2,
          "error: ");
   expect_ending(w, "beam.h5", "failed at t = ", 2);
@@ -331,6 +357,7 @@ int main(void) {
 #define ONE(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
   const struct CMUnitTest tests[] = {
       ONE(quasi_static_runs_count_increments),
+      ONE(runs_say_whether_frames_came),
       ONE(dynamic_runs_have_times),
       ONE(progress_is_what_is_done),
       ONE(results_tell_how_the_run_ended),

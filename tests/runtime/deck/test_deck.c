@@ -69,6 +69,8 @@ static const char wall[] =
     "&monitor name = 'n' kind = 'damaged' above = 0.3 scale = -1 /\n"
     "&monitor name = 'turn' kind = 'velocity' region = 'it''s' component = 'rotation' /\n"
     "&stop monitor = 'turn' above = '2 rad/s' after = '0.5 s' /\n"
+    "&frame at = '1 ms', 2, 0 /\n"
+    "&frame monitor = 'turn' below = '20 %' of = 'peak' after = '0.25 s' /\n"
     "&output sample = '1 ms' energy = F fields = 'force' /\n"
     "&checkpoint interval = '5 min' /\n";
 
@@ -210,6 +212,13 @@ static void every_kind_of_value(void **state) {
   assert_true(isinf(k->dampings[0].until));
   assert_int_equal(k->monitors[0].kind, MONITOR_DAMAGED);
   assert_true(k->stops[0].level == 2 && !k->stops[0].below && k->stops[0].after == 0.5);
+  assert_true(k->frames[0].at_count == 3 && !k->frames[0].event.monitor);
+  near(k->frames[0].at[0], 1e-3);
+  assert_true(k->frames[0].at[1] == 2 && k->frames[0].at[2] == 0);
+  assert_true(k->frames[1].at_count == 0 && k->frames[1].event.below);
+  assert_true(k->frames[1].event.of_peak && k->frames[1].event.after == 0.25);
+  near(k->frames[1].event.level, 0.2);
+  assert_string_equal(k->frames[1].event.monitor, "turn");
   assert_false(k->output.energy);
   near(k->checkpoint.interval, 300);
   end(&r);

@@ -30,6 +30,7 @@ static void each_group_stands_in_its_place(void **state) {
   assert_ptr_equal(deck_groups[DECK_GROUP_body], &deck_group_body);
   assert_ptr_equal(deck_groups[DECK_GROUP_drive], &deck_group_drive);
   assert_ptr_equal(deck_groups[DECK_GROUP_stop], &deck_group_stop);
+  assert_ptr_equal(deck_groups[DECK_GROUP_frame], &deck_group_frame);
   assert_int_equal(deck_group_names(names), DECK_GROUP_COUNT);
   for (int g = 0; g < DECK_GROUP_COUNT; g++) {
     const deck_group_info *info = deck_groups[g];
