@@ -310,6 +310,83 @@ static ir_node path_energy(planner *p, const ir_node *stress) {
   return sum;
 }
 
+/* Whether a direction stands for an axis, and no shear. */
+static bool is_normal(const planner *p, int strain) {
+  return point_component(p->plan->dimensions, strain) < TENSOR_XY;
+}
+
+/* D of a stress D:(strain - what states have moved it by), where D is the same for all states, and
+   without coupling of normal components and shears, or of shears. */
+static bool find_stiffness(planner *p, const ir_node *stress,
+                           ir_node D[MOST_STRAINS][MOST_STRAINS]) {
+  ir *g = p->graph;
+  for (int k = 0; k < p->strains; k++)
+    for (int m = 0; m < p->strains; m++) {
+      D[k][m] = ir_derivative(g, stress[k], p->strain[m]);
+      const bool coupled = k == m || (is_normal(p, k) && is_normal(p, m));
+      if (ir_place(g, D[k][m]) > ON_BODY || (!coupled && !ir_is_number(g, D[k][m], 0)))
+        return false;
+    }
+  return true;
+}
+
+/* D_km D_ln - D_kn D_lm */
+static ir_node minor(ir *g, ir_node D[MOST_STRAINS][MOST_STRAINS], int k, int l, int m, int n) {
+  const ir_node down = ir_mul(g, D[k][m], D[l][n]), up = ir_mul(g, D[k][n], D[l][m]);
+  return ir_sub(g, down, up);
+}
+
+/* Normal strains that the normal stresses take, by cofactors: two of them or three. */
+static void elastic_strain(planner *p, ir_node D[MOST_STRAINS][MOST_STRAINS], const ir_node *stress,
+                           ir_node *strain) {
+  ir *g = p->graph;
+  const int count = p->plan->dimensions;
+  ir_node cofactor[3][3], whole = IR_NONE;
+  for (int k = 0; k < count; k++)
+    for (int m = 0; m < count; m++) {
+      const int k1 = (k + 1) % count, k2 = (k + 2) % count, m1 = (m + 1) % count,
+                m2 = (m + 2) % count;
+      cofactor[k][m] = count == 3         ? minor(g, D, k1, k2, m1, m2)
+                       : (k + m) % 2 == 0 ? D[k1][m1]
+                                          : ir_neg(g, D[k1][m1]);
+    }
+  for (int m = 0; m < count; m++) {
+    const ir_node term = ir_mul(g, D[0][m], cofactor[0][m]);
+    whole = whole == IR_NONE ? term : ir_add(g, whole, term);
+  }
+  for (int m = 0; m < count; m++) {
+    strain[m] = IR_NONE;
+    for (int k = 0; k < count; k++) {
+      const ir_node part = ir_div(g, cofactor[k][m], whole), term = ir_mul(g, part, stress[k]);
+      strain[m] = strain[m] == IR_NONE ? term : ir_add(g, strain[m], term);
+    }
+  }
+}
+
+/* Of a law whose states move the strain without stress: the work from there; IR_NONE where it is
+   not known. In plane strain the point without a stress in the plane counts. */
+static ir_node energy_from_rest(planner *p, const ir_node *stress) {
+  ir *g = p->graph;
+  ir_node D[MOST_STRAINS][MOST_STRAINS], elastic[MOST_STRAINS];
+  if (!find_stiffness(p, stress, D)) return IR_NONE;
+  elastic_strain(p, D, stress, elastic);
+  for (int k = p->plan->dimensions; k < p->strains; k++)
+    elastic[k] = ir_div(g, stress[k], D[k][k]);
+  return half(g, contract(p, stress, elastic));
+}
+
+/* Whether there is a stress without strain. */
+static bool states_move(planner *p, const ir_node *stress) {
+  bool found = false;
+  for (int k = 0; k < p->strains; k++) {
+    ir_node rest;
+    rewrite_zero(p->graph, &stress[k], 1, p->strain, p->strains, &rest);
+    found = found || !ir_is_number(p->graph, rest, 0);
+  }
+  return found;
+}
+
+/* IR_NONE: not known. */
 static ir_node stored_energy(planner *p) {
   ir *g = p->graph;
   if (p->frozen.W != IR_NONE) {
@@ -319,6 +396,7 @@ static ir_node stored_energy(planner *p) {
   }
   ir_node stress[MOST_STRAINS];
   frozen_stress(p, true, stress);
+  if (states_move(p, stress)) return energy_from_rest(p, stress);
   for (int k = 0; k < p->strains; k++) {
     const double degree = rewrite_degree(g, stress[k], p->strain, p->strains);
     if (degree != 1 && degree != REWRITE_ZERO) return path_energy(p, stress);
@@ -476,6 +554,16 @@ static void point_at_inputs(planner *p) {
   p->z_rate = point_input_node(g, POINT_STRAIN_RATE + TENSOR_ZZ);
 }
 
+/* Without W: false. */
+static bool tell_no_energy(const law *l, diagnostics *d) {
+  diag_report(d, DIAG_STORED_ENERGY, l->tree->name_where,
+              "what this law stores is not known: its states move the strain at which it has no "
+              "stress, and its stiffness depends on them or on the strain");
+  diag_hint(d, "give `energy W`, such as that of the elastic strain, "
+               "W = (sigma:(strain - eps_p))/2, and what hardening locks in");
+  return false;
+}
+
 bool plan_points(kernel_plan *plan, diagnostics *d) {
   planner p = {.plan = plan, .graph = plan->graph, .z = IR_NONE, .z_rate = IR_NONE};
   const law_variation *v = &plan->variation;
@@ -494,7 +582,10 @@ bool plan_points(kernel_plan *plan, diagnostics *d) {
   plan->stores = plan->law->nonconservative == NULL;
   plan->reads_rates = reads_rates(&p);
   plan->reads_size = law_reads(plan->law, QUANTITY_CELL_SIZE);
-  seen_points seen = {stored_energy(&p), rate_power(&p), still_power(&p), stress};
+  const ir_node stored = stored_energy(&p);
+  if (stored == IR_NONE && plan->stores) return tell_no_energy(plan->law, d);
+  const ir_node known = stored == IR_NONE ? ir_constant(plan->graph, 0) : stored;
+  seen_points seen = {known, rate_power(&p), still_power(&p), stress};
   improve(&p, &seen);
   static void (*const program[])(planner *, const seen_points *,
                                  segment *) = {[PROGRAM_STEP] = plan_step,

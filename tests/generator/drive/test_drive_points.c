@@ -348,6 +348,35 @@ static void results_can_be_read(void **state) {
   expect(w, "check path.nml", 0, "a path that drives one point of `elastic`");
 }
 
+/* Without `energy W` the stored energy of a law whose plastic strain moves the point without stress
+   is the work from there; where nobody knows it, the law must say. */
+static void stored_energy_without_a_law_of_it(void **state) {
+  workplace *w = *state;
+#define PERFECT(damage, stress)                                                                    \
+  "model perfect\n  law continuum\n  for plane_stress, plane_strain, space\n"                      \
+  "  parameter E = 200 [GPa] in (0, inf)\n  parameter nu = 0.3 in [0, 0.5)\n"                      \
+  "  parameter f_y = 250 [MPa] in (0, inf)\n  parameter rho = 7850 [kg/m^3] in (0, inf)\n"         \
+  "  state eps_p on point = deviator 0\n" damage "  trial = E/(1 + nu)*dev(strain - eps_p)\n"      \
+  "  q = von_mises(trial)\n  slip = (q - f_y)*(1 + nu)/E/max(q, 1 [Pa])\n"                         \
+  "  flow eps_p by slip*trial when q >= f_y\n"                                                     \
+  "  stress sigma = " stress "hooke(strain - eps_p, E, nu)\nend model\n"
+  write_text(w, "perfect.plm", PERFECT("", ""));
+  write_text(w, "path.nml",
+             "&simulation steps = 100 /\n&point test = 'uniaxial stress' setting = 'space' /\n"
+             "&material model = 'perfect.plm' /\n"
+             "&path quantity = 'strain_xx' times = 0, '1 s', '2 s' values = 0, 0.01, 0.00875 /\n"
+             "&expect quantity = 'stress_xx' at_time = '1 s' formula = 'f_y' tolerance = 1e-9 /\n"
+             "&expect quantity = 'stored' at_time = '1 s' formula = 'f_y**2/(2*E)' "
+             "tolerance = 1e-9 /\n"
+             "&expect quantity = 'stored' at_time = '2 s' value = 0 absolute = '1e-3 J/m^3' /\n");
+  expect(w, "drive path.nml", 0, "3 of 3");
+  expect(w, "drive path.nml --compiled", 0, "3 of 3");
+  expect(w, "drive path.nml --set point.setting=plane_stress", 0, "3 of 3");
+  write_text(w, "perfect.plm",
+             PERFECT("  damage D on point\n  D = 1 - exp(-(eps_p:eps_p))\n", "(1 - D)*"));
+  expect(w, "check perfect.plm", 1, "what this law stores is not known");
+}
+
 int main(void) {
 #define T(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
   const struct CMUnitTest tests[] = {
@@ -364,6 +393,7 @@ int main(void) {
       T(bad_paths_are_explained),
       T(a_stress_that_is_not_borne),
       T(results_can_be_read),
+      T(stored_energy_without_a_law_of_it),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
