@@ -375,19 +375,28 @@ static ir_node energy_from_rest(planner *p, const ir_node *stress) {
   return half(g, contract(p, stress, elastic));
 }
 
-/* Whether there is a stress without strain. */
-static bool states_move(planner *p, const ir_node *stress) {
-  bool found = false;
+/* Whether there is a stress without strain, the one along z included: asked before the plane is
+   settled. */
+static bool states_move(planner *p) {
+  ir *g = p->graph;
+  ir_node still[2 * MOST_STRAINS + 2];
+  int count = 0;
   for (int k = 0; k < p->strains; k++) {
-    ir_node rest;
-    rewrite_zero(p->graph, &stress[k], 1, p->strain, p->strains, &rest);
-    found = found || !ir_is_number(p->graph, rest, 0);
+    still[count++] = p->strain[k];
+    still[count++] = p->rate[k];
   }
-  return found;
+  if (p->z != IR_NONE) still[count++] = p->z;
+  if (p->z_rate != IR_NONE) still[count++] = p->z_rate;
+  for (int k = 0; k < p->strains; k++) {
+    ir_node rest = p->frozen.sigma[point_component(p->plan->dimensions, k)];
+    rewrite_zero(g, &rest, 1, still, count, &rest);
+    if (!ir_is_number(g, rest, 0)) return true;
+  }
+  return false;
 }
 
 /* IR_NONE: not known. */
-static ir_node stored_energy(planner *p) {
+static ir_node stored_energy(planner *p, bool moved) {
   ir *g = p->graph;
   if (p->frozen.W != IR_NONE) {
     ir_node W;
@@ -396,7 +405,7 @@ static ir_node stored_energy(planner *p) {
   }
   ir_node stress[MOST_STRAINS];
   frozen_stress(p, true, stress);
-  if (states_move(p, stress)) return energy_from_rest(p, stress);
+  if (moved) return energy_from_rest(p, stress);
   for (int k = 0; k < p->strains; k++) {
     const double degree = rewrite_degree(g, stress[k], p->strain, p->strains);
     if (degree != 1 && degree != REWRITE_ZERO) return path_energy(p, stress);
@@ -571,6 +580,7 @@ bool plan_points(kernel_plan *plan, diagnostics *d) {
       !lower_law_varying(plan->law, plan->graph, LOWER_FROZEN, v, plan->memory, &p.frozen, d))
     return false;
   point_at_inputs(&p);
+  const bool moved = plan->law->fields.count > 0 && states_move(&p);
   const force_fields alive = stress_fields(&p),
                      stress = plan->law->failed && alive == FORCES_OF_OLD ? FORCES_OF_BOTH : alive;
   if (plan->dimensions == 3)
@@ -582,7 +592,7 @@ bool plan_points(kernel_plan *plan, diagnostics *d) {
   plan->stores = plan->law->nonconservative == NULL;
   plan->reads_rates = reads_rates(&p);
   plan->reads_size = law_reads(plan->law, QUANTITY_CELL_SIZE);
-  const ir_node stored = stored_energy(&p);
+  const ir_node stored = stored_energy(&p, moved);
   if (stored == IR_NONE && plan->stores) return tell_no_energy(plan->law, d);
   const ir_node known = stored == IR_NONE ? ir_constant(plan->graph, 0) : stored;
   seen_points seen = {known, rate_power(&p), still_power(&p), stress};

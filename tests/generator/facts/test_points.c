@@ -293,7 +293,8 @@ static void states_that_are_tensors(void **state) {
   static const char *const names[] = {"w", "e_xx", "e_yy", "e_zz", "e_xy", "e_yz", "e_xz"};
   tested_law *t = open_body("  state w on point = 1\n  state e on point = tensor 0\n"
                             "  e = e + strain/2\n  w = w + norm(e)\n"
-                            "  stress sigma = 2*mu*(strain + e)*w\n  output now = e[x,y]",
+                            "  stress sigma = 2*mu*(strain + e)*w\n"
+                            "  energy W = mu*w*((strain + e):(strain + e))\n  output now = e[x,y]",
                             "1", NULL);
   assert_int_equal(t->kernel->field_count, 7);
   for (int k = 0; k < 7; k++) {
