@@ -11,7 +11,6 @@
 #include "dsl/base/diagnostics.h"
 #include "runtime/base/symmetric_tensor.h"
 #include "runtime/deck/output_fields.h"
-#include "runtime/result/result_read.h"
 #include "runtime/result/result_sets.h"
 
 /* --- what there is ---------------------------------------------------------------------------- */
@@ -125,7 +124,9 @@ static bool a_law_declares(result_file *f, const char *name) {
   for (int k = 0; k < laws.count && !found; k++) {
     char path[512];
     snprintf(path, sizeof path, "/input/models/%.250s", laws.items[k]);
-    char *text = result_read_text(f, path);
+    const hid_t set = H5Dopen2(f->file, path, H5P_DEFAULT);
+    char *text = set >= 0 ? h5_read_text(set) : NULL;
+    if (set >= 0) H5Dclose(set);
     found = text && declares(text, name);
     free(text);
   }
