@@ -162,7 +162,7 @@ enum { MOVES, FIXED };
     "x = norm(dev(fit(stretch)))", "deviator of a tensor")                                         \
   X(J2, "J2", 1, 1, tensor_to_scalar, NO_VALUE, "J_{2}", "x = J2(virtual_work(F))",                \
     "second invariant of a stress deviator")                                                       \
-  X(VON_MISES, "von_mises", 1, 1, tensor_to_scalar, NO_VALUE, "\\operatorname{von\\_Mises}",       \
+  X(VON_MISES, "von_mises", 1, 1, tensor_to_scalar, NO_VALUE, "\\operatorname{von\\ Mises}",       \
     "x = von_mises(virtual_work(F))", "von Mises equivalent of a stress tensor")                   \
   X(PRINCIPAL_DIRECTION, "principal_direction", 2, 2, principal_direction, NO_VALUE,               \
     "\\operatorname{direction}", "x = norm(principal_direction(fit(stretch), 1))",                 \

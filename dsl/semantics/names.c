@@ -109,8 +109,23 @@ void names_end(checker *ck) {
   free(ck->entries);
 }
 
+/* "eps_p_xy", as results call a component of eps_p; what is a tensor is found later. False: it is
+   none. */
+static bool suggest_component(checker *ck, const char *name) {
+  const size_t length = strlen(name);
+  if (length < 4 || name[length - 3] != '_') return false;
+  const char *axes = name + length - 2;
+  const entry *e =
+      names_find(ck, SPACE_QUANTITIES, arena_printf(ck->memory, "%.*s", (int)length - 3, name));
+  if (!e || strspn(axes, "xyz") != 2) return false;
+  diag_hint(ck->d, "if `%s` is a tensor, its component is written `%s[%c,%c]`", e->symbol.name,
+            e->symbol.name, axes[0], axes[1]);
+  return true;
+}
+
 void names_suggest(checker *ck, name_space space, const char *name) {
   if (ck->d->count > MOST_SUGGESTIONS) return;
+  if (space == SPACE_QUANTITIES && suggest_component(ck, name)) return;
   size_t most = (size_t)ck->entry_count + FUNCTION_COUNT;
   const char **candidates = must_calloc(most, sizeof(*candidates));
   int count = 0;

@@ -76,9 +76,16 @@ void exact_ratio_say(double ratio, const char *should, FILE *out) {
   fprintf(out, "%s%s times %s", ratio < 0 ? "minus " : "", formula, should);
 }
 
+void plain_ratio_say(double ratio, const char *should, FILE *out) {
+  if (ratio_is_closed(fabs(ratio)))
+    fprintf(out, "%.4g times %s", ratio, should);
+  else
+    exact_ratio_say(ratio, should, out);
+}
+
 void rounding_say(double ratio, FILE *out) {
   if (ratio_is_rounding(ratio))
-    fputs(": is a constant rounded? write sqrt(3)/2 or pi, say, not their digits", out);
+    fputs(": is a constant rounded? write sqrt(2)/3 or pi, say, not their digits", out);
 }
 
 static const char *unit_shown(const char *unit_text) {

@@ -25,6 +25,9 @@ void difference_json(const table_difference *d, const drive_table *reference, js
 void ratio_say(double ratio, const char *should, FILE *out);
 /* The same of a ratio that holds to the last digits: it may be told as a fraction (ratio_formula). */
 void exact_ratio_say(double ratio, const char *should, FILE *out);
+/* The same without roots, pi and logarithms, which would tell the formula that is asked for: "1.155
+   times what it should be". */
+void plain_ratio_say(double ratio, const char *should, FILE *out);
 /* Behind it, of a ratio that is nearly 1: the question whether a constant is rounded. */
 void rounding_say(double ratio, FILE *out);
 /* "the force N", "the stored energy", or the name itself. */

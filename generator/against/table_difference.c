@@ -16,41 +16,49 @@ static const double worth = 1e-3;
 static const struct {
   double ratio;
   const char *words;
-} known_ratios[] = {{2, "twice"},
-                    {0.5, "half"},
-                    {3, "three times"},
-                    {1. / 3, "a third of"},
-                    {4, "four times"},
-                    {0.25, "a quarter of"},
-                    {1.5, "one and a half times"},
-                    {2. / 3, "two thirds of"},
-                    {0.86602540378443865, "sqrt(3)/2 times"},
-                    {1.1547005383792515, "2/sqrt(3) times"},
-                    {1.7320508075688773, "sqrt(3) times"},
-                    {0.57735026918962576, "1/sqrt(3) times"},
-                    {1.4142135623730951, "sqrt(2) times"},
-                    {0.70710678118654752, "1/sqrt(2) times"},
-                    {3.1415926535897932, "pi times"},
-                    {6.2831853071795865, "2 pi times"},
-                    {0.15915494309189534, "1/(2 pi) times"},
-                    {2.3025850929940457, "ln(10) times"},
-                    {0.43429448190325183, "1/ln(10) times"},
-                    {10, "ten times"},
-                    {0.1, "a tenth of"},
-                    {100, "a hundred times"},
-                    {0.01, "a hundredth of"},
-                    {1000, "a thousand times"},
-                    {1e-3, "a thousandth of"},
-                    {1e6, "a million times"},
-                    {1e-6, "a millionth of"},
-                    {0, "0 instead of"}};
+  bool closed; /* a root, pi or a logarithm stands in it */
+} known_ratios[] = {{2, "twice", false},
+                    {0.5, "half", false},
+                    {3, "three times", false},
+                    {1. / 3, "a third of", false},
+                    {4, "four times", false},
+                    {0.25, "a quarter of", false},
+                    {1.5, "one and a half times", false},
+                    {2. / 3, "two thirds of", false},
+                    {0.86602540378443865, "sqrt(3)/2 times", true},
+                    {1.1547005383792515, "2/sqrt(3) times", true},
+                    {1.7320508075688773, "sqrt(3) times", true},
+                    {0.57735026918962576, "1/sqrt(3) times", true},
+                    {1.4142135623730951, "sqrt(2) times", true},
+                    {0.70710678118654752, "1/sqrt(2) times", true},
+                    {3.1415926535897932, "pi times", true},
+                    {6.2831853071795865, "2 pi times", true},
+                    {0.15915494309189534, "1/(2 pi) times", true},
+                    {2.3025850929940457, "ln(10) times", true},
+                    {0.43429448190325183, "1/ln(10) times", true},
+                    {10, "ten times", false},
+                    {0.1, "a tenth of", false},
+                    {100, "a hundred times", false},
+                    {0.01, "a hundredth of", false},
+                    {1000, "a thousand times", false},
+                    {1e-3, "a thousandth of", false},
+                    {1e6, "a million times", false},
+                    {1e-6, "a millionth of", false},
+                    {0, "0 instead of", false}};
+
+/* Which it is, or how many there are. */
+static size_t known_ratio(double ratio) {
+  const double within = 2e-3;
+  size_t k = 0;
+  while (k < sizeof known_ratios / sizeof *known_ratios &&
+         !(fabs(ratio - known_ratios[k].ratio) <= within * known_ratios[k].ratio + 1e-9))
+    k++;
+  return k;
+}
 
 const char *ratio_words(double ratio) {
-  const double within = 2e-3;
-  for (size_t k = 0; k < sizeof known_ratios / sizeof *known_ratios; k++)
-    if (fabs(ratio - known_ratios[k].ratio) <= within * known_ratios[k].ratio + 1e-9)
-      return known_ratios[k].words;
-  return NULL;
+  const size_t k = known_ratio(ratio);
+  return k < sizeof known_ratios / sizeof *known_ratios ? known_ratios[k].words : NULL;
 }
 
 /* What a fraction may be multiplied with: over or under its line. */
@@ -104,6 +112,13 @@ bool ratio_formula(double ratio, char *text, size_t size) {
     }
   }
   return best < 1000;
+}
+
+bool ratio_is_closed(double ratio) {
+  const size_t k = known_ratio(ratio);
+  char text[64];
+  if (k < sizeof known_ratios / sizeof *known_ratios) return known_ratios[k].closed;
+  return ratio_formula(ratio, text, sizeof text) && (strstr(text, "sqrt") || strstr(text, "pi"));
 }
 
 bool ratio_is_rounding(double ratio) {

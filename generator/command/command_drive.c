@@ -358,12 +358,13 @@ static void print_verdict(const driving *r, const drive_expect *e, const drive_v
   place at = source_place(&r->sources, e->item.where.file, e->item.where.begin);
   const char *unit_text = unit_is_pure(v->unit) ? "" : v->unit;
   printf("%s  %s:%d: %s = %.9g%s%s", v->passed ? "PASS" : "FAIL", r->options->path, at.line,
-         e->quantity, v->found, *unit_text ? " " : "", unit_text);
+         e->quantity, v->found + 0.0, *unit_text ? " " : "", unit_text); /* no minus before zeros */
   if (v->passed)
-    printf(" (expected %.9g)\n", v->expected);
+    printf(" (expected %.9g)\n", v->expected + 0.0);
   else
-    printf(", expected %.9g: off by %.3g, %.3g is allowed (at %.6g s, %s %.6g)\n", v->expected,
-           fabs(v->found - v->expected), v->allowed, v->time, v->way_name, v->way);
+    printf(", expected %.9g: off by %.3g, %.3g is allowed (at %.6g s, %s %.6g)\n",
+           v->expected + 0.0, fabs(v->found - v->expected), v->allowed, v->time, v->way_name,
+           v->way);
   if (!v->passed && v->extreme && is_near(v))
     printf("      the rows beside it are at %.6g s and %.6g s; an extreme between them is found by "
            "more steps: --set simulation.steps=%d\n",

@@ -219,11 +219,19 @@ static bool print_path(result_file *f, const char *crack) {
   return points != NULL;
 }
 
+/* What moves in a run: "particles", of meshes alone "nodes". */
+static const char *what_moves(result_file *f, const result_sizes *s) {
+  result_names meshes = result_list(f, "/meshes");
+  const bool any = meshes.count > 0;
+  result_names_free(&meshes);
+  return !any ? "particles" : s->bonds > 0 ? "nodes and particles" : "nodes";
+}
+
 static bool print_result(result_file *f, const char *path) {
   result_sizes s;
   bool good = read_sizes(f, path, &s);
   if (good)
-    printf("%s: %ld particles%s, %ld bonds, %ld frames\n", path, s.particles,
+    printf("%s: %ld %s%s, %ld bonds, %ld frames\n", path, s.particles, what_moves(f, &s),
            s.dimensions == 3 ? " in space" : "", s.bonds, s.frames);
   print_ending(f);
   char *overrides = result_read_text(f, "/input/set");

@@ -188,25 +188,39 @@ static bool is_right(const exercise_item *item, double value, double expected) {
   return fabs(value - expected) <= item->tolerance * fabs(expected);
 }
 
-/* "E is 6e+10, minus twice what it should be"; "E is 0". */
-static void say_number(FILE *out, const char *what, double value, double expected, bool exact) {
+typedef void ratio_teller(double ratio, const char *should, FILE *out);
+
+/* What students can judge by themselves tells no formula; of a run nothing holds to the last
+   digits. */
+static ratio_teller *teller_of(const exercise_item *item) {
+  return item_is_public(item)     ? plain_ratio_say
+         : item->kind != ITEM_RUN ? exact_ratio_say
+                                  : ratio_say;
+}
+
+/* "E is 6e+10 Pa, minus twice what it should be"; "E is 0". */
+static void say_number(FILE *out, const char *what, double value, const char *unit_text,
+                       double expected, ratio_teller *tell) {
   const double ratio = value / expected;
+  const char *gap = *unit_text ? " " : "";
   fprintf(out, "%s is ", what);
-  if (expected != 0 && fabs(ratio) >= 1e-9) fprintf(out, "%.5g, ", value);
+  if (expected != 0 && fabs(ratio) >= 1e-9) fprintf(out, "%.5g%s%s, ", value, gap, unit_text);
   if (expected != 0)
-    (exact ? exact_ratio_say : ratio_say)(ratio, "what it should be", out);
+    tell(ratio, "what it should be", out);
   else
-    fprintf(out, "%.5g, not 0", value);
+    fprintf(out, "%.5g%s%s, not 0", value, gap, unit_text);
   rounding_say(ratio, out);
 }
 
-static char *number_words(arena *a, const char *what, double value, double expected, bool exact) {
+static char *number_words(judging *j, const exercise_item *item, const char *what, double value,
+                          double expected) {
+  const char *unit_text = item->kind == ITEM_RUN ? j->runs.unit : implied_unit(item);
   char *text;
   size_t length;
   FILE *out = must_open_text(&text, &length);
-  say_number(out, what, value, expected, exact);
+  say_number(out, what, value, unit_is_pure(unit_text) ? "" : unit_text, expected, teller_of(item));
   must_close_text(out);
-  char *words = arena_text(a, text, length);
+  char *words = arena_text(j->memory, text, length);
   free(text);
   return words;
 }
@@ -223,8 +237,7 @@ static void put_number(judging *j, int k, double value, double expected, const c
   if (isnan(value))
     record_write(j->out, RECORD_WORDS, k, NULL, why);
   else
-    record_write(j->out, RECORD_WORDS, k, NULL,
-                 number_words(j->memory, what, value, expected, item->kind != ITEM_RUN));
+    record_write(j->out, RECORD_WORDS, k, NULL, number_words(j, item, what, value, expected));
 }
 
 static void judge_implied(judging *j, int k) {

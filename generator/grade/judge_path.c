@@ -118,7 +118,7 @@ static void compare(path_outcome *out, arena *a, const path_case *c) {
 
 /* --- against what the path expects ------------------------------------------------------------ */
 
-/* Where it says more than the numbers do. */
+/* Where it says more than the numbers do. Students have the path, and are to find the formula. */
 static void say_known_ratio(double ratio, bool alike, FILE *out) {
   char formula[64];
   const bool rounding = alike && ratio_is_rounding(ratio),
@@ -126,7 +126,7 @@ static void say_known_ratio(double ratio, bool alike, FILE *out) {
                      (alike && ratio_formula(fabs(ratio), formula, sizeof formula));
   if (!known || !isfinite(ratio) || fabs(ratio) < 1e-9) return;
   fputs(rounding ? ", " : ": ", out);
-  exact_ratio_say(ratio, should, out);
+  plain_ratio_say(ratio, should, out);
   rounding_say(ratio, out);
 }
 

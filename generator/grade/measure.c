@@ -115,6 +115,21 @@ static void tangent_beside(const pl_law *kernel, const double *uniforms, const p
   free(sum);
 }
 
+const char *implied_unit(const exercise_item *item) {
+  static const struct {
+    const char *quantity, *unit;
+  } units[] = {{"E", "Pa"},
+               {"G", "Pa"},
+               {"stable_step", "s"},
+               {"omega_max", "rad/s"},
+               {"peak_stress", "Pa"},
+               {"work_of_fracture", "J/m^2"},
+               {"crack_energy", "J/m^2"}};
+  for (size_t k = 0; k < sizeof units / sizeof *units; k++)
+    if (strcmp(units[k].quantity, item->quantity) == 0) return units[k].unit;
+  return "1"; /* nu */
+}
+
 static double imply(implying *m) {
   pl_law *kernel = plan_interpreted(m->model.plan);
   if (m->beside && kernel->tangent) {
@@ -203,9 +218,10 @@ static double total_dissipated(result_file *f, char *error, size_t size) {
   return value;
 }
 
-static double of_monitor(result_file *f, const exercise_item *item, char *error, size_t size) {
+static double of_monitor(result_file *f, const exercise_item *item, char unit_text[64], char *error,
+                         size_t size) {
   long count, other;
-  double *v = series(f, item->monitor, &count, error, size);
+  double *v = result_read_series(f, item->monitor, &count, unit_text, 64, error, size);
   double *w = strcmp(item->of, "at peak") == 0 ? series(f, item->at, &other, error, size) : NULL;
   double value = NAN;
   if (v && count && strcmp(item->of, "last") == 0)
@@ -219,17 +235,19 @@ static double of_monitor(result_file *f, const exercise_item *item, char *error,
   return value;
 }
 
-static double read_result(arena *a, const exercise_item *item, int run, const char **why) {
+static double read_result(arena *a, const exercise_item *item, int run, char unit_text[64],
+                          const char **why) {
   char error[1024] = "the deck has no such monitor";
   result_file *f = result_read(arena_printf(a, result_names, run), error, sizeof error);
   if (!f) {
     *why = "the run left no result";
     return NAN;
   }
+  snprintf(unit_text, 64, "%s", strcmp(item->of, "dissipated") == 0 ? "J" : "1");
   const double value = strcmp(item->of, "imbalance") == 0 ? worst_imbalance(f, error, sizeof error)
                        : strcmp(item->of, "dissipated") == 0
                            ? total_dissipated(f, error, sizeof error)
-                           : of_monitor(f, item, error, sizeof error);
+                           : of_monitor(f, item, unit_text, error, sizeof error);
   if (isnan(value)) *why = arena_printf(a, "%s", error);
   result_read_close(f);
   return value;
@@ -287,7 +305,7 @@ double measure_run(arena *a, const exercise_item *item, const char *answer, cons
   for (int k = 0; k < more_count; k++)
     all[count++].text = more[k];
   const int run = run_of(a, item->found[0].path, all, count, made), status = made->status[run];
-  if (status == 0) return read_result(a, item, run, why);
+  if (status == 0) return read_result(a, item, run, made->unit, why);
   *why = status == INPUT_WRONG ? "the deck refuses your law" : "the run with your law failed";
   return NAN;
 }

@@ -200,14 +200,18 @@ static bool take(publishing *p, candidate *c) {
   return good;
 }
 
-/* The folders of a name, as far as they are not there. */
-static bool make_folders(const publishing *p, const char *name) {
-  for (const char *slash = name; (slash = strchr(slash, '/')); slash++) {
-    const char *folder =
-        path_in(p->memory, p->folder, arena_text(p->memory, name, (size_t)(slash - name)));
+/* The folders that a file's or folder's path goes through, as far as they are not there. */
+static bool make_folders(const publishing *p, const char *path) {
+  for (const char *slash = path + 1; (slash = strchr(slash, '/')); slash++) {
+    const char *folder = arena_text(p->memory, path, (size_t)(slash - path));
     if (mkdir(folder, 0777) != 0 && errno != EEXIST) return fail("cannot make the folder", folder);
   }
   return true;
+}
+
+static bool give(const publishing *p, const candidate *c) {
+  const char *to = path_in(p->memory, p->folder, c->name);
+  return make_folders(p, to) && copy_file(p, c->path, to);
 }
 
 /* False after a sentence; what is left out is told. */
@@ -222,8 +226,7 @@ static bool copy_files(publishing *p) {
     if (!c->taken)
       printf("left out %s: %s\n", name_shown(c->name),
              c->unfit ? c->unfit : "nothing that students get names it");
-    else if (!make_folders(p, c->name) ||
-             !copy_file(p, c->path, path_in(p->memory, p->folder, c->name)))
+    else if (!give(p, c))
       return false;
   }
   return true;
@@ -280,6 +283,7 @@ static bool write_exercise(const publishing *p) {
 
 static bool make_folder(const publishing *p) {
   const char **names;
+  if (*p->folder && !make_folders(p, p->folder)) return false;
   if (mkdir(p->folder, 0777) == 0) return true;
   if (errno != EEXIST || !is_folder(p->folder)) return fail("cannot make the folder", p->folder);
   if (entries_of(p->memory, p->folder, &names) == 0) return true;
@@ -287,9 +291,19 @@ static bool make_folder(const publishing *p) {
   return false;
 }
 
+/* The whole path of the folder, or of the nearest one above it that is there; to be freed. */
+static char *nearest_there(const publishing *p, const char *folder) {
+  const char *rest = folder;
+  for (char *at; *rest; rest = arena_text(p->memory, rest, (size_t)(strrchr(rest, '/') - rest))) {
+    if ((at = realpath(rest, NULL))) return at;
+    if (!strchr(rest, '/')) break;
+  }
+  return realpath(*folder == '/' ? "/" : ".", NULL);
+}
+
 /* Would it be found in itself? */
-static bool lies_inside(const char *folder, const char *of) {
-  char *whole = realpath(of, NULL), *at = realpath(folder, NULL);
+static bool lies_inside(const publishing *p, const char *folder, const char *of) {
+  char *whole = realpath(of, NULL), *at = nearest_there(p, folder);
   const size_t length = whole ? strlen(whole) : 0;
   const bool inside =
       whole && at && strncmp(at, whole, length) == 0 && (at[length] == '/' || at[length] == 0);
@@ -300,14 +314,10 @@ static bool lies_inside(const char *folder, const char *of) {
 
 bool publish(const exercise *e, const source_set *sources, const char *folder) {
   publishing p = {.e = e, .sources = sources, .memory = arena_new(), .folder = folder};
-  bool good = make_folder(&p);
-  if (good && lies_inside(folder, e->folder)) {
-    say_error("`%s` lies in the exercise itself", folder);
-    rmdir(folder);
-    good = false;
-  }
-  good = good && learn_secrets(&p, path_in(p.memory, e->folder, kept), 0) && copy_files(&p) &&
-         write_exercise(&p);
+  bool good = !lies_inside(&p, folder, e->folder) || is_folder(folder);
+  if (!good) say_error("`%s` lies in the exercise itself", folder);
+  good = good && make_folder(&p) && learn_secrets(&p, path_in(p.memory, e->folder, kept), 0) &&
+         copy_files(&p) && write_exercise(&p);
   arena_free(p.memory);
   return good;
 }

@@ -10,6 +10,7 @@
 #include "generator/report/report_trust.h"
 #include "generator/report/run_series.h"
 #include "runtime/continuum/point_forces.h"
+#include "runtime/deck/lattice_kind.h"
 
 /* The bond at fault, for `perilat drive`. */
 static void write_bad_bond(const run *r, const bad_state *b) {
@@ -108,8 +109,9 @@ void report_bad(const run *r) {
     return;
   }
   say_error(
-      "%s in step %ld (%s%s) at particle %ld, %s", b.what, b.step,
-      r->deck->relaxation.increments > 0 ? "after " : "", moment(r, b.time, when), b.particle,
+      "%s in step %ld (%s%s) at %s %ld, %s", b.what, b.step,
+      r->deck->relaxation.increments > 0 ? "after " : "", moment(r, b.time, when),
+      deck_lattice_is_mesh(&r->deck->lattices[b.body]) ? "node" : "particle", b.particle,
       rows_place_text(simulation_rows(r->simulation, b.body)->dimensions, b.place, place_text));
   if (b.family) print_family(r, &b);
   if (b.point) {

@@ -17,9 +17,9 @@ static void conclude_energy(const run *r) {
                                          sample_of(r, "energy/kinetic", false)),
                imbalance = last_value(r, "energy/imbalance");
   if (!isfinite(external)) return;
-  printf("  energy     external work %.5g J: kinetic %.3g, stored %.3g, dissipated by damage %.5g, "
+  printf("  energy     external work %.5g J: kinetic %.3g, stored %.3g, dissipated by %s %.5g, "
          "by damping %.3g; ",
-         external, last_value(r, "energy/kinetic"), last_value(r, "energy/stored"),
+         external, last_value(r, "energy/kinetic"), last_value(r, "energy/stored"), lost_to(r),
          unless_nothing(last_value(r, "energy/dissipated_damage"), external),
          last_value(r, "energy/dissipated_damping"));
   const char *unchecked;

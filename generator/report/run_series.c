@@ -41,6 +41,14 @@ double unless_nothing(double energy, double external) {
   return fabs(energy) < 1e-7 * fabs(external) ? 0 : energy;
 }
 
+const char *lost_to(const run *r) {
+  bool has[PL_FIELD_OUTPUT] = {false};
+  for (int n = 0; n < r->deck->interaction_count; n++)
+    for (int f = 0; f < r->laws[n].law->field_count; f++)
+      has[r->laws[n].law->fields[f].kind] = true;
+  return !has[PL_FIELD_STATE] ? "damage" : has[PL_FIELD_DAMAGE] ? "damage and states" : "states";
+}
+
 /* "load 3100 N (peak 11020 N), cmod 1.2e-5 m": monitors at the last sample. */
 void describe_monitors(const run *r, char *text, size_t size) {
   const double *time;

@@ -552,7 +552,8 @@ static void check_whole(deck_reader *r) {
   if (simulation->where.end == 0 && !deck_lacks(k, "simulation")) /* never read */
     diag_report(r->d, DIAG_MISSING_KEY, simulation->where, "the deck has no `&simulation`");
   if (k->lattice_count == 0 && !deck_lacks(k, "lattice") && !deck_lacks(k, "bar"))
-    diag_report(r->d, DIAG_MISSING_KEY, simulation->where, "the deck has no `&lattice`");
+    diag_report(r->d, DIAG_MISSING_KEY, simulation->where,
+                "the deck has no body: neither `&lattice` nor `&mesh`");
   check_end(r);
   check_quasi_static(r);
   check_meshless(r);

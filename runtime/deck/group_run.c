@@ -157,7 +157,8 @@ static const deck_key_info output_keys[] = {
      .fallback = "'displacement', 'damage'",
      DECK_AT(output, fields),
      DECK_COUNT_AT(output, field_count),
-     .doc = "stored in each frame: displacement, velocity, rotation, force, damage (all of the "
+     .doc = "stored in each frame beside displacement, which comes by itself: velocity, rotation, "
+            "force, damage (all of the "
             "law's, and their mean per particle), dissipated (energy lost, per particle), stress "
             "and strain (all components) or one of these (stress_xx), or a state, damage, output "
             "or random parameter of the law; dead_cells (of a mesh, which have died) comes by "
@@ -214,7 +215,9 @@ static const deck_key_info checkpoint_keys[] = {
      .bound = BOUND_NOT_NEGATIVE,
      .fallback = "'600 s'",
      DECK_AT(checkpoint, interval),
-     .doc = "of wall time between two checkpoints; 0: only when the run is stopped"},
+     .doc =
+         "of wall time between two checkpoints, the first after 30 s if that is shorter; 0: only "
+         "when the run is stopped"},
 };
 
 DECK_ONE(checkpoint, .doc = "State from which a stopped or killed run goes on.");

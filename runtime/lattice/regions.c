@@ -10,7 +10,7 @@
 #include "runtime/lattice/rows_select.h"
 
 /* A point says how far away the nearest particle is, other shapes where the body is. */
-static void hint_nearest(const double at[3], const rows *w, diagnostics *d) {
+static void hint_nearest(const char *thing, const double at[3], const rows *w, diagnostics *d) {
   double best = INFINITY, nearest[3] = {0, 0, 0};
   char text[ROWS_PLACE_TEXT];
   for (long p = 0; p < w->particle_count; p++) {
@@ -21,12 +21,12 @@ static void hint_nearest(const double at[3], const rows *w, diagnostics *d) {
     best = distance;
     memcpy(nearest, here, sizeof nearest);
   }
-  diag_hint(d,
-            "the nearest particle stands %.4g mm away at %s; `within` says how far is near enough",
-            1e3 * best, rows_place_text(w->dimensions, nearest, text));
+  diag_hint(d, "the nearest %s stands %.4g mm away at %s; `within` says how far is near enough",
+            thing, 1e3 * best, rows_place_text(w->dimensions, nearest, text));
 }
 
-static void hint_extent(const char *lattice, const rows *w, diagnostics *d) {
+/* "x = 0 .. 80 mm, y = 0 .. 40 mm" */
+static void extent_text(const rows *w, char *text, size_t size) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   char above[64] = "";
   for (long p = 0; p < w->particle_count; p++) {
@@ -39,18 +39,59 @@ static void hint_extent(const char *lattice, const rows *w, diagnostics *d) {
   }
   if (w->dimensions == 3)
     snprintf(above, sizeof above, ", z = %.6g .. %.6g mm", 1e3 * low[2], 1e3 * high[2]);
-  diag_hint(d, "the particles of `%s` lie in x = %.6g .. %.6g mm, y = %.6g .. %.6g mm%s", lattice,
-            1e3 * low[0], 1e3 * high[0], 1e3 * low[1], 1e3 * high[1], above);
+  snprintf(text, size, "x = %.6g .. %.6g mm, y = %.6g .. %.6g mm%s", 1e3 * low[0], 1e3 * high[0],
+           1e3 * low[1], 1e3 * high[1], above);
 }
 
-static void report_empty(const char *lattice, const deck_region *region, const rows *w,
-                         diagnostics *d) {
-  diag_report(d, DIAG_EMPTY_REGION, region->item.where, "region `%s` holds no particle",
-              region->name);
-  if (region->shape.kind == SHAPE_POINT)
-    hint_nearest(region->shape.at, w, d);
+/* How far a box is from a place along each axis, squared: 0 within it. */
+static double beyond(const double lower[3], const double upper[3], const double at[3]) {
+  double sum = 0;
+  for (int c = 0; c < 3; c++) {
+    const double out = pl_fmax(pl_fmax(lower[c] - at[c], at[c] - upper[c]), 0);
+    sum += out * out;
+  }
+  return sum;
+}
+
+/* Next to the shape's box; [3] their place. False where no particle is. */
+static bool nearest_to(const deck_shape *shape, const rows *w, double nearest[3]) {
+  double lower[3], upper[3], best = INFINITY;
+  shape_box(shape, lower, upper);
+  for (long p = 0; p < w->particle_count; p++) {
+    double here[3] = {0, 0, 0};
+    rows_place(w, w->particle_site[p], here);
+    const double distance = beyond(lower, upper, here);
+    if (!(distance < best)) continue;
+    best = distance;
+    memcpy(nearest, here, sizeof here);
+  }
+  return isfinite(best);
+}
+
+/* A shape may lie in the body between particles. */
+static void hint_shape(const char *thing, const char *lattice, const deck_shape *shape,
+                       const rows *w, diagnostics *d) {
+  double nearest[3] = {0, 0, 0};
+  char text[ROWS_PLACE_TEXT], extent[192];
+  extent_text(w, extent, sizeof extent);
+  if (nearest_to(shape, w, nearest))
+    diag_hint(d, "the %ss of `%s` lie in %s; the nearest stands at %s", thing, lattice, extent,
+              rows_place_text(w->dimensions, nearest, text));
   else
-    hint_extent(lattice, w, d);
+    diag_hint(d, "the %ss of `%s` lie in %s", thing, lattice, extent);
+}
+
+static void report_empty(const deck *k, const char *lattice, const deck_region *region,
+                         const rows *w, diagnostics *d) {
+  const int number = deck_find_lattice(k, lattice);
+  const bool nodes = number >= 0 && deck_lattice_is_mesh(&k->lattices[number]);
+  const char *thing = nodes ? "node" : "particle";
+  diag_report(d, DIAG_EMPTY_REGION, region->item.where, "region `%s` holds no %s", region->name,
+              thing);
+  if (region->shape.kind == SHAPE_POINT)
+    hint_nearest(thing, region->shape.at, w, d);
+  else
+    hint_shape(thing, lattice, &region->shape, w, d);
 }
 
 bool *regions_used(const deck *k) {
@@ -89,7 +130,7 @@ region_sites *regions_select(const deck *k, const char *lattice, const rows *w, 
     if (!regions[r].here) continue;
     regions[r].count = rows_select(w, &region->shape, &regions[r].particles);
     if (regions[r].count == 0)
-      report_empty(lattice, region, w, d);
+      report_empty(k, lattice, region, w, d);
     else if (!deck_lacks(k, NULL) && !used[r] && !region->group)
       diag_report(d, DIAG_DECK_WARNING, region->item.where, "region `%s` is never used",
                   region->name);

@@ -85,7 +85,10 @@ bool step_plan_make(const deck *k, const step_limit *limit, step_plan *plan, dia
   const double end = k->simulation.end_time, steps = ceil(end / limit->step - 1e-9);
   if (!(steps <= most)) {
     diag_report(d, DIAG_BAD_VALUE, deck_where(&k->simulation.item, "end_time"),
-                "the run would take %.3g steps of %.3g s", steps, limit->step);
+                "the run would take %.3g steps of %.3g s; the most is %.0e", steps, limit->step,
+                most);
+    diag_hint(d, "does `end_time` have the unit that is meant? What is loaded slowly is computed "
+                 "without waves: with `&relaxation`, or a mesh with `&static`");
     return false;
   }
   plan->step_count = steps < 1 ? 1 : (int64_t)steps;

@@ -8,6 +8,7 @@
 
 #include "dsl/base/arena.h"
 #include "runtime/base/ordinary_file.h"
+#include "runtime/base/whole_file.h"
 #include "runtime/result/hdf5_tools.h"
 #include "runtime/result/result_names.h"
 #include "runtime/result/result_sets.h"
@@ -45,13 +46,35 @@ static const char *open_checked(const char *path, int handle, seal_state seal, h
              : "is damaged, or not a result of perilat";
 }
 
+static bool stands_beside(const char *path, const char *ending) {
+  char name[WHOLE_FILE_PATH + 16];
+  snprintf(name, sizeof name, "%s%s", path, ending);
+  return access(name, F_OK) == 0;
+}
+
+/* A run that has not come to its end has left what it goes on from, or its frames alone. */
+static void say_unreadable(const char *path, const char *why, char *error, size_t size) {
+  if (access(path, F_OK) != 0 && stands_beside(path, ".checkpoint"))
+    snprintf(error, size,
+             "there is no result `%s` yet, but the checkpoint of its run: it is at work, or was "
+             "stopped or killed; a stopped one goes on with: perilat run DECK --resume",
+             path);
+  else if (access(path, F_OK) != 0 && stands_beside(path, ".frames"))
+    snprintf(error, size,
+             "there is no result `%s`, but frames of its run: it is at work, or was killed before "
+             "its first checkpoint; then run it again",
+             path);
+  else
+    snprintf(error, size, "cannot read the result `%s`: %s", path, why);
+}
+
 result_file *result_read(const char *path, char *error, size_t size) {
   const char *why;
   hid_t file = -1;
   h5_quiet();
   const int handle = ordinary_file_open(path, O_RDONLY, &why);
   if (handle < 0) {
-    snprintf(error, size, "cannot read the result `%s`: %s", path, why);
+    say_unreadable(path, why, error, size);
     return NULL;
   }
   const seal_state seal = sealed_file_state(handle);

@@ -4,11 +4,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "dsl/base/arena.h"
 #include "dsl/base/characters.h"
 #include "dsl/base/diagnostics.h"
 #include "runtime/base/symmetric_tensor.h"
+#include "runtime/deck/output_fields.h"
 #include "runtime/result/result_sets.h"
 
 /* --- what there is ---------------------------------------------------------------------------- */
@@ -103,6 +105,45 @@ static const char *traced(const result_names *n, const char *given, char *words,
   return said;
 }
 
+/* After `output`, `state` or `damage` in a law's text. */
+static bool declares(const char *text, const char *name) {
+  for (const char *line = text; line; line = strchr(line + 1, '\n')) {
+    char word[16], found[256];
+    if (sscanf(line, " %15[a-z] %255[A-Za-z0-9_]", word, found) == 2 &&
+        (strcmp(word, "output") == 0 || strcmp(word, "state") == 0 ||
+         strcmp(word, "damage") == 0) &&
+        strcasecmp(found, name) == 0)
+      return true;
+  }
+  return false;
+}
+
+static bool a_law_declares(result_file *f, const char *name) {
+  result_names laws = result_list(f, "/input/models");
+  bool found = false;
+  for (int k = 0; k < laws.count && !found; k++) {
+    char path[512];
+    snprintf(path, sizeof path, "/input/models/%.250s", laws.items[k]);
+    const hid_t set = H5Dopen2(f->file, path, H5P_DEFAULT);
+    char *text = set >= 0 ? h5_read_text(set) : NULL;
+    if (set >= 0) H5Dclose(set);
+    found = text && declares(text, name);
+    free(text);
+  }
+  result_names_free(&laws);
+  return found;
+}
+
+/* Something that frames would hold if the deck asked for it. */
+static bool can_be_stored(result_file *f, const char *name) {
+#define X(field, ...) #field,
+  static const char *const fields[] = {OUTPUT_FIELDS(X) OUTPUT_TENSORS(X)};
+#undef X
+  for (size_t k = 0; k < sizeof fields / sizeof *fields; k++)
+    if (strcasecmp(fields[k], name) == 0) return true;
+  return a_law_declares(f, name);
+}
+
 static void no_such_name(result_file *f, const char *group, const char *given, char *error,
                          size_t size) {
   const bool of_frames = strcmp(group, "/frames") == 0;
@@ -114,6 +155,9 @@ static void no_such_name(result_file *f, const char *group, const char *given, c
     add_text(error, size, "%s; ", words);
   else if (near)
     add_text(error, size, "did you mean `%s`? ", name_shown(near));
+  else if (of_frames && can_be_stored(f, given))
+    add_text(error, size,
+             "let the deck's `&output` have fields = 'displacement', '%s' and run again; ", given);
   if (of_frames) {
     add_text(error, size, "fields of particles: ");
     add_names(error, size, n, OF_PARTICLES);

@@ -247,7 +247,7 @@ static void values_of_dissipated(const frames_of *of, const frame_source *from, 
   }
 }
 
-/* Kept without being asked for: pictures leave out dead cells. */
+/* Pictures leave out dead cells. */
 static void values_of_dead_cells(const frames_of *of, const frame_source *from, double *values) {
   const cells *c = of->body->cells;
   const long count = of->body->lattice_rows->particle_count;
@@ -474,11 +474,16 @@ static int first_law(const frame_set *f, int b) {
   return (int)(f->bodies[b].laws - f->laws);
 }
 
+/* Without being asked for: no map can be drawn without it. */
+static bool comes_by_itself(const own_field *own) {
+  return own->values == values_of_displacement || own->values == values_of_dead_cells;
+}
+
 /* What is stored of any law. */
 static void add_own(frame_set *f, const own_field *own, int b) {
   const run_body *of = &f->bodies[b];
-  const bool asked = is_asked(f->asked, own->name) || own->values == values_of_dead_cells;
-  if (!asked || !exists_on(own, f->asked, of)) return;
+  if (!(is_asked(f->asked, own->name) || comes_by_itself(own)) || !exists_on(own, f->asked, of))
+    return;
   const bool largest = own->values == values_of_damage && damage_on_particles(of->law);
   const frame_field field = {.name = own->name,
                              .unit = own->unit,

@@ -58,6 +58,21 @@ for exercise in "$course"/*/exercise.nml; do
   grep -q 'compared to six digits' "$course/$folder/task.md" || fault "$folder: its task does not say how exactly a law is compared"
 done
 
+# Each task: how long it takes, where words are written, which file is handed in and how it is marked.
+for exercise in "$course"/*/exercise.nml; do
+  folder=$(basename "$(dirname "$exercise")")
+  task=$course/$folder/task.md
+  handed=answer.plm
+  [ -e "$course/$folder/starter.txt" ] && handed=answers.txt
+  minutes=$(sed -n 's/.*minutes = \([0-9]*\).*/\1/p' "$exercise")
+  grep -q "^\*$minutes minutes\. " "$task" || fault "$folder: its task does not say that it takes $minutes minutes"
+  grep -q "^    perilat grade \. $handed" "$task" || fault "$folder: its task does not say how $handed is marked"
+  grep -q "(10 points, read by your teacher; .*\`$handed\`" "$task" || fault "$folder: its task does not say where words are written"
+  named=$(grep -n "named \`$handed\`\|name \`$handed\`" "$task" | head -1 | cut -d: -f1)
+  used=$(grep -n "^    perilat .*$handed" "$task" | head -1 | cut -d: -f1)
+  [ -n "$named" ] && [ "$named" -lt "$used" ] || fault "$folder: its task uses $handed before it says what that is"
+done
+
 # Minutes of task and table, and how many wrong laws the table tells.
 for exercise in "$course"/*/exercise.nml; do
   folder=$(basename "$(dirname "$exercise")")
@@ -69,11 +84,11 @@ for exercise in "$course"/*/exercise.nml; do
 done
 
 # What students get: nothing that is the teacher's. With the solution as their answer all that the task tells them to do works there.
-for folder in 01_one_bond 02_patch_test 03_moments 04_fracture_energy 05_memory 06_damping 07_time_step; do
+for folder in 01_one_bond 02_patch_test 03_moments 04_fracture_energy 05_memory 06_damping 07_time_step 08_plastic_bar 09_family; do
   "$program" grade "$course/$folder" --publish "$work/$folder" >"$work/said" 2>&1 || fault "$folder is not published: $(cat "$work/said")"
   [ ! -e "$work/$folder/teacher" ] || fault "$folder: the teacher's folder is published"
   cd "$work/$folder"
-  cp "$course/$folder"/teacher/solution.plm answer.plm 2>/dev/null || cp "$course/$folder/teacher/solution.txt" answers.txt
+  cp "$course/$folder"/teacher/solution.plm answer.plm 2>/dev/null && printf '! In words: it is so.\n' >>answer.plm || cp "$course/$folder/teacher/solution.txt" answers.txt
   commands=$(sed -n 's/^    \(perilat .*\)/\1/p' task.md | sed 's/   *[^ ].*//')
   [ "$(wc -l <<<"$commands")" -ge 3 ] || fault "$folder: its task tells of less than three commands"
   while IFS= read -r line; do

@@ -350,7 +350,7 @@ static void rounded_constants_are_told(void **state) {
   variant v = right;
   v.stiffness = "0.866*E*s*t";
   differs(*state, &v, cycle,
-          "the force N is off by 0.0029 % in all states: is a constant rounded? write sqrt(3)/2");
+          "the force N is off by 0.0029 % in all states: is a constant rounded? write sqrt(2)/3");
   v.stiffness = "0.87*E*s*t";
   differs(*state, &v, cycle, "the force N is off by 0.46 % in all states: is a constant");
   v.stiffness = "sqrt(3)/2*E*s*t*8/9";
@@ -367,6 +367,29 @@ static void said_ratio(double ratio, const char *wanted) {
   must_close_text(out);
   assert_string_equal(text, wanted);
   free(text);
+}
+
+static void said_plainly(double ratio, const char *wanted) {
+  char *text;
+  size_t length;
+  FILE *out = must_open_text(&text, &length);
+  plain_ratio_say(ratio, "right", out);
+  must_close_text(out);
+  assert_string_equal(text, wanted);
+  free(text);
+}
+
+/* A root would be the formula that is asked for. */
+static void students_read_no_roots(void **state) {
+  (void)state;
+  said_plainly(2, "twice right");
+  said_plainly(-3. / 4, "minus 3/4 times right");
+  said_plainly(2 / sqrt(3), "1.155 times right");
+  said_plainly(-sqrt(3) / 2, "-0.866 times right");
+  said_plainly(2 / (3 * sqrt(3)), "0.3849 times right");
+  said_plainly(log(10), "2.303 times right");
+  said_plainly(3.14159265358979323846 / 4, "0.7854 times right");
+  said_plainly(0, "0");
 }
 
 static void is_formula(double ratio, const char *wanted) {
@@ -423,6 +446,7 @@ int main(void) {
                                      TEST(rounded_constants_are_told),
                                      cmocka_unit_test(what_is_small_of_its_kind_says_little),
                                      cmocka_unit_test(ratios_are_told_as_fractions),
+                                     cmocka_unit_test(students_read_no_roots),
                                      cmocka_unit_test(ratios_have_their_sign)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

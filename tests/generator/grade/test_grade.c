@@ -82,12 +82,12 @@ static void others_get_general_words(void **state) {
          "path 1 of 2: the force N is twice what it should be in all states");
   says(w, "first differs   time [s]");
   says(w, "yours ");
-  says(w, "E is 2e+10, twice what it should be");
+  says(w, "E is 2e+10 Pa, twice what it should be");
   graded(w, RIGIDITY "-sqrt(3)/2*E*s*t|", "the force N has the wrong sign in all states");
   graded(w, RIGIDITY "-sqrt(3)*E*s*t|", "minus twice what it should be in all states");
   does_not_say(w, ", twice what");
   graded(w, RIGIDITY "0.866*E*s*t|", "off by 0.0029 % in all states: is a constant rounded?");
-  says(w, "E is 9.9997e+09, off by 0.0029 %: is a constant rounded?");
+  says(w, "E is 9.9997e+09 Pa, off by 0.0029 %: is a constant rounded?");
   does_not_say(w, "1 times");
   graded(w,
          "s|(S_u - kappa)|(2*S_u - kappa)|; s|/(S_u - S_t)|/(2*S_u - S_t)|; s|kappa < S_u|kappa "
@@ -105,6 +105,16 @@ static void factors_are_told_where_all_have_one(void **state) {
          "s/(1 - omega)\\*EA/(1 - omega)*8\\/9*EA/",
          "final N is ");
   does_not_say(w, "constant rounded");
+}
+
+/* What students have says no root, which would be the formula that is asked for. */
+static void public_items_tell_no_roots(void **state) {
+  workplace *w = *state;
+  answer(w, RIGIDITY "E*s*t|");
+  expect(w, "grade memory answer.plm --public", 2, ": 1.155 times what it should be");
+  does_not_say(w, "sqrt");
+  expect(w, "grade memory answer.plm", 2, "2/sqrt(3) times what it should be");
+  says(w, "E is 1.1547e+10 Pa, ");
 }
 
 static void numbers_for_names_are_told(void **state) {
@@ -186,6 +196,15 @@ static void hidden_items_stay_hidden(void **state) {
   says(w, "twice what it should be");
   expect(w, "grade memory answer.plm", 2, "Cycles: 0 of 2");
   does_not_say(w, ".nml");
+}
+
+static void folders_above_are_made(void **state) {
+  workplace *w = *state;
+  expect(w, "grade memory --publish new/for/05/", 0, "written new/for/05/task.md");
+  expect(w, "grade memory --publish ./new/for/06", 0, "written ./new/for/06/exercise.nml");
+  expect(w, "grade memory --publish memory/new/for/05", 1, "lies in the exercise itself");
+  assert_false(exists(w, "memory/new"));
+  expect(w, "grade memory --publish right.plm/05", 1, "cannot make the folder");
 }
 
 static void publishing_refuses(void **state) {
@@ -588,6 +607,8 @@ int main(void) {
                                      TEST(cases_that_no_path_reaches_are_noted),
                                      TEST(hidden_items_stay_hidden),
                                      TEST(publishing_refuses),
+                                     TEST(folders_above_are_made),
+                                     TEST(public_items_tell_no_roots),
                                      TEST(what_nobody_names_is_not_published),
                                      TEST(formulas_are_not_the_students),
                                      TEST(runs_are_of_the_law_that_is_marked),

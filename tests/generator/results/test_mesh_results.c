@@ -85,6 +85,7 @@ static void it_is_told(void **state) {
   workplace *w = *state;
   run_plate(w, "", "a.h5");
   expect(w, "info a.h5", 0, "Crack `slit`: from (");
+  assert_non_null(strstr(w->said, " nodes, 0 bonds, "));
   assert_non_null(strstr(w->said, "mm long; 16.674 mm in the first"));
   expect(w, "export a.h5 --cracks slit", 0,
          "frame [1],time [s],x [m],y "
@@ -143,6 +144,8 @@ static void it_is_drawn(void **state) {
       {"plot a.h5 --map stress --component zz", "is a tensor"},
       {"plot a.h5 --map displacement --component yy", "it is no tensor"},
       {"plot a.h5 --map strain --component yy", "let the deck's `&output` have fields = 'strain'"},
+      {"plot a.h5 --map strain",
+       "has no field `strain`; let the deck's `&output` have fields = 'displacement', 'strain'"},
       {"plot a.h5 --map damage", "is of a mesh, which has no damage"},
       {"plot a.h5 --map stress --component yy --range 3", "--range needs two ascending values"},
       {"plot a.h5 --map stress --component yy --range '3 MPa,1 MPa'", "two ascending values"},
@@ -162,12 +165,45 @@ static void it_is_drawn(void **state) {
   expect(w, "plot beam.h5 --map displacement --contours 5", 1, "--contours is of meshes");
 }
 
+/* What `fields` leaves out is told where it is missed, but nothing that nobody can store. */
+static void fields_that_were_not_stored_are_told(void **state) {
+  workplace *w = *state;
+  expect(w, "new arm --kind continuum", 0, "written arm.plm");
+  expect(w, "run arm.nml --set \"output.fields='velocity'\"", 0, "written");
+  expect(w, "info arm.h5", 0, "Frames hold: displacement, velocity\n");
+  expect(w, "plot arm.h5 --map velocity --component x -o arm.png", 0, "written arm.png");
+  expect(w, "plot arm.h5 --map mises", 1,
+         "has no field `mises`; let the deck's `&output` have fields = 'displacement', 'mises'");
+  expect(w, "plot arm.h5 --map mean", 1, "has no field `mean`; fields of particles: ");
+  assert_null(strstr(w->said, "&output"));
+}
+
+/* The mesh of the deck has a node each 5 mm. */
+static void nodes_are_called_so(void **state) {
+  workplace *w = *state;
+  expect(w, "new arm --kind continuum", 0, "written arm.plm");
+  expect(w, "run arm.nml --set 'drive.velocity=1e12 m/s'", 2, " at node ");
+  assert_null(strstr(w->said, "particle"));
+  assert_int_equal(shell(w, "sed -i \"s/'segment'  from = '80 mm', 0  to = '80 mm', '40 mm'/"
+                            "'rectangle'  corner = '77 mm', '11 mm'  size = '2 mm', '1 mm'/\" "
+                            "arm.nml"),
+                   0);
+  expect(w, "check arm.nml", 1, "region `right` holds no node");
+  assert_non_null(strstr(w->said, "the nodes of `plate` lie in x = 0 .. 80 mm, y = 0 .. 40 mm; the "
+                                  "nearest stands at (80, 10) mm"));
+  write_text(w, "none.nml", "&simulation  end_time = '1 ms'  /\n");
+  expect(w, "check none.nml", 1, "neither `&lattice` nor `&mesh`");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(the_path_is_that_of_the_histories, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(same_bits_however_it_runs, set_up_workplace,
                                       tear_down_workplace),
+      cmocka_unit_test_setup_teardown(fields_that_were_not_stored_are_told, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(nodes_are_called_so, set_up_workplace, tear_down_workplace),
       cmocka_unit_test_setup_teardown(it_is_told, set_up_workplace, tear_down_workplace),
       cmocka_unit_test_setup_teardown(it_is_drawn, set_up_workplace, tear_down_workplace)};
   return cmocka_run_group_tests(tests, NULL, NULL);

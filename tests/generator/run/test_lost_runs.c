@@ -79,7 +79,18 @@ static void only_what_is_given_up_is_said_to_be(void **state) {
   assert_true(exists(w, "part.h5.checkpoint"));
   kill(run, SIGKILL);
   assert_int_equal(end_of(run), 128 + SIGKILL);
+  for (int k = 0; k < 2; k++)
+    expect(w, k ? "plot part.h5 --x time --y load" : "info part.h5", 1,
+           "there is no result `part.h5` yet, but the checkpoint of its run");
+  assert_non_null(strstr(w->said, "perilat run DECK --resume"));
   expect_the_rest(w);
+}
+
+static void frames_alone_are_no_result(void **state) {
+  workplace *w = *state;
+  write_text(w, "gone.h5.frames", "");
+  expect(w, "info gone.h5", 1, "there is no result `gone.h5`, but frames of its run");
+  expect(w, "info never.h5", 1, "cannot read the result `never.h5`: No such file");
 }
 
 /* --- what cannot be written ------------------------------------------------------------------- */
@@ -296,10 +307,15 @@ static void damaged_frames_are_not_gone_on_from(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      ONE(a_checkpoint_goes_with_its_frames),      ONE(only_what_is_given_up_is_said_to_be),
-      ONE(a_full_disk_leaves_the_last_checkpoint), ONE(a_stop_without_its_checkpoint_says_so),
-      ONE(links_are_not_written_through),          ONE(pipes_hang_nobody),
-      ONE(pictures_to_one_name_are_whole),         ONE(damaged_results_answer_right_or_not_at_all),
+      ONE(frames_alone_are_no_result),
+      ONE(a_checkpoint_goes_with_its_frames),
+      ONE(only_what_is_given_up_is_said_to_be),
+      ONE(a_full_disk_leaves_the_last_checkpoint),
+      ONE(a_stop_without_its_checkpoint_says_so),
+      ONE(links_are_not_written_through),
+      ONE(pipes_hang_nobody),
+      ONE(pictures_to_one_name_are_whole),
+      ONE(damaged_results_answer_right_or_not_at_all),
       ONE(damaged_frames_are_not_gone_on_from),
   };
   return cmocka_run_group_tests_name("lost runs", tests, NULL, NULL);

@@ -393,7 +393,7 @@ static void nodes_beside_a_hole_tell(void **state) {
   int components;
   assert_int_equal(shell(w, "cp " SOURCE_DIR "/tests/generator/laws/hardening_point.plm ."), 0);
   write_text(w, "holed.nml", holed);
-  expect(w, "run holed.nml", 0, "written");
+  expect(w, "run holed.nml", 0, "dissipated by states ");
   result_file *f = open_result_of(w, "h.h5");
   for (int k = 0; k < 3; k++) {
     values[k] = result_read_frame(f, names[k], 1, &count, &components, text, sizeof text, error,

@@ -40,13 +40,14 @@ static void damage_is_counted_and_protection_kept(void **state) {
     simulation_advance(r.simulation, lround(5e-5 / pair_step()), NULL);
     const frame_field *fields;
     double values[2] = {-1, -1};
-    assert_int_equal(simulation_frame_fields(r.simulation, &fields), 2);
-    assert_string_equal(fields[0].name, "damage");
-    assert_true(fields[1].on_bonds);
-    simulation_frame_values(r.simulation, 0, values);
+    assert_int_equal(simulation_frame_fields(r.simulation, &fields), 3);
+    assert_string_equal(fields[0].name, "displacement"); /* by itself */
+    assert_string_equal(fields[1].name, "damage");
+    assert_true(fields[2].on_bonds);
+    simulation_frame_values(r.simulation, 1, values);
     const double expected = protected ? 0 : 0.5;
     assert_true(fabs(values[0] - expected) < 0.01 && values[1] == values[0]);
-    simulation_frame_values(r.simulation, 1, values);
+    simulation_frame_values(r.simulation, 2, values);
     assert_true(values[0] == values[1]);
     assert_int_equal(small_go(&r), STEP_END);
     assert_true(small_last(&r, "any") == !protected);
@@ -93,18 +94,19 @@ static void the_larger_of_two_damages_counts(void **state) {
   static const struct {
     const char *name, *kind;
     bool on_bonds;
-  } expected[] = {{"damage", "damage", false}, {"dissipated", "other", false},
-                  {"omega", "damage", true},   {"alpha", "state", true},
-                  {"crush", "damage", true},   {"axial", "output", true}};
+  } expected[] = {{"displacement", "other", false}, {"damage", "damage", false},
+                  {"dissipated", "other", false},   {"omega", "damage", true},
+                  {"alpha", "state", true},         {"crush", "damage", true},
+                  {"axial", "output", true}};
   const frame_field *offered;
-  assert_int_equal(simulation_frame_fields(r.simulation, &offered), 6);
-  for (int k = 0; k < 6; k++) {
+  assert_int_equal(simulation_frame_fields(r.simulation, &offered), 7);
+  for (int k = 0; k < 7; k++) {
     assert_string_equal(offered[k].name, expected[k].name);
     assert_string_equal(offered[k].kind, expected[k].kind);
     assert_int_equal(offered[k].on_bonds, expected[k].on_bonds);
   }
   double values[3];
-  simulation_frame_values(r.simulation, 0, values);
+  simulation_frame_values(r.simulation, 1, values);
   for (int b = 0; b < 2; b++) { /* 0.6 and 0.9 at the ends, their mean in the middle */
     const int32_t pair[2] = {bonds[b].i, bonds[b].j};
     for (int e = 0; e < 2; e++)

@@ -298,17 +298,17 @@ static void frames_hold_a_rotation_about_each_axis(void **state) {
              bodies[k]);
     small_run r = run_of(&laws[k], text);
     body *b = simulation_state(r.simulation, 0)->body;
-    assert_int_equal(simulation_frame_fields(r.simulation, &fields), 1);
-    assert_string_equal(fields[0].name, "rotation");
-    assert_string_equal(fields[0].unit, "rad");
-    assert_int_equal(fields[0].components, k == 0 ? 1 : 3);
-    const long count = b->lattice->particle_count, components = fields[0].components;
+    assert_int_equal(simulation_frame_fields(r.simulation, &fields), 2);
+    assert_string_equal(fields[1].name, "rotation");
+    assert_string_equal(fields[1].unit, "rad");
+    assert_int_equal(fields[1].components, k == 0 ? 1 : 3);
+    const long count = b->lattice->particle_count, components = fields[1].components;
     double *values = test_calloc((size_t)(count * components), sizeof *values);
     for (long p = 0; p < count; p++)
       for (long c = 0; c < components; c++)
         b->displacement[laws[k].dimensions + c][b->lattice->particle_site[p]] =
             1e-9 * (double)(p + 10 * c);
-    simulation_frame_values(r.simulation, 0, values);
+    simulation_frame_values(r.simulation, 1, values);
     for (long n = 0; n < count * components; n++)
       assert_true(values[n] == 1e-9 * (double)(n / components + 10 * (n % components)));
     test_free(values);

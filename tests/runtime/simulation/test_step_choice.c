@@ -157,6 +157,8 @@ static void too_many_steps_are_refused(void **state) {
     assert_false(step_plan_make(&c.deck, &c.limit, &plan, &c.rows.said));
     assert_int_equal(c.rows.said.count, k + 1);
     assert_non_null(strstr(c.rows.said.items[k].message, "the run would take"));
+    assert_non_null(strstr(c.rows.said.items[k].message, "the most is 1e+12"));
+    assert_non_null(strstr(c.rows.said.items[k].hint, "&relaxation"));
   }
   built_end(&c.rows);
 }
