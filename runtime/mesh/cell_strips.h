@@ -5,7 +5,7 @@
 
        cells  c0  c1  c2 ...                 node at `offset` from the lower left corner of c0:
        point   0   0   0     lanes 0, 1, 2   displacement u[offset], u[offset + 1], u[offset + 2]
-       point   1   1   1                                                                            */
+       point   1   1   1 */
 #ifndef PERILAT_RUNTIME_CELL_STRIPS_H
 #define PERILAT_RUNTIME_CELL_STRIPS_H
 
