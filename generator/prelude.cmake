@@ -1,5 +1,5 @@
-# Writes the texts of kernel.h, elementary.h and rectangle.h as C string constants: emitted kernels are self-contained, so
-# includes of each other are left out.
+# Writes the texts of kernel.h, elementary.h and rectangle.h as C string constants: emitted kernels
+# are self-contained, so includes of each other are left out.
 file(WRITE ${OUT} "/* Generated from runtime/kernel.h, dsl/base/elementary.h and runtime/rectangle.h. */\n#include \"generator/target/prelude.h\"\n")
 foreach(pair "kernel_h;runtime/kernel.h" "elementary_h;dsl/base/elementary.h" "rectangle_h;runtime/rectangle.h")
   list(GET pair 0 name)

@@ -37,7 +37,7 @@
 
 #include <stdint.h>
 
-#define PL_KERNEL_ABI 15
+#define PL_KERNEL_ABI 16
 #define PL_MAX_DOF    6
 #define PL_MAX_PLANES 12 /* force planes a bond */
 #define PL_STATE_INPUTS                                                                            \
@@ -417,8 +417,8 @@ typedef struct pl_law {
   /* Values that depend on parameters and bond class only. */
   void (*prepare)(const struct pl_law *law, const double *parameters, const pl_bond_class *bonds,
                   double *uniforms);
-  /* lower[p] and upper[p] of every parameter given all values (open ends: low_open, high_open = 1).
-     */
+  /* lower[p] and upper[p] of every parameter given all values (open ends: low_open, high_open =
+     1). */
   void (*bounds)(const struct pl_law *law, const double *parameters, double *lower, double *upper,
                  unsigned char *low_open, unsigned char *high_open);
 

@@ -2,9 +2,9 @@
    alike, one more than the other (the hourglass). What these make of strains at the points, and by
    the transpose of stresses there, takes half the multiplications that slopes take:
 
-       u   -1 +1    -1 -1    +1 -1     strain xx at a point = mean_x stretch +- change_x bend
-           -1 +1    +1 +1    -1 +1     the sign is that of the point: low - , high +
-         stretch_x stretch_y  bend     (rows from above: nodes high, nodes low)
+       high  -1 +1    +1 +1    -1 +1    strain xx at a point = mean_x along_x -+ change_x bend,
+       low   -1 +1    -1 -1    +1 -1    - at the low points, + at the high ones; yy alike: + at the
+            along_x  along_y    bend    right ones
 
    Read by the host and, as text, by every kernel, so that both find the same bits. Points and nodes
    stand in the order low left, low right, high left, high right. Local arrays and constant indices
@@ -27,12 +27,13 @@
 #define PL_UNROLL_4 _Pragma("GCC unroll 4")
 #endif
 
-/* Of N_,x and N_,y at the points, 1/m, or times a volume, m^2: the part that all points have, and
-   that with the sign of the node and the point; [x, y]. */
+/* Sizes of N_,x and N_,y at the points, 1/m, or times a volume, m^2: mean + change where the point
+   lies on the node's edge of the two along that axis, mean - change on the other; [x, y]. */
 typedef struct pl_rectangle {
   double mean[2], change[2];
 } pl_rectangle;
 
+/* Of a component of the nodes' motion: m, or m/s. */
 typedef struct pl_rectangle_modes {
   double along_x, along_y, bend;
 } pl_rectangle_modes;

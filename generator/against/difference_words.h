@@ -23,7 +23,8 @@ void difference_json(const table_difference *d, const drive_table *reference, js
 /* "twice" and what it should be, "minus half that of the reference", "0.73 times ...", "0", "off by
    0.003 %". */
 void ratio_say(double ratio, const char *should, FILE *out);
-/* The same of a ratio that holds to the last digits: it may be told as a fraction (ratio_formula). */
+/* The same of a ratio that holds to the last digits: it may be told as a fraction
+   (ratio_formula). */
 void exact_ratio_say(double ratio, const char *should, FILE *out);
 /* The same without roots, pi and logarithms, which would tell the formula that is asked for: "1.155
    times what it should be". */

@@ -449,8 +449,7 @@ static double share_of(const search *s, const bool *in) {
 }
 
 /* A strain along an axis or a stretch has a side on which it is stretched; a shear or a turn has
-   none.
- */
+   none. */
 static bool has_length(const search *s, difference_side side) {
   const char *name = s->reference->columns[s->way].name;
   const size_t n = strlen(name);

@@ -15,8 +15,8 @@ static const double ENERGY_TOLERANCE = 1e-9; /* of the work of the absolute forc
 static const double FORCE_TOLERANCE =
     1e-8; /* force and derivative of the energy are rounded differently */
 
-/* The axes that do work without rate, and the forces on them: N s, M_i, M_j (J per unit of motion).
- */
+/* The axes that do work without rate, and the forces on them: N s, M_i, M_j (J per unit of
+   motion). */
 enum { WAYS = FORCE_COUNT };
 static const bench_axis way_axis[WAYS] = {AXIS_STRETCH, AXIS_THETA_I, AXIS_THETA_J};
 

@@ -2,7 +2,7 @@
    of any mixture of modes, at rest and running.
 
        rest-force   a tip without stress does not grow
-       mirror       with -K_II it does the same, mirrored: `toward` changes its sign, nothing else does
+       mirror       with -K_II it does the same, mirrored: `toward` changes its sign, nothing else
        crack-speed  no tip runs backward, or as fast as waves along a surface
        not-finite   direction and speed are finite */
 #ifndef PERILAT_GENERATOR_PHYSICS_TIPS_H

@@ -1,5 +1,5 @@
-/* Marks for other programs: JSON, a table for a teacher, test results for continuous integration.
- */
+/* Marks for other programs: JSON, a table for a teacher, test results for continuous
+   integration. */
 #ifndef PERILAT_GENERATOR_MARK_FILES_H
 #define PERILAT_GENERATOR_MARK_FILES_H
 

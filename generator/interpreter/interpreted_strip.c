@@ -53,7 +53,8 @@ static void point_at_bonds(runner *r, const pl_strip *s, long first, int count) 
     r->at[IR_FROM_BOND_PARAMETER][k] = s->parameter[k] + first;
 }
 
-/* Where the values of a root go; *absent: those of bonds that do not exist become 0, or are left. */
+/* Where the values of a root go; *absent: those of bonds that do not exist become 0, else they are
+   left. */
 static double *target_of(const segment_root *r, const pl_strip *s, bool *absent) {
   *absent = r->target != TO_FIELD;
   switch (r->target) {

@@ -58,7 +58,7 @@ static along_z look_along(lone_point *p, interpreter *program) {
   for (int k = 0; k <= STEPS; k++, before = stress) {
     z = seen.reach * (2.0 * k / STEPS - 1);
     interpreter_run(program, &p->in, 1, &out);
-    if (!(fabs(stress) >= seen.least)) {
+    if (isfinite(stress) && !(fabs(stress) >= seen.least)) {
       seen.least = fabs(stress);
       seen.least_at = z;
     }

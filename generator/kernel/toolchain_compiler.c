@@ -110,8 +110,8 @@ bool toolchain_runs_here(char *error, size_t size) {
 /* Speculation of divisions and square roots needs -fno-trapping-math and -fno-math-errno; the
    interpreter's bits need -ffp-contract=off. gcc does not know newer processors by name and then
    orders instructions for none in particular; told to order them for one with vectors of 512 bits
-   it gains 5 % on Intel's processors and 3 to 8 % on AMD's. Combining more than two instructions takes gcc a third of its
-   time on these loops and gains nothing. */
+   it gains 5 % on Intel's processors and 3 to 8 % on AMD's. Combining more than two instructions
+   takes gcc a third of its time on these loops and gains nothing. */
 #define COMMON_FLAGS                                                                               \
   "-std=gnu11 -O3 -march=%s -fno-math-errno -fno-trapping-math -ffp-contract=off "                 \
   "--param max-combine-insns=2 -fPIC -shared"

@@ -16,8 +16,8 @@ typedef struct tensor_component {
 int tensor_components(int dimensions, const tensor_component **components);
 /* By its name, without regard to case; -1: there is none. */
 int tensor_find(int dimensions, const char *name);
-/* Where `name` is "e_zz" and `names` has all other components of e, which is a deviator then: that zz
-   is not kept, and how it may be had, in words. Else NULL. */
+/* Where `name` is "e_zz" and `names` has all other components of e, which is a deviator then: that
+   zz is not kept, and how it may be had, in words. Else NULL. */
 const char *tensor_traced(const char *name, const char *const *names, int count, char *words,
                           size_t size);
 

@@ -74,7 +74,8 @@ static void find_resistance(sweep *w, int block, bool seen) {
                         is_alone(e) ? e->resisting : NULL);
 }
 
-/* Points push nodes of several rows: what they push is added up when all have. */
+/* Points push nodes of several rows: what they push and is not summed yet is added up when all
+   have. */
 static void take_resistance(const cells_engine *e, int row) {
   const cells *c = e->of;
   bool more = e->linear[0] != NULL;

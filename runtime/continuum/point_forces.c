@@ -513,8 +513,8 @@ static void aim(const point_forces *p, const strip *s, double *plane, int count,
     at[k] = plane + k * (long)p->strips.count + s->at;
 }
 
-/* u of a group's nodes. Beyond the last one they are where that is: lanes that fill up strain as the
-   last cell does at its edge, and no more. */
+/* u of a group's nodes. Beyond the last one they are where that is: lanes that fill up are strained
+   as the last cell is at its edge, and no more. */
 static const double *nodes_of(const cell_group *g, const double *u, long stride, double *out) {
   for (int row = 0; row < 2; row++)
     for (int n = 0; n < GROUP_NODES; n++)
@@ -522,25 +522,13 @@ static const double *nodes_of(const cell_group *g, const double *u, long stride,
   return out;
 }
 
-/* What the cells of a strip do to their nodes, in one loop of the law's from these to these. */
-static void step_rectangles(const point_forces *p, const strip *s, point_scratch *own,
-                            const point_motion *at) {
+/* From the lower left node of a strip on; returns how far rows of nodes are apart there. */
+static long motion_of_nodes(const point_forces *p, const strip *s, point_scratch *own,
+                            const point_motion *at, const double *u[2], const double *v[2]) {
   const cell_group *first = &p->strips.groups[s->first];
   const node_layout *l = &p->strips.layout;
   const long node = l->origin + s->row * l->stride + first->first;
   const bool rates = p->law->reads_rates || p->loses;
-  const double *u[2], *v[2];
-  double *lost[PL_LOSSES];
-  pl_points points = view_of(p, s, own, at);
-  const pl_rectangles cells = {.size = sizeof cells,
-                               .count = (s->last - s->first) * PL_LANES,
-                               .stride = is_full(first) ? l->stride : GROUP_NODES,
-                               .displacement = u,
-                               .velocity = v,
-                               .slopes = &first->table->slopes,
-                               .push = &s->push,
-                               .force = own->by_cell,
-                               .points = &points};
   for (int d = 0; d < 2; d++) {
     u[d] = at->displacement[d] + node;
     v[d] = at->velocity[d] + node;
@@ -548,11 +536,44 @@ static void step_rectangles(const point_forces *p, const strip *s, point_scratch
     u[d] = nodes_of(first, u[d], l->stride, own->group[0][d]);
     if (rates) v[d] = nodes_of(first, v[d], l->stride, own->group[1][d]);
   }
+  return is_full(first) ? l->stride : GROUP_NODES;
+}
+
+/* Lanes that fill up have been strained, but stay as they were: where sums go over all lanes they
+   count with a volume of 0, which takes a number to be nothing. */
+static void leave_filling(const cell_group *g, int fields, const pl_points *points) {
+  for (int k = 0; k < g->points; k++)
+    for (int lane = g->count; lane < PL_LANES; lane++) {
+      const int at = k * PL_LANES + lane;
+      for (int f = 0; f < fields; f++)
+        points->new_field[f][at] = points->old_field[f][at];
+      for (int loss = 0; loss < PL_LOSSES && points->lost; loss++)
+        points->lost[loss][at] = 0;
+    }
+}
+
+/* What the cells of a strip do to their nodes, in one loop of the law's from these to these. */
+static void step_rectangles(const point_forces *p, const strip *s, point_scratch *own,
+                            const point_motion *at) {
+  const cell_group *first = &p->strips.groups[s->first];
+  const double *u[2], *v[2];
+  double *lost[PL_LOSSES];
+  pl_points points = view_of(p, s, own, at);
+  const pl_rectangles cells = {.size = sizeof cells,
+                               .count = (s->last - s->first) * PL_LANES,
+                               .stride = motion_of_nodes(p, s, own, at, u, v),
+                               .displacement = u,
+                               .velocity = v,
+                               .slopes = &first->table->slopes,
+                               .push = &s->push,
+                               .force = own->by_cell,
+                               .points = &points};
   if (p->loses) {
     aim(p, s, p->lost, PL_LOSSES, lost);
     points.lost = lost;
   }
   (p->loses ? p->law->rectangle_ledger : p->law->rectangle_step)(p->law, p->uniforms, &cells);
+  leave_filling(first, p->law->field_count, &points);
 }
 
 static void step_points(const point_forces *p, const strip *s, point_scratch *own,

@@ -5,6 +5,11 @@
    of the law, forces. Rows of cells push nodes of several rows; each has planes of its own for
    that, and these are added in one order. So results do not depend on threads.
 
+   Where a row is nothing but rectangles, and the law has a loop from their nodes to their nodes
+   (rectangle.h), strains and stresses stay in registers and forces need no planes: they are summed
+   from row to row as far as rows are such and one thread finds them (rectangle_rows). The order is
+   the same, and so are the bits.
+
    States stand at points, old ones and new ones, and change places after a step.
 
    A cell all of whose points have failed is dead: it pushes nothing and strains no more, so that
@@ -79,12 +84,12 @@ typedef struct point_motion {
 
 /* Stresses and new states of the points of the rows of cells from <= j < to, and what they push.
    `seen`: of the present state, and not for a step: energies, outputs and stresses are kept, and so
-   is how stiff the rows are. force[2]: planes of the layout that are only these forces', who may
-   write to them at once; NULL: there are others. */
+   is how stiff the rows are. force[2]: the planes of the layout that point_forces_take will have,
+   where these forces are alone there: some are written at once; NULL: there are others, too. */
 void point_forces_find(point_forces *p, int block, int from, int to, const point_motion *at,
                        bool seen, double *const force[2]);
-/* N: adds up what pushes a row of nodes; force[2]: planes of the layout. `more`: to what is there
-   of others. */
+/* N: adds up what pushes a row of nodes, when all blocks have found theirs; force[2]: planes of the
+   layout. `more`: to what is there of others. */
 void point_forces_take(const point_forces *p, int row, bool more, double *const force[2]);
 /* After a step to that time: new states are old ones. */
 void point_forces_turn(point_forces *p, double time);

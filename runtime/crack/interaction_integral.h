@@ -12,8 +12,8 @@
         2d                 pyramid   (1 - |x|/d)(1 - |y|/d)
      +--------+            plateau   f(|x|/d) f(|y|/d), f = 1 up to 1/2, then 2 - 2 r
      |   tip  | 2d
-     |---o    |            A crack whose last leg has grown for less than d: the box begins 0.95 of that
-     +--------+            behind the tip and is as long.
+     |---o    |            A crack whose last leg has grown for less than d: the box begins 0.95 of
+     +--------+            that behind the tip and is as long.
 */
 #ifndef PERILAT_RUNTIME_INTERACTION_INTEGRAL_H
 #define PERILAT_RUNTIME_INTERACTION_INTEGRAL_H

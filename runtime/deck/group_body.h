@@ -5,7 +5,7 @@
 
 #include "runtime/deck/deck_schema.h"
 
-extern const deck_group_info deck_group_body, deck_group_notch, deck_group_region,
-    deck_group_zone, deck_group_point_mass;
+extern const deck_group_info deck_group_body, deck_group_notch, deck_group_region, deck_group_zone,
+    deck_group_point_mass;
 
 #endif

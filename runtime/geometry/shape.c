@@ -468,8 +468,7 @@ int shape_cuts(const deck_shape *shape, const double *a, const double *b, double
   return count;
 }
 
-/* --- ways along the outline
-   --------------------------------------------------------------------- */
+/* --- ways along the outline ------------------------------------------------------------------- */
 
 static double disc_way(const deck_shape *shape, const double *p, const double *q) {
   const double a[2] = {p[0] - shape->centre[0], p[1] - shape->centre[1]},

@@ -287,8 +287,8 @@ void load_steps_begin(loads *l, body *w) {
   if (w->weight) set_gravity(l, w, 0);
 }
 
-/* Acceleration by what acts at once when the run begins; a step near it may have only part of that.
-   */
+/* Acceleration by what acts at once when the run begins; a step near it may have only part of
+   that. */
 static double weight_at_once(const loads *l, int component) {
   double sum = 0;
   for (int i = 0; i < l->deck->gravity_count; i++)

@@ -5,7 +5,7 @@
 
        cells  c0  c1  c2 ...                 node at `offset` from the lower left corner of c0:
        point   0   0   0     lanes 0, 1, 2   displacement u[offset], u[offset + 1], u[offset + 2]
-       point   1   1   1                                                                            */
+       point   1   1   1 */
 #ifndef PERILAT_RUNTIME_CELL_STRIPS_H
 #define PERILAT_RUNTIME_CELL_STRIPS_H
 
@@ -88,13 +88,13 @@ void cell_strips_clear(const cell_strips *s, int row, double *const pushed[2]);
    `placed`: what the row of cells above does to them is there. */
 void cell_strips_take(const cell_strips *s, int row, double *const pushed[2], bool placed,
                       bool more, double *const force[2]);
-/* The same of `count` groups side by side that are alike and even, and full unless they are but
-   one, from what each cell does to its nodes (rectangle_cells_push). */
+/* As cell_strips_push of `count` groups side by side that are alike and even, and full unless they
+   are but one, from what each cell does to its nodes, N (rectangle_cells_push). */
 void cell_strips_gather(const cell_strips *s, int row, const cell_group *g, int count,
                         double *const by_cell[RECTANGLE_PUSHES], double *const pushed[2]);
-/* Whether a row of cells is nothing but such groups, so that rectangle_rows can push. */
+/* Whether a row of cells is nothing but even groups, so that rectangle_rows sums what they do. */
 bool cell_strips_is_whole(const cell_strips *s, int row);
-/* What that row of cells does to its upper nodes: a row of `pushed`. */
+/* What such a row does to its upper nodes, N: a row of `pushed`, one of cell_strips_push. */
 double *cell_strips_pushed_row(const cell_strips *s, int row, double *pushed);
 
 /* Number of a lane's cell; of what fills up the first one's. */

@@ -6,7 +6,7 @@
        a------+---b   as on its left. The turn of three points a, b, c is
                \          o(a, b, c) = (b - a) x (c - a);
                 x     x and I are on two sides where (o(a,b,x) >= 0) /= (o(a,b,I) >= 0), and the
-                      piece is met where then o(x,I,a) o(x,I,b) <= 0.                             */
+                      piece is met where then o(x,I,a) o(x,I,b) <= 0. */
 #ifndef PERILAT_RUNTIME_CRACK_LINES_H
 #define PERILAT_RUNTIME_CRACK_LINES_H
 

@@ -3,11 +3,11 @@
    crosses the cell's sides; each part has Gauss's places along that axis, and at each of these the
    line across the cell has Gauss's points on every piece outside of the holes:
 
-        +---|---------+      The weights are positive and sum to the cell's area outside: exactly with
-        |: :|: :'. hole      straight outlines, to some 1e-6 of the cell with round ones.
+        +---|---------+      The weights are positive and sum to the cell's area outside: exactly
+        |: :|: :'. hole      with straight outlines, to some 1e-6 of the cell with round ones.
         |: :|: : :'.__|      Functions that are smooth outside are integrated as well as in whole
         |: :|: : :  : |      cells.
-        +---|---------+                                                                            */
+        +---|---------+ */
 #ifndef PERILAT_RUNTIME_CUT_CELLS_H
 #define PERILAT_RUNTIME_CUT_CELLS_H
 

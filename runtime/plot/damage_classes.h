@@ -1,5 +1,5 @@
-/* The classes in which damage is shown: those of Asadollahi (2014, table 4.3), up to 0.3 yellow, 0.6
-   orange, 0.8 brown, below 1 red; separated bonds black. */
+/* The classes in which damage is shown: those of Asadollahi (2014, table 4.3), up to 0.3 yellow,
+   0.6 orange, 0.8 brown, below 1 red; separated bonds black. */
 #ifndef PERILAT_RUNTIME_DAMAGE_CLASSES_H
 #define PERILAT_RUNTIME_DAMAGE_CLASSES_H
 

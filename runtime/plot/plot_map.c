@@ -1,8 +1,7 @@
 /* Map of one frame, or of several side by side: bonds and particles where they have moved to.
-   Damage is shown in the classes of Asadollahi (2014, table 4.3): up to 0.3 yellow, 0.6 orange, 0.8
-   brown, below 1 red; separated bonds as black crack lines. Two damages are shown in two colours
-   each, as Gerstle et al. (2013, figure 5) do. Other fields colour the particles or the bonds by
-   their value. */
+   Damage is shown in the classes of damage_classes.h; separated bonds as black crack lines. Two
+   damages are shown in two colours each, as Gerstle et al. (2013, figure 5) do. Other fields colour
+   the particles or the bonds by their value. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

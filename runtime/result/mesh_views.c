@@ -347,7 +347,8 @@ static bool take_shown(hid_t file, const mesh_views *v, const result_field *f, l
   return good;
 }
 
-/* Whether all cells are shown in all frames, as they are where none dies: nothing is copied then. */
+/* Whether all cells are shown in all frames, as they are where none dies: nothing is copied
+   then. */
 static bool are_all_shown(const mesh_views *v, const result_field *f, long frames) {
   for (long k = 0; k < frames; k++)
     if (v->sets[v->set_of_frame[k]].count != f->count) return false;

@@ -89,8 +89,8 @@ long simulation_increments(const simulation *s, long *unbalanced);
 double simulation_time(const simulation *s);   /* s, as the deck's loads count it */
 double simulation_memory(const simulation *s); /* bytes */
 int simulation_threads(const simulation *s);   /* that will work on it */
-/* From now on the time that parts of the run take is added to `p` (NULL: no longer); p must stay.
-   */
+/* From now on the time that parts of the run take is added to `p` (NULL: no longer); p must
+   stay. */
 void simulation_measure(simulation *s, struct profile *p);
 /* The arrays of the state of a body, for tools and tests; before the first step they may be set (an
    initial velocity, say). */

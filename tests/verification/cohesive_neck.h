@@ -43,7 +43,8 @@ static inline double neck_half_width(double D, double y) {
   return y < 0.5 * D ? 0.3 * D + r - sqrt(r * r - y * y) : 0.5 * D;
 }
 
-/* Rows of strain xx, yy and twice xy over the displacements of a cell, and the area of the point. */
+/* Rows of strain xx, yy and twice xy over the displacements of a cell, and the area of the
+   point. */
 static inline double neck_strains(const double at[4][2], double a, double b, double B[3][8]) {
   static const double SIDE[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
   double by[4][2], J[2][2] = {{0}};
@@ -232,8 +233,8 @@ static inline double neck_two_lines(const softening *s, double opening, double *
                           : 0;
 }
 
-/* concrete_damage_plasticity: f_t (1 + X) X/2, X = exp(-3/4 f_t w/G_f), in a band much narrower than
-   E G_f/f_t^2. */
+/* concrete_damage_plasticity: f_t (1 + X) X/2, X = exp(-3/4 f_t w/G_f), in a band much narrower
+   than E G_f/f_t^2. */
 static inline double neck_plastic(const softening *s, double opening, double *slope) {
   const double rate = -0.75 * s->f_t / s->G_f, X = exp(rate * opening);
   *slope = s->f_t * rate * X * (0.5 + X);

@@ -511,8 +511,7 @@ static void a_particle_is_driven_by_strains(void **state) {
         "lattice");
 }
 
-/* --- info ---------------------------------------------------------------------------------------
- */
+/* --- info ------------------------------------------------------------------------------------- */
 
 static void info_says_what_a_law_implies(void **state) {
   (void)state;

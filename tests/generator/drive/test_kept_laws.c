@@ -19,8 +19,8 @@ typedef struct keeper {
   driven_law kept;
 } keeper;
 
-/* The force at the end of a path with this material, on a law that is kept and on one that is not.
- */
+/* The force at the end of a path with this material, on a law that is kept and on one that is
+   not. */
 static double final_force(keeper *k, const char *material) {
   char text[400];
   double force[2];

@@ -1,7 +1,7 @@
 /* Every law of a continuum and of cracks beside the tests of kernels: its compiled kernel against
    the interpreter; Hooke's law against its closed form. Those of models/:
-   test_points_of_cracking_match.c, test_points_of_concrete_match.c, test_points_of_models_match.c.
- */
+   test_points_of_cracking_match.c, test_points_of_concrete_match.c,
+   test_points_of_models_match.c. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -149,8 +149,7 @@ static void a_law_that_is_not_linear(void **state) {
   is(p.stress[2], 2 * mu * plane[2] * (1 + c * sq), E_0 * 1e-3);
 }
 
-/* --- lefm
-   --------------------------------------------------------------------------------------- */
+/* --- lefm ------------------------------------------------------------------------------------- */
 
 /* Angles of largest hoop stress and what it amounts to, which the driven speed tells:
    v = (K_eq/K_Ic - 1) c_R. To the digits of the figures; with -K_II the same, mirrored. */

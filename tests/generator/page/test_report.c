@@ -16,8 +16,7 @@
 #include "tests/generator/command_tools.h"
 #include "tests/runtime/small_result.h"
 
-/* --- reading a page
-   ---------------------------------------------------------------------------- */
+/* --- reading a page --------------------------------------------------------------------------- */
 
 static char *page_of(const workplace *w, const char *name) {
   size_t size;
@@ -69,8 +68,7 @@ static double *page_series_of(const char *page, const char *name, long *count) {
   return numbers_of(at + strlen("\"values\": \""), count);
 }
 
-/* --- tests
-   ------------------------------------------------------------------------------------- */
+/* --- tests ------------------------------------------------------------------------------------ */
 
 static void run_beam(workplace *w) {
   expect(w, "run beam.nml --set output.frames=6", 0, "written");
@@ -506,8 +504,7 @@ static void shows_studies(void **state) {
   expect(w, "report two.h5 two.h5", 1, "shown alone");
 }
 
-/* --- sizes
-   ------------------------------------------------------------------------------------- */
+/* --- sizes ------------------------------------------------------------------------------------ */
 
 enum { MANY_ROWS = 200, MANY_COLUMNS = 250, MANY = MANY_ROWS * MANY_COLUMNS, MANY_FRAMES = 24 };
 
@@ -571,8 +568,7 @@ static void pages_stay_small(void **state) {
   free(page);
 }
 
-/* --- numbers in few characters
-   ----------------------------------------------------------------- */
+/* --- numbers in few characters ---------------------------------------------------------------- */
 
 static void packs_as_it_says(void **state) {
   (void)state;

@@ -279,8 +279,7 @@ static void what_sites_make_of_shapes(void **state) {
   assert_non_null(strstr(w->said, "\n             and 2 more\n"));
 }
 
-/* --- blows, bodies over each other, damping
-   ---------------------------------------------------- */
+/* --- blows, bodies over each other, damping --------------------------------------------------- */
 
 /* All energy is brought by the block. */
 static const char blow[] =

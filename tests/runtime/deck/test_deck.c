@@ -438,8 +438,8 @@ static void no_damaged_override_crashes(void **state) {
   }
 }
 
-/* Ten thousand regions that all carry one name, ten thousand drives of one region: quick to refuse.
- */
+/* Ten thousand regions that all carry one name, ten thousand drives of one region: quick to
+   refuse. */
 static void crowded_decks_are_refused(void **state) {
   (void)state;
   char *text = NULL;

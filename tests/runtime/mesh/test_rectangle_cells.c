@@ -1,10 +1,11 @@
-/* Cells by their edges: strains of a field that is bilinear, work of forces, cells beside the
-   last. */
+/* Cells by the modes of their nodes: strains of a field that is bilinear, work of forces, cells
+   beside the last, sums over rows. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -130,10 +131,72 @@ static void other_slopes_are_no_rectangle(void **state) {
   }
 }
 
+/* --- rows of cells ---------------------------------------------------------------------------- */
+
+enum { ROWS = 5, NODES = CELLS + 1, AXES = 2 };
+
+/* What cells of all rows do to their nodes. */
+typedef struct pushed_rows {
+  double plane[ROWS][RECTANGLE_PUSHES][CELLS], *at[RECTANGLE_PUSHES];
+} pushed_rows;
+
+static double *const *pushed_from(pushed_rows *p, int row, int first) {
+  for (int k = 0; k < RECTANGLE_PUSHES; k++)
+    p->at[k] = p->plane[row][k] + first;
+  return p->at;
+}
+
+/* What a row does to its lower and upper nodes, by itself. */
+static void row_alone(pushed_rows *p, int row, double force[AXES][2][NODES]) {
+  memset(force, 0, sizeof(double[AXES][2][NODES]));
+  rectangle_cells_gather(CELLS, pushed_from(p, row, 0), (double *const[]){force[0][0], force[1][0]},
+                         NODES);
+}
+
+static void same_bits(const double *a, const double *b) {
+  for (int n = 0; n < NODES; n++)
+    assert_memory_equal(&a[n], &b[n], sizeof *a);
+}
+
+/* Sums from row to row are those of rows by themselves, to the bit: strip by strip, and where sums
+   begin anew and what the row below does is added later. */
+static void sums_of_rows_are_those_of_cells(void **state) {
+  (void)state;
+  static const int strips[] = {0, PL_LANES, 2 * PL_LANES, CELLS};
+  static pushed_rows p;
+  static double alone[ROWS][AXES][2][NODES], force[AXES][NODES], above[AXES][NODES];
+  for (int row = 0; row < ROWS; row++) {
+    for (int k = 0; k < RECTANGLE_PUSHES; k++)
+      for (int c = 0; c < CELLS; c++)
+        p.plane[row][k][c] = sin(1 + 0.37 * c + 1.9 * k + 5.3 * row) / 3;
+    row_alone(&p, row, alone[row]);
+  }
+  for (int begins = 0; begins < ROWS; begins++) { /* in this row, too */
+    rectangle_rows sums = {.above = {above[0], above[1]}};
+    for (int row = 0; row < ROWS; row++) {
+      if (row == 0 || row == begins) rectangle_rows_begin(&sums, NODES);
+      for (int s = 0; s < 3; s++)
+        rectangle_rows_add(&sums, strips[s], strips[s + 1] - strips[s],
+                           pushed_from(&p, row, strips[s]),
+                           (double *const[]){force[0] + strips[s], force[1] + strips[s]});
+      rectangle_rows_end(&sums, CELLS, (double *const[]){force[0] + CELLS, force[1] + CELLS});
+      for (int d = 0; d < AXES; d++) {
+        double right[NODES];
+        for (int n = 0; n < NODES; n++)
+          right[n] =
+              alone[row][d][0][n] + (row == 0 || row == begins ? 0 : alone[row - 1][d][1][n]);
+        same_bits(force[d], right);
+        same_bits(above[d], alone[row][d][1]);
+      }
+    }
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(strains_are_those_of_the_field),
                                      cmocka_unit_test(forces_are_those_of_the_stress),
                                      cmocka_unit_test(forces_and_strains_are_conjugate),
-                                     cmocka_unit_test(other_slopes_are_no_rectangle)};
+                                     cmocka_unit_test(other_slopes_are_no_rectangle),
+                                     cmocka_unit_test(sums_of_rows_are_those_of_cells)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

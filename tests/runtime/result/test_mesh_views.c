@@ -22,7 +22,7 @@
 /* A particle alone, then a mesh of 3 x 3 nodes a metre apart:
 
        c2 | c3
-       c0 | c1                                                                                      */
+       c0 | c1 */
 enum { NODES = 9, ALL = NODES + 1, CELLS = 4, FRAMES = 4, MOST = 5 };
 
 static const double reference[2 * ALL] = {9, 9, 0, 0, 1, 0, 2, 0, 0, 1,
