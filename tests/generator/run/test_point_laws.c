@@ -89,6 +89,7 @@ static void write_rectangles(const workplace *w, const char *energy) {
       "  e = previous(e) + 0.001*(dev(strain) - previous(e))\n"
       "  D = 1 - exp(-k/0.05)\n"
       "  stress sigma = (1 - D)*hooke(strain - e, E, nu) + hooke(tau*strain_rate, E, nu)\n"
+      "  energy W = (1 - D)*(hooke(strain - e, E, nu):(strain - e))/2\n"
       "end model\n";
   static const char deck[] =
       "&simulation end_time = '20 us' /\n"

@@ -168,7 +168,7 @@ static void holes_that_cannot_be(void **state) {
         "is element-free");
   wrong(MESH HELD HOLE "&region name = 'in' shape = 'disc' centre = '110 mm', '50 mm' radius = "
                        "'10 mm' /\n&support region = 'in' fix = 'x' /\n",
-        "no particle");
+        "no node");
   wrong(MESH HELD HOLE "&traction mesh = 'plate' from = 0.1, 0.05 to = 0.12, 0.05 component = 'x' "
                        "stress = 1 /\n",
         "lies outside the mesh");

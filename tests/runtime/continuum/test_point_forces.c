@@ -525,7 +525,7 @@ static void nodes_show_states(void **state) {
                expected[] = {kappa, omega, (1 - omega) * 30e9 * kappa / 3, omega};
   const char *const names[] = {"kappa", "omega", "press", "damage"};
   int found = 0;
-  double values[63], lost = 0;
+  double values[126], lost = 0;
   const int count = simulation_frame_fields(r.simulation, &fields);
   for (int f = 0; f < count; f++) {
     simulation_frame_values(r.simulation, f, values);
