@@ -18,22 +18,10 @@ enum {
   LONG_STRIP = 2048 /* where the law keeps these to itself: what its cells push is 32 kB */
 };
 
-/* Groups of a row whose points the law is asked for together. */
-typedef struct point_strip {
-  int row, first, last;
-  long at, count;    /* its points */
-  bool rectangles;   /* one beside the other, all alike; groups are full, or there is but one */
-  pl_rectangle push; /* of these: slopes times the volume of a point */
-} strip;
-
-/* A row of a group's nodes, in a thread's own memory. */
-enum { GROUP_NODES = PL_LANES + 1 };
-
-/* What a thread works with: planes of one strip, displacements and velocities of the nodes of a
-   group, [low and high][GROUP_NODES], and sums over rows of rectangles. */
+/* What a thread works with: planes of one strip, and sums over rows of rectangles. */
 typedef struct point_scratch {
   double *strain[STRAINS], *rate[STRAINS], *stress[STRESSES], *traction[STRAINS],
-      *tangent[TANGENTS], *bound, *by_cell[RECTANGLE_PUSHES], *group[2][2];
+      *tangent[TANGENTS], *bound, *by_cell[RECTANGLE_PUSHES];
   rectangle_rows sums;
   double **old_field, **new_field, **observed;
 } point_scratch;
@@ -56,79 +44,29 @@ static bool goes_by_rectangles(const point_forces *p) {
   return p->failed < 0 && PL_HAS(p->law, rectangle_ledger) && p->law->rectangle_ledger;
 }
 
-static bool is_full(const cell_group *g) {
-  return g->count == PL_LANES;
-}
-
-static bool is_of_rectangles(const point_forces *p, const cell_group *g) {
-  return g->even > 0 && !p->mean;
-}
-
-/* Whether the next group goes on with a strip of these. A strip is the same whoever finds forces
-   of it, so that their sums are. */
-static bool joins(const point_forces *p, const strip *s, const cell_group *first,
-                  const cell_group *next) {
-  const long points = s->count + (long)next->points * PL_LANES;
-  if (s->rectangles != is_of_rectangles(p, next)) return false;
-  if (!s->rectangles) return points <= STRIP;
-  return points <= (goes_by_rectangles(p) ? LONG_STRIP : STRIP) && next->even == first->even &&
-         next->table == first->table && is_full(first) && is_full(next) &&
-         next->first == first->first + (s->last - s->first) * PL_LANES;
-}
-
-static strip next_strip(const point_forces *p, int row, int first) {
-  const cell_strips *s = &p->strips;
-  const cell_group *groups = s->groups;
-  strip out = {.row = row,
-               .first = first,
-               .last = first,
-               .at = groups[first].at,
-               .rectangles = is_of_rectangles(p, &groups[first])};
-  do
-    out.count += (long)groups[out.last++].points * PL_LANES;
-  while (out.last < s->first_group[row + 1] && joins(p, &out, &groups[first], &groups[out.last]));
-  if (out.rectangles)
-    out.push = rectangle_slopes_times(&groups[first].table->slopes, groups[first].even);
-  return out;
-}
-
-static void find_parts(point_forces *p) {
-  p->parts = must_calloc((size_t)p->strips.group_count + 1, sizeof *p->parts);
-  p->first_part = must_calloc((size_t)p->strips.rows + 1, sizeof *p->first_part);
+/* Rectangles whose dilatation is the mean are strained like any other cells. */
+static void open_strips(point_forces *p) {
+  const bool by_law = goes_by_rectangles(p);
+  p->parts = point_strips_new(&p->strips, !p->mean, STRIP, by_law ? LONG_STRIP : STRIP);
   p->whole = must_calloc((size_t)p->strips.rows + 1, 1);
   p->placed = must_calloc((size_t)p->strips.rows + 1, 1);
   p->summed = must_calloc((size_t)p->strips.rows + 1, 1);
-  int count = 0;
-  for (int row = 0; row < p->strips.rows; row++) {
-    p->first_part[row] = count;
-    for (int g = p->strips.first_group[row]; g < p->strips.first_group[row + 1];
-         g = p->parts[count++].last)
-      p->parts[count] = next_strip(p, row, g);
-    p->whole[row] = goes_by_rectangles(p) && !p->mean && cell_strips_is_whole(&p->strips, row);
-  }
-  p->first_part[p->strips.rows] = count;
-}
-
-/* Points of the largest strip. */
-static long strip_room(const point_forces *p) {
-  long most = STRIP;
-  for (int k = 0; k < p->first_part[p->strips.rows]; k++)
-    most = p->parts[k].count > most ? p->parts[k].count : most;
-  return most;
+  for (int row = 0; row < p->strips.rows; row++)
+    p->whole[row] = by_law && !p->mean && cell_strips_is_whole(&p->strips, row);
 }
 
 static void open_scratch(point_forces *p, point_scratch *s) {
-  const long size = strip_room(p);
+  const long size = p->parts->most > STRIP ? p->parts->most : STRIP;
   planes(p, s->strain, STRAINS, size);
   planes(p, s->rate, STRAINS, size);
   planes(p, s->stress, STRESSES, size);
   planes(p, s->traction, STRAINS, size);
   planes(p, s->tangent, TANGENTS, size);
   planes(p, &s->bound, 1, size);
-  planes(p, s->by_cell, RECTANGLE_PUSHES, size / 4 + PL_LANES);
+  planes(p, s->by_cell, RECTANGLE_PUSHES, size / 4 + 2 * PL_LANES);
+  for (int k = 0; k < RECTANGLE_PUSHES; k++)
+    s->by_cell[k] += PL_LANES; /* a cell before the first (rectangle_rows_add), aligned */
   planes(p, s->sums.above, 2, p->strips.layout.padded);
-  for (int k = 0; k < 2; k++)
-    planes(p, s->group[k], 2, 2 * GROUP_NODES);
   s->old_field = must_calloc((size_t)p->law->field_count + 1, sizeof(double *));
   s->new_field = must_calloc((size_t)p->law->field_count + 1, sizeof(double *));
   s->observed = must_calloc((size_t)p->law->output_count + 1, sizeof(double *));
@@ -271,7 +209,7 @@ point_forces *point_forces_new(const mesh *m, const unsigned char *own,
   find_rest(p, own, parameters);
   for_each_cell(p, open_mean);
   for_each_cell(p, open_hourglass);
-  find_parts(p);
+  open_strips(p);
   p->scratch = must_calloc((size_t)blocks + 1, sizeof *p->scratch);
   for (int b = 0; b < blocks; b++)
     open_scratch(p, &p->scratch[b]);
@@ -287,8 +225,7 @@ void point_forces_free(point_forces *p) {
   }
   free(p->scratch);
   free(p->rows);
-  free(p->parts);
-  free(p->first_part);
+  point_strips_free(p->parts);
   free(p->whole);
   free(p->placed);
   free(p->summed);
@@ -300,12 +237,12 @@ void point_forces_free(point_forces *p) {
 }
 
 long point_forces_bytes(const point_forces *p) {
-  return p->strips.bytes + (long)sizeof(double) * p->doubles;
+  return p->strips.bytes + p->parts->bytes + (long)sizeof(double) * p->doubles;
 }
 
 /* --- a strip ---------------------------------------------------------------------------------- */
 
-static void find_strains(const point_forces *p, const strip *s, const double *const nodes[2],
+static void find_strains(const point_forces *p, const point_strip *s, const double *const nodes[2],
                          double *const strain[STRAINS]) {
   for (int g = s->first; g < s->last; g++) {
     const cell_group *group = &p->strips.groups[g];
@@ -317,7 +254,7 @@ static void find_strains(const point_forces *p, const strip *s, const double *co
 }
 
 /* The law's view of a strip: states in place, all else in the thread's planes. */
-static pl_points view_of(const point_forces *p, const strip *s, point_scratch *own,
+static pl_points view_of(const point_forces *p, const point_strip *s, point_scratch *own,
                          const point_motion *at) {
   const long all = p->strips.count;
   for (int f = 0; f < p->law->field_count; f++) {
@@ -339,7 +276,7 @@ static pl_points view_of(const point_forces *p, const strip *s, point_scratch *o
 
 /* Takes the cells' mean dilatation in place of the points' own, of strains xx, yy; and of tractions
    (a stress times the volume) what is due to it: the transpose. */
-static void take_mean(const point_forces *p, const strip *s, double *xx, double *yy,
+static void take_mean(const point_forces *p, const point_strip *s, double *xx, double *yy,
                       bool tractions) {
   for (int g = s->first; g < s->last; g++) {
     const cell_group *group = &p->strips.groups[g];
@@ -368,7 +305,7 @@ static void find_dead(const cell_group *g, const double *failed, double dead[PL_
 }
 
 /* Dead cells strain no more. */
-static void leave_dead(const point_forces *p, const strip *s, double *const strain[STRAINS]) {
+static void leave_dead(const point_forces *p, const point_strip *s, double *const strain[STRAINS]) {
   for (int g = s->first; g < s->last; g++) {
     const cell_group *group = &p->strips.groups[g];
     const long to = group->at - s->at;
@@ -383,7 +320,7 @@ static void leave_dead(const point_forces *p, const strip *s, double *const stra
   }
 }
 
-static long count_dead(const point_forces *p, const strip *s, const point_scratch *own) {
+static long count_dead(const point_forces *p, const point_strip *s, const point_scratch *own) {
   double sum = 0;
   for (int g = s->first; g < s->last; g++) {
     const cell_group *group = &p->strips.groups[g];
@@ -395,7 +332,7 @@ static long count_dead(const point_forces *p, const strip *s, const point_scratc
   return (long)sum;
 }
 
-static pl_points motion_of(const point_forces *p, const strip *s, point_scratch *own,
+static pl_points motion_of(const point_forces *p, const point_strip *s, point_scratch *own,
                            const point_motion *at) {
   const bool rates = p->law->reads_rates || p->loses;
   find_strains(p, s, at->displacement, own->strain);
@@ -421,7 +358,7 @@ static void push_group(const point_forces *p, int row, const cell_group *g,
   cell_strips_push(&p->strips, row, g, (const double *const *)own->traction, p->pushed);
 }
 
-static void push_rectangles(const point_forces *p, const strip *s, const point_scratch *own,
+static void push_rectangles(const point_forces *p, const point_strip *s, const point_scratch *own,
                             double *const stress[STRAINS]) {
   rectangle_cells_push(&s->push, s->last - s->first,
                        (const double *const[]){stress[0], stress[1], stress[2]}, own->by_cell);
@@ -429,7 +366,7 @@ static void push_rectangles(const point_forces *p, const strip *s, const point_s
                      own->by_cell, p->pushed);
 }
 
-static void push_groups(const point_forces *p, const strip *s, const point_scratch *own,
+static void push_groups(const point_forces *p, const point_strip *s, const point_scratch *own,
                         double *const stress[STRAINS]) {
   for (int g = s->first; g < s->last; g++) {
     const long to = p->strips.groups[g].at - s->at;
@@ -439,7 +376,7 @@ static void push_groups(const point_forces *p, const strip *s, const point_scrat
 }
 
 /* Of elements whose dilatation is the mean. */
-static void push_mean(const point_forces *p, const strip *s, const point_scratch *own,
+static void push_mean(const point_forces *p, const point_strip *s, const point_scratch *own,
                       double *const stress[STRAINS]) {
   const double *volume = p->strips.volume + s->at;
   for (int c = 0; c < STRAINS; c++) {
@@ -459,13 +396,13 @@ static void push_mean(const point_forces *p, const strip *s, const point_scratch
   }
 }
 
-static void push(const point_forces *p, const strip *s, const point_scratch *own,
+static void push(const point_forces *p, const point_strip *s, const point_scratch *own,
                  double *const stress[STRAINS]) {
   (p->mean ? push_mean : s->rectangles ? push_rectangles : push_groups)(p, s, own, stress);
 }
 
 /* alive[PL_LANES] 0 in cells of a group that are dead by these states of its strip, else 1. */
-static void find_alive(const point_forces *p, const strip *s, int g, double *const *fields,
+static void find_alive(const point_forces *p, const point_strip *s, int g, double *const *fields,
                        double alive[PL_LANES]) {
   const cell_group *group = &p->strips.groups[g];
   double dead[PL_LANES] = {0};
@@ -477,7 +414,7 @@ static void find_alive(const point_forces *p, const strip *s, int g, double *con
 /* What elements resist their hourglass modes by. Of the point that each of them has, J/m^3:
    `stored` is added to; and what cells that die in this step had stored so is `lost`, with the term
    that is due to forces halfway (ledger.h). Either may be NULL. */
-static void resist_hourglass(const point_forces *p, const strip *s, const point_scratch *own,
+static void resist_hourglass(const point_forces *p, const point_strip *s, const point_scratch *own,
                              const point_motion *at, double *lost, double *stored) {
   for (int g = s->first; g < s->last && p->hourglass; g++) {
     const cell_group *group = &p->strips.groups[g];
@@ -508,44 +445,21 @@ static void resist_hourglass(const point_forces *p, const strip *s, const point_
 }
 
 /* What the law writes goes to planes of the whole mesh. */
-static void aim(const point_forces *p, const strip *s, double *plane, int count, double **at) {
+static void aim(const point_forces *p, const point_strip *s, double *plane, int count,
+                double **at) {
   for (int k = 0; k < count; k++)
     at[k] = plane + k * (long)p->strips.count + s->at;
 }
 
-/* u of a group's nodes. Beyond the last one they are where that is: lanes that fill up are strained
-   as the last cell is at its edge, and no more. */
-static const double *nodes_of(const cell_group *g, const double *u, long stride, double *out) {
-  for (int row = 0; row < 2; row++)
-    for (int n = 0; n < GROUP_NODES; n++)
-      out[row * GROUP_NODES + n] = u[row * stride + (n < g->count ? n : g->count)];
-  return out;
-}
-
-/* From the lower left node of a strip on; returns how far rows of nodes are apart there. */
-static long motion_of_nodes(const point_forces *p, const strip *s, point_scratch *own,
-                            const point_motion *at, const double *u[2], const double *v[2]) {
-  const cell_group *first = &p->strips.groups[s->first];
-  const node_layout *l = &p->strips.layout;
-  const long node = l->origin + s->row * l->stride + first->first;
-  const bool rates = p->law->reads_rates || p->loses;
-  for (int d = 0; d < 2; d++) {
-    u[d] = at->displacement[d] + node;
-    v[d] = at->velocity[d] + node;
-    if (is_full(first)) continue;
-    u[d] = nodes_of(first, u[d], l->stride, own->group[0][d]);
-    if (rates) v[d] = nodes_of(first, v[d], l->stride, own->group[1][d]);
-  }
-  return is_full(first) ? l->stride : GROUP_NODES;
-}
-
-/* Lanes that fill up have been strained, but stay as they were: where sums go over all lanes they
-   count with a volume of 0, which takes a number to be nothing. */
-static void leave_filling(const cell_group *g, int fields, const pl_points *points) {
-  for (int k = 0; k < g->points; k++)
-    for (int lane = g->count; lane < PL_LANES; lane++) {
-      const int at = k * PL_LANES + lane;
-      for (int f = 0; f < fields; f++)
+/* Lanes that fill up the last group have been strained by whatever stands beside the last node, but
+   stay as they were: where sums go over all lanes they count with a volume of 0, which takes a
+   number to be nothing. */
+static void leave_filling(const point_forces *p, const point_strip *s, const pl_points *points) {
+  const cell_group *last = &p->strips.groups[s->last - 1];
+  for (int k = 0; k < last->points; k++)
+    for (int lane = last->count; lane < PL_LANES; lane++) {
+      const long at = last->at - s->at + k * PL_LANES + lane;
+      for (int f = 0; f < p->law->field_count; f++)
         points->new_field[f][at] = points->old_field[f][at];
       for (int loss = 0; loss < PL_LOSSES && points->lost; loss++)
         points->lost[loss][at] = 0;
@@ -553,15 +467,18 @@ static void leave_filling(const cell_group *g, int fields, const pl_points *poin
 }
 
 /* What the cells of a strip do to their nodes, in one loop of the law's from these to these. */
-static void step_rectangles(const point_forces *p, const strip *s, point_scratch *own,
+static void step_rectangles(const point_forces *p, const point_strip *s, point_scratch *own,
                             const point_motion *at) {
   const cell_group *first = &p->strips.groups[s->first];
-  const double *u[2], *v[2];
+  const node_layout *l = &p->strips.layout;
+  const long node = l->origin + s->row * l->stride + first->first;
+  const double *const u[] = {at->displacement[0] + node, at->displacement[1] + node},
+                      *const v[] = {at->velocity[0] + node, at->velocity[1] + node};
   double *lost[PL_LOSSES];
   pl_points points = view_of(p, s, own, at);
   const pl_rectangles cells = {.size = sizeof cells,
                                .count = (s->last - s->first) * PL_LANES,
-                               .stride = motion_of_nodes(p, s, own, at, u, v),
+                               .stride = l->stride,
                                .displacement = u,
                                .velocity = v,
                                .slopes = &first->table->slopes,
@@ -573,10 +490,10 @@ static void step_rectangles(const point_forces *p, const strip *s, point_scratch
     points.lost = lost;
   }
   (p->loses ? p->law->rectangle_ledger : p->law->rectangle_step)(p->law, p->uniforms, &cells);
-  leave_filling(first, p->law->field_count, &points);
+  leave_filling(p, s, &points);
 }
 
-static void step_points(const point_forces *p, const strip *s, point_scratch *own,
+static void step_points(const point_forces *p, const point_strip *s, point_scratch *own,
                         const point_motion *at) {
   double *lost[PL_LOSSES];
   pl_points points = motion_of(p, s, own, at);
@@ -593,7 +510,7 @@ static void step_points(const point_forces *p, const strip *s, point_scratch *ow
                    NULL);
 }
 
-static void step_strip(const point_forces *p, const strip *s, point_scratch *own,
+static void step_strip(const point_forces *p, const point_strip *s, point_scratch *own,
                        const point_motion *at) {
   if (!s->rectangles || !goes_by_rectangles(p)) {
     step_points(p, s, own, at);
@@ -606,8 +523,8 @@ static void step_strip(const point_forces *p, const strip *s, point_scratch *own
 
 static void step_row(const point_forces *p, int row, point_scratch *own, const point_motion *at) {
   cell_strips_clear(&p->strips, row, p->pushed);
-  for (int k = p->first_part[row]; k < p->first_part[row + 1]; k++)
-    step_strip(p, &p->parts[k], own, at);
+  for (int k = p->parts->first_of_row[row]; k < p->parts->first_of_row[row + 1]; k++)
+    step_strip(p, &p->parts->items[k], own, at);
 }
 
 /* Of rectangles and nothing else. What the row does to its upper nodes waits for the next one if
@@ -621,8 +538,8 @@ static void step_whole_row(const point_forces *p, int row, bool first, bool last
     high[d] = cell_strips_pushed_row(s, row, p->pushed[d]);
   }
   if (first) rectangle_rows_begin(&own->sums, s->layout.nodes[0]);
-  for (int k = p->first_part[row]; k < p->first_part[row + 1]; k++) {
-    const strip *part = &p->parts[k];
+  for (int k = p->parts->first_of_row[row]; k < p->parts->first_of_row[row + 1]; k++) {
+    const point_strip *part = &p->parts->items[k];
     const cell_group *from = &s->groups[part->first], *to = &s->groups[part->last - 1];
     step_rectangles(p, part, own, at);
     rectangle_rows_add(&own->sums, from->first, to->first + to->count - from->first, own->by_cell,
@@ -684,7 +601,7 @@ static double largest_eigenvalue(double a[STRAINS][STRAINS]) {
 }
 
 /* The most that a point of the strip is as stiff as at rest, or `most` of others. */
-static double stiffest_of(const point_forces *p, const strip *s, const point_scratch *own,
+static double stiffest_of(const point_forces *p, const point_strip *s, const point_scratch *own,
                           double most) {
   find_bounds(p, own->tangent, s->count, own->bound);
   for (long k = 0; k < s->count; k++) {
@@ -696,7 +613,7 @@ static double stiffest_of(const point_forces *p, const strip *s, const point_scr
   return most;
 }
 
-static void add_losses(const point_forces *p, const strip *s, double *const lost[PL_LOSSES],
+static void add_losses(const point_forces *p, const point_strip *s, double *const lost[PL_LOSSES],
                        point_row *row) {
   const double *volume = p->strips.volume + s->at;
   double *before[PL_LOSSES];
@@ -708,7 +625,7 @@ static void add_losses(const point_forces *p, const strip *s, double *const lost
   row->pending += 0.5 * now;
 }
 
-static void see_strip(const point_forces *p, const strip *s, point_scratch *own,
+static void see_strip(const point_forces *p, const point_strip *s, point_scratch *own,
                       const point_motion *at) {
   double *stress[STRESSES], *lost[PL_LOSSES];
   point_row *row = &p->rows[s->row];
@@ -742,8 +659,8 @@ static void see_strip(const point_forces *p, const strip *s, point_scratch *own,
 static void see_row(point_forces *p, int row, point_scratch *own, const point_motion *at) {
   cell_strips_clear(&p->strips, row, p->pushed);
   p->rows[row] = (point_row){0};
-  for (int k = p->first_part[row]; k < p->first_part[row + 1]; k++)
-    see_strip(p, &p->parts[k], own, at);
+  for (int k = p->parts->first_of_row[row]; k < p->parts->first_of_row[row + 1]; k++)
+    see_strip(p, &p->parts->items[k], own, at);
 }
 
 void point_forces_find(point_forces *p, int block, int from, int to, const point_motion *at,
@@ -857,8 +774,8 @@ static double size_of(double *const stress[STRESSES], long k) {
   return sum;
 }
 
-static void take_point(const point_forces *p, const strip *s, const point_scratch *own, long k,
-                       point_state *out) {
+static void take_point(const point_forces *p, const point_strip *s, const point_scratch *own,
+                       long k, point_state *out) {
   const cell_group *g = &p->strips.groups[s->first];
   cell_strips_place(&p->strips, p->of, p->points, s->row, g, (int)(s->at + k), out->at, out->cell);
   for (int c = 0; c < STRAINS; c++)
@@ -878,11 +795,11 @@ double point_forces_worst(point_forces *p, int node, const point_motion *at, poi
     if (row < 0 || row >= p->strips.rows) continue;
     for (int g = p->strips.first_group[row]; g < p->strips.first_group[row + 1]; g++) {
       const cell_group *group = &p->strips.groups[g];
-      const strip s = {.row = row,
-                       .first = g,
-                       .last = g + 1,
-                       .at = group->at,
-                       .count = (long)group->points * PL_LANES};
+      const point_strip s = {.row = row,
+                             .first = g,
+                             .last = g + 1,
+                             .at = group->at,
+                             .count = (long)group->points * PL_LANES};
       const pl_points points = motion_of(p, &s, own, at);
       p->law->point_step(p->law, p->uniforms, &points);
       for (long k = 0; k < s.count && isfinite(most); k++) {

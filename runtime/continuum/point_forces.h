@@ -19,7 +19,7 @@
 
 #include "runtime/base/pool.h"
 #include "runtime/kernel.h"
-#include "runtime/mesh/cell_strips.h"
+#include "runtime/mesh/point_strips.h"
 
 /* What is known of a row of cells in the state observed, J; and how much stiffer than at rest one
    of its points is: the largest eigenvalue of the tangent by that at rest. */
@@ -50,8 +50,7 @@ typedef struct point_forces {
      of the corners, and C, N/m. */
   double *mean, *part, *hourglass;
   point_row *rows;               /* [strips.rows] */
-  struct point_strip *parts;     /* row by row: groups that are found together */
-  int *first_part;               /* [strips.rows + 1] */
+  point_strips *parts;           /* groups that are found together */
   unsigned char *whole;          /* [strips.rows] all rectangles, whose law has a loop for them */
   unsigned char *placed;         /* [strips.rows] what pushes its lower nodes is among the forces */
   unsigned char *summed;         /* [strips.rows] and so is what the row below pushes them by */

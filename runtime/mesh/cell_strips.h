@@ -88,8 +88,8 @@ void cell_strips_clear(const cell_strips *s, int row, double *const pushed[2]);
    `placed`: what the row of cells above does to them is there. */
 void cell_strips_take(const cell_strips *s, int row, double *const pushed[2], bool placed,
                       bool more, double *const force[2]);
-/* As cell_strips_push of `count` groups side by side that are alike and even, and full unless they
-   are but one, from what each cell does to its nodes, N (rectangle_cells_push). */
+/* As cell_strips_push of `count` groups side by side that are alike and even, and full but for
+   the last, from what each cell does to its nodes, N (rectangle_cells_push). */
 void cell_strips_gather(const cell_strips *s, int row, const cell_group *g, int count,
                         double *const by_cell[RECTANGLE_PUSHES], double *const pushed[2]);
 /* Whether a row of cells is nothing but even groups, so that rectangle_rows sums what they do. */

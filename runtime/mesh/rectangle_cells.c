@@ -124,13 +124,13 @@ void rectangle_rows_add(rectangle_rows *r, int first, int cells,
                         double *const pushed[RECTANGLE_PUSHES], double *const force[2]) {
   for (int d = 0; d < 2; d++) {
     double *const *of = pushed + d * CORNERS;
-    const double *low_left = of[LOW_LEFT], *low_right = of[LOW_RIGHT], *high_left = of[HIGH_LEFT],
-                 *high_right = of[HIGH_RIGHT];
-    double *above = r->above[d] + first, *out = force[d];
-    out[0] = (low_left[0] + r->right[d][0]) + above[0];
-    above[0] = high_left[0] + r->right[d][1];
+    const double *low_left = of[LOW_LEFT], *high_left = of[HIGH_LEFT];
+    double *low_right = of[LOW_RIGHT], *high_right = of[HIGH_RIGHT], *out = force[d],
+           *above = r->above[d] + first;
+    low_right[-1] = r->right[d][0];
+    high_right[-1] = r->right[d][1];
     INDEPENDENT
-    for (long n = 1; n < cells; n++) {
+    for (long n = 0; n < cells; n++) {
       out[n] = (low_left[n] + low_right[n - 1]) + above[n];
       above[n] = high_left[n] + high_right[n - 1];
     }

@@ -39,8 +39,9 @@ typedef struct rectangle_rows {
 
 /* Before a row below which there is none. */
 void rectangle_rows_begin(rectangle_rows *r, int nodes);
-/* Cells of a row from number `first` on, all before them having been added; force: of their lower
-   nodes, written, but for the right one of the last cell of the row. */
+/* Cells of a row from number `first` on, all before them having been added; pushed[..][-1] is there
+   to be written; force: of their lower nodes, written, but for the right one of the row's last
+   cell. */
 void rectangle_rows_add(rectangle_rows *r, int first, int cells,
                         double *const pushed[RECTANGLE_PUSHES], double *const force[2]);
 /* The last node of a row; force: of it. */

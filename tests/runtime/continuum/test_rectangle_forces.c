@@ -41,6 +41,8 @@ static void plate_open(plate *p, int nx, int ny) {
   for (int d = 0; d < 2; d++) {
     p->u[d] = pool_doubles(p->memory, p->layout.size);
     p->v[d] = pool_doubles(p->memory, p->layout.size);
+    for (long q = 0; q < p->layout.size; q++)
+      p->u[d][q] = p->v[d][q] = NAN; /* where no node is */
   }
 }
 
