@@ -37,7 +37,7 @@
 
 #include <stdint.h>
 
-#define PL_KERNEL_ABI 16
+#define PL_KERNEL_ABI 17
 #define PL_MAX_DOF    6
 #define PL_MAX_PLANES 12 /* force planes a bond */
 #define PL_STATE_INPUTS                                                                            \
@@ -343,7 +343,13 @@ typedef struct pl_rectangles {
   const double *const *velocity;     /* [2] m/s; laws that do not read rates need none */
   const struct pl_rectangle *slopes; /* of strains, 1/m */
   const struct pl_rectangle *push;   /* of forces: times the volume of a point, m^2 */
-  double *const *force;              /* [8][count] N, written: along x at each node, along y */
+  long cells;                        /* that there are: the last ones but fill a vector up */
+  double *const *force;              /* [2][cells] N, written: of lower nodes, but for the right one
+                                        of the last cell */
+  double *const *above;              /* [2][cells] N, of these nodes: what the row below does to them,
+                                        then of the nodes above them, what this row does */
+  double (*right)[2];                /* [2][low, high] N: what the cell before the first does to its
+                                        right nodes, then what the last one does */
   const pl_points *points;
 } pl_rectangles;
 

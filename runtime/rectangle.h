@@ -13,12 +13,9 @@
 #define PERILAT_RUNTIME_RECTANGLE_H
 
 #include "dsl/base/elementary.h"
+#include "runtime/kernel.h"
 
-#if defined(__GNUC__)
 #define PL_RECTANGLE static inline __attribute__((always_inline, unused))
-#else
-#define PL_RECTANGLE static inline
-#endif
 
 /* Before a loop over the four points, in a loop over rectangles that is done in vectors. */
 #if defined(__clang__)
@@ -75,6 +72,64 @@ PL_RECTANGLE void pl_rectangle_push(const pl_rectangle *r, const double x[4], co
   force[1] = falling - bend;
   force[2] = (along_y - along_x) - bend;
   force[3] = rising + bend;
+}
+
+/* What a vector of rectangles side by side does to its nodes along an axis, N; [low and high]. In
+   front of what they do to their right nodes stands what those of the vector before do. */
+typedef struct pl_rectangle_ends {
+  double left[2][PL_LANES], right[2][2 * PL_LANES];
+} pl_rectangle_ends;
+
+/* before: what the rectangle before the first does to its right nodes. */
+PL_RECTANGLE void pl_rectangle_begin(pl_rectangle_ends *e, const double before[2]) {
+  e->right[0][PL_LANES - 1] = before[0];
+  e->right[1][PL_LANES - 1] = before[1];
+}
+
+PL_RECTANGLE void pl_rectangle_keep(pl_rectangle_ends *e, long lane, const double force[4]) {
+  e->left[0][lane] = force[0];
+  e->right[0][PL_LANES + lane] = force[1];
+  e->left[1][lane] = force[2];
+  e->right[1][PL_LANES + lane] = force[3];
+}
+
+/* In registers: a shifted load would wait for what has just been stored. */
+typedef double pl_vector __attribute__((vector_size(8 * PL_LANES), aligned(8), may_alias));
+#if defined(__clang__)
+#define PL_ONE_LATER(before, v) __builtin_shufflevector(before, v, 7, 8, 9, 10, 11, 12, 13, 14)
+#else
+typedef long long pl_places __attribute__((vector_size(8 * PL_LANES)));
+#define PL_ONE_LATER(before, v)                                                                    \
+  __builtin_shuffle(before, v, (pl_places){7, 8, 9, 10, 11, 12, 13, 14})
+#endif
+
+/* Forces of the left nodes of the first `cells` rectangles of a vector: of the lower ones, from
+   these and from the row below, which is read in `above`; there then stands what these do to the
+   upper ones. */
+PL_RECTANGLE void pl_rectangle_sum(pl_rectangle_ends *e, long cells, double *force, double *above) {
+  if (cells < PL_LANES) {
+    for (long n = 0; n < cells; n++) {
+      force[n] = (e->left[0][n] + e->right[0][PL_LANES - 1 + n]) + above[n];
+      above[n] = e->left[1][n] + e->right[1][PL_LANES - 1 + n];
+    }
+    e->right[0][PL_LANES - 1] = e->right[0][PL_LANES - 1 + cells];
+    e->right[1][PL_LANES - 1] = e->right[1][PL_LANES - 1 + cells];
+    return;
+  }
+  pl_vector sum[2];
+  for (int side = 0; side < 2; side++) {
+    pl_vector *right = (pl_vector *)e->right[side];
+    sum[side] = *(pl_vector *)e->left[side] + PL_ONE_LATER(right[0], right[1]);
+    right[0] = right[1];
+  }
+  *(pl_vector *)force = sum[0] + *(pl_vector *)above;
+  *(pl_vector *)above = sum[1];
+}
+
+/* after: what the last rectangle does to its right nodes. */
+PL_RECTANGLE void pl_rectangle_end(const pl_rectangle_ends *e, double after[2]) {
+  after[0] = e->right[0][PL_LANES - 1];
+  after[1] = e->right[1][PL_LANES - 1];
 }
 
 #endif

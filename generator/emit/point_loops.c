@@ -288,7 +288,7 @@ static void write_results_of_rectangle(emitter *e, const segment *a) {
   }
 }
 
-enum { CORNERS = 4, AXES = 2 };
+enum { AXES = 2 };
 
 static void write_rectangles(emitter *e, const segment *of, const char *name) {
   const segment a = of_rectangle(e, of);
@@ -306,8 +306,8 @@ static void write_rectangles(emitter *e, const segment *of, const char *name) {
     if (a.roots[k].target != TO_FORCE)
       say(e, SAY_DECLARE, "  ", spell(e, SAY_WRITTEN), spell(e, SAY_RESULT_ARRAY, numeral(e, k)),
           array_of_root(e, &a.roots[k]));
-  for (int k = 0; k < AXES * CORNERS; k++)
-    say(e, SAY_RECTANGLE_FORCE, numeral(e, k));
+  for (int d = 0; d < AXES; d++)
+    say(e, SAY_RECTANGLE_FORCE, numeral(e, d));
   say(e, SAY_RECTANGLE_LOOP);
   say(e, SAY_RECTANGLE_STRAINS, "cell_strain");
   if (rates) say(e, SAY_RECTANGLE_STRAINS, "cell_rate");
@@ -316,10 +316,14 @@ static void write_rectangles(emitter *e, const segment *of, const char *name) {
   write_results_of_rectangle(e, &a);
   say(e, SAY_END, "    ");
   say(e, SAY_RECTANGLE_PUSH);
-  for (int k = 0; k < AXES * CORNERS; k++)
-    say(e, SAY_RECTANGLE_STORE, numeral(e, k), numeral(e, k / CORNERS), numeral(e, k % CORNERS));
+  for (int d = 0; d < AXES; d++)
+    say(e, SAY_RECTANGLE_STORE, numeral(e, d));
   say(e, SAY_END, "  ");
+  for (int d = 0; d < AXES; d++)
+    say(e, SAY_RECTANGLE_SUM, numeral(e, d));
   say(e, SAY_END, "  ");
+  for (int d = 0; d < AXES; d++)
+    say(e, SAY_RECTANGLE_END, numeral(e, d));
   kernel_function_end(&e->parts, e->out);
   expression_close(e);
 }

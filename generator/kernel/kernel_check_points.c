@@ -1,5 +1,7 @@
 #include "generator/kernel/kernel_check_points.h"
 
+#include <string.h>
+
 #include "generator/ir/random_values.h"
 #include "runtime/mesh/rectangle_cells.h"
 
@@ -129,13 +131,18 @@ static void compare_step(const point_arrays *a, const pl_law *reader, const doub
 
 /* --- whole rectangles ------------------------------------------------------------------------- */
 
-enum { CELLS = BATCH / 4, STRIDE = CELLS + PL_LANES, AXES = 2 };
+/* The last two vectors are one that is full and one that is not. */
+enum { FULL = BATCH / 4, CELLS = FULL - 3, STRIDE = FULL + PL_LANES, AXES = 2 };
+
+/* Forces of an axis: of lower nodes, from the row below and above; of right nodes. */
+enum { OF_LOW, OF_ABOVE, OF_RIGHT, SUMS };
 
 /* A row of rectangles, and how its nodes move. */
 typedef struct rectangle_row {
   pl_rectangle slopes, push;
   double **displacement, **velocity; /* [AXES][2 STRIDE] */
-  double **force[2];                 /* [RECTANGLE_PUSHES][CELLS] by points, by rectangles */
+  double **pushed;                   /* [RECTANGLE_PUSHES][FULL] by points */
+  double **sum[2];                   /* [AXES * SUMS][CELLS] of these, by rectangles */
 } rectangle_row;
 
 static void draw_row(rectangle_row *r, uint64_t *seed) {
@@ -149,10 +156,33 @@ static void draw_row(rectangle_row *r, uint64_t *seed) {
       r->displacement[d][n] = draw_size(seed, -12, -3);
       r->velocity[d][n] = draw_size(seed, -6, 3);
     }
+  for (int d = 0; d < AXES; d++)
+    for (int n = 0; n < CELLS; n++) {
+      r->sum[0][d * SUMS + OF_ABOVE][n] = r->sum[1][d * SUMS + OF_ABOVE][n] =
+          draw_size(seed, -6, 6);
+      r->sum[0][d * SUMS + OF_RIGHT][n] = r->sum[1][d * SUMS + OF_RIGHT][n] =
+          n < 2 ? draw_size(seed, -6, 6) : 0;
+    }
+}
+
+/* What a kernel sums, cell by cell. */
+static void sum_row(const rectangle_row *r) {
+  for (int d = 0; d < AXES; d++) {
+    double *const *of = r->pushed + 4 * d, *const *sum = r->sum[0] + d * SUMS;
+    double right[2] = {sum[OF_RIGHT][0], sum[OF_RIGHT][1]};
+    for (int n = 0; n < CELLS; n++) {
+      sum[OF_LOW][n] = (of[0][n] + right[0]) + sum[OF_ABOVE][n];
+      sum[OF_ABOVE][n] = of[2][n] + right[1];
+      right[0] = of[1][n];
+      right[1] = of[3][n];
+    }
+    sum[OF_RIGHT][0] = right[0];
+    sum[OF_RIGHT][1] = right[1];
+  }
 }
 
 static void strains_of_row(const rectangle_row *r, double *const *nodes, double *const *strain) {
-  for (int first = 0; first < CELLS; first += PL_LANES)
+  for (int first = 0; first < FULL; first += PL_LANES)
     rectangle_cells_strain(
         &r->slopes, (const double *const[]){nodes[0] + first, nodes[1] + first}, STRIDE,
         (double *const[]){strain[0] + 4 * first, strain[1] + 4 * first, strain[2] + 4 * first});
@@ -171,27 +201,38 @@ static void ask_row(const point_arrays *a, const rectangle_row *r, const pl_law 
                  .stress = a->stress[0],
                  .lost = a->lost[0],
                  .time_step = 1e-6};
+  double *const *sum = r->sum[1], *const low[] = {sum[OF_LOW], sum[SUMS + OF_LOW]},
+                *const above[] = {sum[OF_ABOVE], sum[SUMS + OF_ABOVE]};
+  double right[AXES][2];
+  for (int d = 0; d < AXES; d++)
+    memcpy(right[d], sum[d * SUMS + OF_RIGHT], sizeof right[d]);
   const pl_rectangles cells = {.size = sizeof cells,
-                               .count = CELLS,
+                               .count = FULL,
+                               .cells = CELLS,
                                .stride = STRIDE,
                                .displacement = (const double *const *)r->displacement,
                                .velocity = (const double *const *)r->velocity,
                                .slopes = &r->slopes,
                                .push = &r->push,
-                               .force = r->force[1],
+                               .force = low,
+                               .above = above,
+                               .right = right,
                                .points = &p};
   strains_of_row(r, r->displacement, a->in);
   strains_of_row(r, r->velocity, a->rate);
   (ledger ? reader->point_ledger : reader->point_step)(reader, uniforms, &p);
-  rectangle_cells_push(&r->push, CELLS / PL_LANES, (const double *const *)a->stress[0],
-                       r->force[0]);
+  rectangle_cells_push(&r->push, FULL / PL_LANES, (const double *const *)a->stress[0], r->pushed);
+  sum_row(r);
   for (int f = 0; f < reader->field_count; f++)
     for (int q = 0; q < BATCH; q++)
       a->new_field[1][f][q] = reader->fields[f].initial;
-  planes_poison(r->force[1], RECTANGLE_PUSHES, CELLS);
+  for (int d = 0; d < AXES; d++)
+    planes_poison(&sum[d * SUMS + OF_LOW], 1, CELLS);
   p.new_field = a->new_field[1];
   p.lost = a->lost[1];
   (ledger ? reader->rectangle_ledger : reader->rectangle_step)(reader, uniforms, &cells);
+  for (int d = 0; d < AXES; d++)
+    memcpy(sum[d * SUMS + OF_RIGHT], right[d], sizeof right[d]);
 }
 
 static void compare_rectangles(const point_arrays *a, const pl_law *reader, const double *uniforms,
@@ -199,21 +240,23 @@ static void compare_rectangles(const point_arrays *a, const pl_law *reader, cons
   if (!PL_HAS(reader, rectangle_ledger) || !reader->rectangle_ledger) return;
   rectangle_row r = {.displacement = planes_new(AXES, 2 * STRIDE),
                      .velocity = planes_new(AXES, 2 * STRIDE)};
+  r.pushed = planes_new(RECTANGLE_PUSHES, FULL);
   for (int side = 0; side < 2; side++)
-    r.force[side] = planes_new(RECTANGLE_PUSHES, CELLS);
+    r.sum[side] = planes_new(AXES * SUMS, CELLS);
   for (int ledger = 0; ledger < 2; ledger++) {
     draw(a, seed);
     draw_row(&r, seed);
     ask_row(a, &r, reader, uniforms, ledger);
-    for (int k = 0; k < RECTANGLE_PUSHES; k++)
-      comparison_add(c, "points", "force of a rectangle", k, r.force[0][k], r.force[1][k], CELLS);
+    for (int k = 0; k < AXES * SUMS; k++)
+      comparison_add(c, "points", "force of rectangles", k, r.sum[0][k], r.sum[1][k], CELLS);
     compare(a, "field of a rectangle", a->new_field[0], a->new_field[1], reader->field_count, c);
     compare(a, "lost in a rectangle", a->lost[0], a->lost[1], PL_LOSSES, c);
   }
   planes_free(r.displacement, AXES);
   planes_free(r.velocity, AXES);
+  planes_free(r.pushed, RECTANGLE_PUSHES);
   for (int side = 0; side < 2; side++)
-    planes_free(r.force[side], RECTANGLE_PUSHES);
+    planes_free(r.sum[side], AXES * SUMS);
 }
 
 void kernel_check_points(const pl_law *const readers[2], const double *const uniforms[2],

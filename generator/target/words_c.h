@@ -97,10 +97,13 @@
   X(RECTANGLES_HEAD, "  const pl_points *points = cells->points;\n"                                \
     "  (void)law, (void)uniforms, (void)points;\n"                                                 \
     "  const pl_rectangle slopes = *cells->slopes, push = *cells->push;\n"                         \
-    "  const long stride = cells->stride;\n")                                                      \
+    "  const long stride = cells->stride;\n"                                                       \
+    "  pl_rectangle_ends ends[2];\n"                                                               \
+    "  for (long d = 0; d < 2; d++) pl_rectangle_begin(&ends[d], cells->right[d]);\n")             \
   X(RECTANGLE_FIELD, "  const double *restrict along_x_$1 = cells->$2[0];\n"                       \
     "  const double *restrict along_y_$1 = cells->$2[1];\n")                                       \
-  X(RECTANGLE_FORCE, "  double *restrict at_force_$1 = cells->force[$1];\n")                       \
+  X(RECTANGLE_FORCE, "  double *restrict at_force_$1 = cells->force[$1];\n"                       \
+    "  double *restrict at_above_$1 = cells->above[$1];\n")                                        \
   X(RECTANGLE_LOOP, "  for (long first = 0; first < cells->count; first += PL_LANES) {\n"          \
     "  PL_INDEPENDENT\n  for (long lane = 0; lane < PL_LANES; lane++) {\n"                         \
     "    const long low = first + lane, high = low + stride;\n"                                    \
@@ -116,7 +119,10 @@
   X(RECTANGLE_VALUE, "$1[$2][k]")                                                                  \
   X(RECTANGLE_PUSH, "    pl_rectangle_push(&push, cell_stress[0], cell_stress[2], pushed[0]);\n"   \
     "    pl_rectangle_push(&push, cell_stress[2], cell_stress[1], pushed[1]);\n")                  \
-  X(RECTANGLE_STORE, "    at_force_$1[low] = pushed[$2][$3];\n")                                   \
+  X(RECTANGLE_STORE, "    pl_rectangle_keep(&ends[$1], lane, pushed[$1]);\n")                      \
+  X(RECTANGLE_SUM, "  pl_rectangle_sum(&ends[$1], cells->cells - first,\n"                         \
+    "                   at_force_$1 + first, at_above_$1 + first);\n")                             \
+  X(RECTANGLE_END, "  pl_rectangle_end(&ends[$1], cells->right[$1]);\n")                           \
   /* searches: block by block, all points of one as long as one goes on */                         \
   X(SEARCH_BLOCKS, "  enum { BLOCK = $1 };\n"                                                      \
     "  for (long begin = 0; begin < count; begin += BLOCK) {\n"                                    \

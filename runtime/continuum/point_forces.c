@@ -21,7 +21,7 @@ enum {
 /* What a thread works with: planes of one strip, and sums over rows of rectangles. */
 typedef struct point_scratch {
   double *strain[STRAINS], *rate[STRAINS], *stress[STRESSES], *traction[STRAINS],
-      *tangent[TANGENTS], *bound, *by_cell[RECTANGLE_PUSHES];
+      *tangent[TANGENTS], *bound, *by_cell[RECTANGLE_PUSHES], *low[2];
   rectangle_rows sums;
   double **old_field, **new_field, **observed;
 } point_scratch;
@@ -63,9 +63,8 @@ static void open_scratch(point_forces *p, point_scratch *s) {
   planes(p, s->traction, STRAINS, size);
   planes(p, s->tangent, TANGENTS, size);
   planes(p, &s->bound, 1, size);
-  planes(p, s->by_cell, RECTANGLE_PUSHES, size / 4 + 2 * PL_LANES);
-  for (int k = 0; k < RECTANGLE_PUSHES; k++)
-    s->by_cell[k] += PL_LANES; /* a cell before the first (rectangle_rows_add), aligned */
+  planes(p, s->by_cell, RECTANGLE_PUSHES, size / 4 + PL_LANES);
+  planes(p, s->low, 2, p->strips.layout.padded);
   planes(p, s->sums.above, 2, p->strips.layout.padded);
   s->old_field = must_calloc((size_t)p->law->field_count + 1, sizeof(double *));
   s->new_field = must_calloc((size_t)p->law->field_count + 1, sizeof(double *));
@@ -451,46 +450,39 @@ static void aim(const point_forces *p, const point_strip *s, double *plane, int 
     at[k] = plane + k * (long)p->strips.count + s->at;
 }
 
-/* Lanes that fill up the last group have been strained by whatever stands beside the last node, but
-   stay as they were: where sums go over all lanes they count with a volume of 0, which takes a
-   number to be nothing. */
-static void leave_filling(const point_forces *p, const point_strip *s, const pl_points *points) {
-  const cell_group *last = &p->strips.groups[s->last - 1];
-  for (int k = 0; k < last->points; k++)
-    for (int lane = last->count; lane < PL_LANES; lane++) {
-      const long at = last->at - s->at + k * PL_LANES + lane;
-      for (int f = 0; f < p->law->field_count; f++)
-        points->new_field[f][at] = points->old_field[f][at];
-      for (int loss = 0; loss < PL_LOSSES && points->lost; loss++)
-        points->lost[loss][at] = 0;
-    }
+static int cells_of(const point_forces *p, const point_strip *s) {
+  return (s->last - s->first - 1) * PL_LANES + p->strips.groups[s->last - 1].count;
 }
 
-/* What the cells of a strip do to their nodes, in one loop of the law's from these to these. */
+/* Forces of the lower nodes of a strip, [cells], but for the right one of the last cell, and sums
+   over rows (rectangle_rows): in one loop of the law's from displacements to these. */
 static void step_rectangles(const point_forces *p, const point_strip *s, point_scratch *own,
-                            const point_motion *at) {
+                            const point_motion *at, double *const force[2]) {
   const cell_group *first = &p->strips.groups[s->first];
   const node_layout *l = &p->strips.layout;
   const long node = l->origin + s->row * l->stride + first->first;
   const double *const u[] = {at->displacement[0] + node, at->displacement[1] + node},
                       *const v[] = {at->velocity[0] + node, at->velocity[1] + node};
+  double *const above[] = {own->sums.above[0] + first->first, own->sums.above[1] + first->first};
   double *lost[PL_LOSSES];
   pl_points points = view_of(p, s, own, at);
   const pl_rectangles cells = {.size = sizeof cells,
                                .count = (s->last - s->first) * PL_LANES,
+                               .cells = cells_of(p, s),
                                .stride = l->stride,
                                .displacement = u,
                                .velocity = v,
                                .slopes = &first->table->slopes,
                                .push = &s->push,
-                               .force = own->by_cell,
+                               .force = force,
+                               .above = above,
+                               .right = own->sums.right,
                                .points = &points};
   if (p->loses) {
     aim(p, s, p->lost, PL_LOSSES, lost);
     points.lost = lost;
   }
   (p->loses ? p->law->rectangle_ledger : p->law->rectangle_step)(p->law, p->uniforms, &cells);
-  leave_filling(p, s, &points);
 }
 
 static void step_points(const point_forces *p, const point_strip *s, point_scratch *own,
@@ -516,9 +508,14 @@ static void step_strip(const point_forces *p, const point_strip *s, point_scratc
     step_points(p, s, own, at);
     return;
   }
-  step_rectangles(p, s, own, at);
-  cell_strips_gather(&p->strips, s->row, &p->strips.groups[s->first], s->last - s->first,
-                     own->by_cell, p->pushed);
+  const int first = p->strips.groups[s->first].first, cells = cells_of(p, s);
+  rectangle_rows_begin(&own->sums, p->strips.layout.nodes[0]);
+  step_rectangles(p, s, own, at, own->low);
+  rectangle_rows_end(&own->sums, first + cells,
+                     (double *const[]){own->low[0] + cells, own->low[1] + cells});
+  for (int d = 0; d < 2; d++)
+    cell_strips_add(&p->strips, s->row, first, cells + 1, own->low[d], own->sums.above[d] + first,
+                    p->pushed[d]);
 }
 
 static void step_row(const point_forces *p, int row, point_scratch *own, const point_motion *at) {
@@ -540,10 +537,8 @@ static void step_whole_row(const point_forces *p, int row, bool first, bool last
   if (first) rectangle_rows_begin(&own->sums, s->layout.nodes[0]);
   for (int k = p->parts->first_of_row[row]; k < p->parts->first_of_row[row + 1]; k++) {
     const point_strip *part = &p->parts->items[k];
-    const cell_group *from = &s->groups[part->first], *to = &s->groups[part->last - 1];
-    step_rectangles(p, part, own, at);
-    rectangle_rows_add(&own->sums, from->first, to->first + to->count - from->first, own->by_cell,
-                       (double *const[]){low[0] + from->first, low[1] + from->first});
+    const int from = s->groups[part->first].first;
+    step_rectangles(p, part, own, at, (double *const[]){low[0] + from, low[1] + from});
   }
   const int node = s->layout.nodes[0] - 1;
   rectangle_rows_end(&own->sums, node, (double *const[]){low[0] + node, low[1] + node});
@@ -625,10 +620,27 @@ static void add_losses(const point_forces *p, const point_strip *s, double *cons
   row->pending += 0.5 * now;
 }
 
+/* Lanes that fill up the last of a row of rectangles are strained by whatever stands beside the last
+   node (step_rectangles). Nobody asks for them but sums, where they count with a volume of 0, which
+   takes a number to be nothing: they are as made when looked at. */
+static void forget_filling(const point_forces *p, const point_strip *s) {
+  const cell_group *last = &p->strips.groups[s->last - 1];
+  const long all = p->strips.count;
+  for (int k = 0; k < last->points; k++)
+    for (int lane = last->count; lane < PL_LANES; lane++) {
+      const long at = last->at + k * PL_LANES + lane;
+      for (int f = 0; f < p->law->field_count; f++)
+        p->old_field[f * all + at] = p->law->fields[f].initial;
+      for (int loss = 0; loss < PL_LOSSES && p->loses; loss++)
+        p->lost[loss * all + at] = 0;
+    }
+}
+
 static void see_strip(const point_forces *p, const point_strip *s, point_scratch *own,
                       const point_motion *at) {
   double *stress[STRESSES], *lost[PL_LOSSES];
   point_row *row = &p->rows[s->row];
+  if (s->rectangles) forget_filling(p, s);
   pl_points points = motion_of(p, s, own, at);
   aim(p, s, p->stress, STRESSES, stress);
   points.stress = stress;

@@ -495,6 +495,15 @@ void cell_strips_gather(const cell_strips *s, int row, const cell_group *g, int 
                          s->layout.stride);
 }
 
+void cell_strips_add(const cell_strips *s, int row, int first, int count, const double *low,
+                     const double *high, double *pushed) {
+  double *to = pushed + row * plane_of(s) - s->low * s->layout.stride + first;
+  for (int n = 0; n < count; n++) {
+    to[n] += low[n];
+    to[s->layout.stride + n] += high[n];
+  }
+}
+
 bool cell_strips_is_whole(const cell_strips *s, int row) {
   int cells = 0;
   for (int g = s->first_group[row]; g < s->first_group[row + 1]; g++) {

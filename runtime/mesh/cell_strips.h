@@ -92,6 +92,9 @@ void cell_strips_take(const cell_strips *s, int row, double *const pushed[2], bo
    the last, from what each cell does to its nodes, N (rectangle_cells_push). */
 void cell_strips_gather(const cell_strips *s, int row, const cell_group *g, int count,
                         double *const by_cell[RECTANGLE_PUSHES], double *const pushed[2]);
+/* Adds forces of nodes of a row of cells, from number `first` on: low[count] and high[count], N. */
+void cell_strips_add(const cell_strips *s, int row, int first, int count, const double *low,
+                     const double *high, double *pushed);
 /* Whether a row of cells is nothing but even groups, so that rectangle_rows sums what they do. */
 bool cell_strips_is_whole(const cell_strips *s, int row);
 /* What such a row does to its upper nodes, N: a row of `pushed`, one of cell_strips_push. */

@@ -120,25 +120,6 @@ void rectangle_rows_begin(rectangle_rows *r, int nodes) {
   begin_row(r);
 }
 
-void rectangle_rows_add(rectangle_rows *r, int first, int cells,
-                        double *const pushed[RECTANGLE_PUSHES], double *const force[2]) {
-  for (int d = 0; d < 2; d++) {
-    double *const *of = pushed + d * CORNERS;
-    const double *low_left = of[LOW_LEFT], *high_left = of[HIGH_LEFT];
-    double *low_right = of[LOW_RIGHT], *high_right = of[HIGH_RIGHT], *out = force[d],
-           *above = r->above[d] + first;
-    low_right[-1] = r->right[d][0];
-    high_right[-1] = r->right[d][1];
-    INDEPENDENT
-    for (long n = 0; n < cells; n++) {
-      out[n] = (low_left[n] + low_right[n - 1]) + above[n];
-      above[n] = high_left[n] + high_right[n - 1];
-    }
-    r->right[d][0] = low_right[cells - 1];
-    r->right[d][1] = high_right[cells - 1];
-  }
-}
-
 void rectangle_rows_end(rectangle_rows *r, int node, double *const force[2]) {
   for (int d = 0; d < 2; d++) {
     force[d][0] = r->right[d][0] + r->above[d][node];

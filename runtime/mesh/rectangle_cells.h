@@ -29,9 +29,9 @@ void rectangle_cells_push(const pl_rectangle *r, int groups, const double *const
 void rectangle_cells_gather(int cells, double *const pushed[RECTANGLE_PUSHES],
                             double *const force[2], long stride);
 
-/* Sums over rows that are nothing but such cells, from the left and from below: what a row does to
-   its upper nodes waits for the next one. The sum at a node is the same to the bit where it does
-   not wait but is added later. */
+/* Sums over rows that are nothing but such cells, from the left and from below, which kernels go on
+   with (pl_rectangles): what a row does to its upper nodes waits for the next one. The sum at a node
+   is the same to the bit where it does not wait but is added later. */
 typedef struct rectangle_rows {
   double *above[2];   /* [nodes of a row] N */
   double right[2][2]; /* [axis][low and high] N: what the last cell does to its right nodes */
@@ -39,11 +39,6 @@ typedef struct rectangle_rows {
 
 /* Before a row below which there is none. */
 void rectangle_rows_begin(rectangle_rows *r, int nodes);
-/* Cells of a row from number `first` on, all before them having been added; pushed[..][-1] is there
-   to be written; force: of their lower nodes, written, but for the right one of the row's last
-   cell. */
-void rectangle_rows_add(rectangle_rows *r, int first, int cells,
-                        double *const pushed[RECTANGLE_PUSHES], double *const force[2]);
 /* The last node of a row; force: of it. */
 void rectangle_rows_end(rectangle_rows *r, int node, double *const force[2]);
 

@@ -112,14 +112,15 @@ static void find(loaded *l, int threads) {
 static double part_that_changes(const loaded *l) {
   const point_forces *p = l->points;
   const long count = p->strips.count;
-  long changed = 0;
+  long changed = 0, there = 0;
   for (long k = 0; k < count; k++) {
     bool here = false;
     for (int f = 0; f < p->law->field_count; f++)
       here = here || p->old_field[f * count + k] != p->new_field[f * count + k];
-    changed += here;
+    there += p->strips.volume[k] > 0;
+    changed += here && p->strips.volume[k] > 0;
   }
-  return (double)changed / (double)count;
+  return (double)changed / (double)there;
 }
 
 /* --- beside a hand-written program ------------------------------------------------------------ */
