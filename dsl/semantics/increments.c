@@ -15,8 +15,8 @@
    above: 0. It has to be written again, below. */
 
 enum {
-  MOST_STATES = 100, /* looked at, in one law */
-  READS_LAST = 1,    /* x above its rule, where it is the value of the last step */
+  MOST_LOOKS = 1000000, /* statements looked at, for all states of a law together */
+  READS_LAST = 1,       /* x above its rule, where it is the value of the last step */
   READS_PREVIOUS = 2,
   READS_INCREMENT = READS_LAST | READS_PREVIOUS
 };
@@ -131,15 +131,26 @@ static const char *name_of_x(const increments *w) {
   return w->of->symbol.name;
 }
 
+/* A difference as it is written, without what stands around it. */
+static const char *text_of(const increments *w, const expr *e) {
+  const char *x = name_of_x(w);
+  expr bare = *e;
+  bare.where.begin = e->left->where.begin;
+  bare.where.end = e->right->where.end;
+  return written(w->ck, &bare, arena_printf(w->ck->memory, "%s - previous(%s)", x, x));
+}
+
+static void warn_of_output(increments *w, span where, const char *text) {
+  complain(w->ck, DIAG_LAST_STEP, where,
+           "`%s` is 0 in an output, which reads the states of the end of the step", text);
+  diag_hint(w->ck->d, "keep the increment in a state of its own, and show that");
+}
+
 static void warn_of_increment(increments *w, int reader, const expr *e) {
   checker *ck = w->ck;
-  const char *x = name_of_x(w), *text = written(ck, e, "");
-  if (text[0] == '(') text = arena_text(ck->memory, text + 1, strlen(text) - 2);
-  if (!text[0]) text = arena_printf(ck->memory, "%s - previous(%s)", x, x);
+  const char *x = name_of_x(w), *text = text_of(w, e);
   if (w->in_output) {
-    complain(ck, DIAG_LAST_STEP, e->where,
-             "`%s` is 0 in an output, which reads the states of the end of the step", text);
-    diag_hint(ck->d, "keep the increment in a state of its own, and show that");
+    warn_of_output(w, e->where, text);
     return;
   }
   complain(ck, DIAG_LAST_STEP, e->where, "`%s` is 0 above the rule of `%s`", text, x);
@@ -174,12 +185,23 @@ static bool is_stale(const increments *w, int definition) {
          !w->in_output && w->ck->statements[definition]->kind != STMT_YIELD;
 }
 
+/* Whether an output reads an increment by this name, which was not warned of where it stands. */
+static bool is_shown_increment(const increments *w, const expr *e) {
+  int at = -1;
+  for (int next = definition_of(e); next >= 0; next = definition_of(e)) {
+    at = next;
+    e = w->ck->statements[at]->value;
+  }
+  return w->in_output && at >= 0 && (w->moves[at] || at > w->of->rule_at) && is_increment(w, e);
+}
+
 static void find_zeros(increments *w, int reader, const expr *e) {
   const int definition = definition_of(e);
   if (is_increment(w, e)) {
     warn_of_increment(w, reader, e);
     return;
   }
+  if (is_shown_increment(w, e)) warn_of_output(w, e->name_where, e->name);
   if (definition >= 0 && is_stale(w, definition) && !w->told[definition]) {
     w->told[definition] = true;
     warn_of_name(w, e);
@@ -223,8 +245,11 @@ static void check_state(checker *ck, const entry *of) {
 }
 
 void report_increments(checker *ck) {
-  for (int k = 0; k < ck->law->fields.count && k < MOST_STATES; k++) {
+  int looks = 0;
+  for (int k = 0; k < ck->law->fields.count && looks <= MOST_LOOKS; k++) {
     const symbol *s = ck->law->fields.items[k];
-    if (s->old_is_read && s->rule) check_state(ck, entry_of(s));
+    if (!s->old_is_read || !s->rule) continue;
+    check_state(ck, entry_of(s));
+    looks += ck->statement_count;
   }
 }

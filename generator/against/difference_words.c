@@ -49,6 +49,14 @@ const char *column_words(const char *name) {
   return name;
 }
 
+static const char *sign_words(double ratio) {
+  return ratio < 0 ? "minus " : "";
+}
+
+static void number_say(double ratio, const char *should, FILE *out) {
+  fprintf(out, "%s%.4g times %s", sign_words(ratio), fabs(ratio), should);
+}
+
 void ratio_say(double ratio, const char *should, FILE *out) {
   const char *known = ratio_words(fabs(ratio));
   if (fabs(ratio) < 1e-9) {
@@ -59,11 +67,10 @@ void ratio_say(double ratio, const char *should, FILE *out) {
     fprintf(out, "off by %.2g %%", 100 * fabs(ratio - 1));
     return;
   }
-  if (ratio < 0) fputs("minus ", out);
   if (known)
-    fprintf(out, "%s %s", known, should);
+    fprintf(out, "%s%s %s", sign_words(ratio), known, should);
   else
-    fprintf(out, "%.4g times %s", fabs(ratio), should);
+    number_say(ratio, should, out);
 }
 
 void exact_ratio_say(double ratio, const char *should, FILE *out) {
@@ -73,12 +80,12 @@ void exact_ratio_say(double ratio, const char *should, FILE *out) {
     ratio_say(ratio, should, out);
     return;
   }
-  fprintf(out, "%s%s times %s", ratio < 0 ? "minus " : "", formula, should);
+  fprintf(out, "%s%s times %s", sign_words(ratio), formula, should);
 }
 
 void plain_ratio_say(double ratio, const char *should, FILE *out) {
   if (ratio_is_closed(fabs(ratio)))
-    fprintf(out, "%.4g times %s", ratio, should);
+    number_say(ratio, should, out);
   else
     exact_ratio_say(ratio, should, out);
 }
@@ -124,9 +131,7 @@ static void say_beginning(const table_difference *d, FILE *out) {
 /* Where that is a multiple with a name. */
 static void say_dissipated(const table_difference *d, const char *should, FILE *out) {
   const double ratio = d->totals[TOTAL_DISSIPATED];
-  char formula[64];
-  if (isnan(ratio) || fabs(ratio - 1) <= 2e-3 || ratio < 1e-9) return;
-  if (!ratio_words(ratio) && !ratio_formula(ratio, formula, sizeof formula)) return;
+  if (isnan(ratio) || fabs(ratio - 1) <= 2e-3 || ratio < 1e-9 || !ratio_is_known(ratio)) return;
   fprintf(out, "; %s is ", total_words[TOTAL_DISSIPATED]);
   exact_ratio_say(ratio, should, out);
 }
@@ -139,11 +144,9 @@ static void say_total(const table_difference *d, const char *should, FILE *out) 
 }
 
 static void say_side(const table_difference *d, const char *should, FILE *out) {
-  char formula[64];
   fprintf(out, "%s is wrong only %s", column_words(d->columns[d->of].name), side_words[d->side]);
   const bool minus = fabs(d->ratio + 1) <= 1e-6,
-             known = !isnan(d->ratio) && (ratio_words(fabs(d->ratio)) ||
-                                          ratio_formula(fabs(d->ratio), formula, sizeof formula));
+             known = !isnan(d->ratio) && ratio_is_known(fabs(d->ratio));
   if (minus) fputs(": there it has the wrong sign", out);
   if (!minus && known) {
     fputs(": there it is ", out);

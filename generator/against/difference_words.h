@@ -27,7 +27,7 @@ void ratio_say(double ratio, const char *should, FILE *out);
    (ratio_formula). */
 void exact_ratio_say(double ratio, const char *should, FILE *out);
 /* The same without roots, pi and logarithms, which would tell the formula that is asked for: "1.155
-   times what it should be". */
+   times what it should be", "minus 0.866 times ...". */
 void plain_ratio_say(double ratio, const char *should, FILE *out);
 /* Behind it, of a ratio that is nearly 1: the question whether a constant is rounded. */
 void rounding_say(double ratio, FILE *out);

@@ -114,6 +114,11 @@ bool ratio_formula(double ratio, char *text, size_t size) {
   return best < 1000;
 }
 
+bool ratio_is_known(double ratio) {
+  char text[64];
+  return ratio_words(ratio) || ratio_formula(ratio, text, sizeof text);
+}
+
 bool ratio_is_closed(double ratio) {
   const size_t k = known_ratio(ratio);
   char text[64];

@@ -122,7 +122,9 @@ const char *ratio_words(double ratio);
 /* Any other ratio of small whole numbers, roots of 2 and 3, pi and its root, within 5e-6: "3/4",
    "2/(3 sqrt(3))", "pi/4"; false: it is none, or has one digit behind the point. */
 bool ratio_formula(double ratio, char *text, size_t size);
-/* Does ratio_words or ratio_formula tell it with a root, pi or a logarithm? */
+/* Does ratio_words or ratio_formula tell it? */
+bool ratio_is_known(double ratio);
+/* With a root, pi or a logarithm? */
 bool ratio_is_closed(double ratio);
 /* So near to 1 that somebody has rounded a number. */
 bool ratio_is_rounding(double ratio);

@@ -33,8 +33,8 @@ void grading_close(grading *g);
    with a message kept; grading_end is to follow in any case, and fills the marks. */
 bool grading_begin(grading *g, const handed_in *answer, marks *m, judging_child *c);
 void grading_end(grading *g, judging_child *c);
-/* From here on who hands in the same law, comments and blanks aside, is not waited for while it
-   runs: its runs are those of this one, whose marks must outlive the grading. */
+/* From here on whoever hands in the same law, comments and blanks aside, gets its runs as they were
+   judged here: these marks must outlive the grading. */
 void grading_keep(grading *g, const judging_child *c);
 /* Both. */
 bool grading_judge(grading *g, const handed_in *answer, marks *m);

@@ -120,10 +120,8 @@ static void compare(path_outcome *out, arena *a, const path_case *c) {
 
 /* Where it says more than the numbers do. Students have the path, and are to find the formula. */
 static void say_known_ratio(double ratio, bool alike, FILE *out) {
-  char formula[64];
   const bool rounding = alike && ratio_is_rounding(ratio),
-             known = rounding || ratio_words(fabs(ratio)) ||
-                     (alike && ratio_formula(fabs(ratio), formula, sizeof formula));
+             known = rounding || ratio_words(fabs(ratio)) || (alike && ratio_is_known(fabs(ratio)));
   if (!known || !isfinite(ratio) || fabs(ratio) < 1e-9) return;
   fputs(rounding ? ", " : ": ", out);
   plain_ratio_say(ratio, should, out);

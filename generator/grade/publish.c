@@ -281,16 +281,6 @@ static bool write_exercise(const publishing *p) {
 
 /* --- the whole -------------------------------------------------------------------------------- */
 
-static bool make_folder(const publishing *p) {
-  const char **names;
-  if (*p->folder && !make_folders(p, p->folder)) return false;
-  if (mkdir(p->folder, 0777) == 0) return true;
-  if (errno != EEXIST || !is_folder(p->folder)) return fail("cannot make the folder", p->folder);
-  if (entries_of(p->memory, p->folder, &names) == 0) return true;
-  say_error("the folder `%s` is not empty", p->folder);
-  return false;
-}
-
 /* The whole path of the folder, or of the nearest one above it that is there; to be freed. */
 static char *nearest_there(const publishing *p, const char *folder) {
   const char *rest = folder;
@@ -312,12 +302,28 @@ static bool lies_inside(const publishing *p, const char *folder, const char *of)
   return inside;
 }
 
+/* An empty folder that is there will do; else it is made. False after a sentence. */
+static bool make_folder(const publishing *p) {
+  const char **names;
+  const bool there = is_folder(p->folder);
+  if (there && entries_of(p->memory, p->folder, &names) > 0) {
+    say_error("the folder `%s` is not empty", p->folder);
+    return false;
+  }
+  if (lies_inside(p, p->folder, p->e->folder)) {
+    say_error("`%s` lies in the exercise itself", p->folder);
+    return false;
+  }
+  if (there) return true;
+  if (*p->folder && !make_folders(p, p->folder)) return false;
+  if (mkdir(p->folder, 0777) == 0 || (errno == EEXIST && is_folder(p->folder))) return true;
+  return fail("cannot make the folder", p->folder);
+}
+
 bool publish(const exercise *e, const source_set *sources, const char *folder) {
   publishing p = {.e = e, .sources = sources, .memory = arena_new(), .folder = folder};
-  bool good = !lies_inside(&p, folder, e->folder) || is_folder(folder);
-  if (!good) say_error("`%s` lies in the exercise itself", folder);
-  good = good && make_folder(&p) && learn_secrets(&p, path_in(p.memory, e->folder, kept), 0) &&
-         copy_files(&p) && write_exercise(&p);
+  const bool good = make_folder(&p) && learn_secrets(&p, path_in(p.memory, e->folder, kept), 0) &&
+                    copy_files(&p) && write_exercise(&p);
   arena_free(p.memory);
   return good;
 }

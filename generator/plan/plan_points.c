@@ -12,6 +12,7 @@
 #include "generator/lower/point_inputs.h"
 #include "generator/plan/plan_losses.h"
 #include "generator/plan/plan_roots.h"
+#include "generator/plan/point_rest.h"
 
 enum { MOST_STRAINS = PL_MAX_STRAINS, MOST_TANGENTS = MOST_STRAINS * MOST_STRAINS };
 
@@ -23,6 +24,8 @@ typedef struct planner {
   ir_node z, z_rate;                                /* along z, in the plane; else IR_NONE */
   lowered_law step, frozen;
   ir_node tangent[MOST_TANGENTS];
+  ir_node rest[MOST_STRAINS + 1]; /* of a law with states: look_at_rest */
+  int rest_count;
 } planner;
 
 /* --- the third direction ---------------------------------------------------------------------- */
@@ -310,107 +313,55 @@ static ir_node path_energy(planner *p, const ir_node *stress) {
   return sum;
 }
 
-/* Whether a direction stands for an axis, and no shear. */
-static bool is_normal(const planner *p, int strain) {
-  return point_component(p->plan->dimensions, strain) < TENSOR_XY;
-}
-
-/* D of a stress D:(strain - what states have moved it by), where D is the same for all states, and
-   without coupling of normal components and shears, or of shears. */
-static bool find_stiffness(planner *p, const ir_node *stress,
-                           ir_node D[MOST_STRAINS][MOST_STRAINS]) {
+/* Stresses without strain, as far as the graph does not show that they are 0, the one along z where
+   it is free: asked before the plane is settled. */
+static void look_at_rest(planner *p) {
   ir *g = p->graph;
-  for (int k = 0; k < p->strains; k++)
-    for (int m = 0; m < p->strains; m++) {
-      D[k][m] = ir_derivative(g, stress[k], p->strain[m]);
-      const bool coupled = k == m || (is_normal(p, k) && is_normal(p, m));
-      if (ir_place(g, D[k][m]) > ON_BODY || (!coupled && !ir_is_number(g, D[k][m], 0)))
-        return false;
-    }
-  return true;
-}
-
-/* D_km D_ln - D_kn D_lm */
-static ir_node minor(ir *g, ir_node D[MOST_STRAINS][MOST_STRAINS], int k, int l, int m, int n) {
-  const ir_node down = ir_mul(g, D[k][m], D[l][n]), up = ir_mul(g, D[k][n], D[l][m]);
-  return ir_sub(g, down, up);
-}
-
-/* Normal strains that the normal stresses take, by cofactors: two of them or three. */
-static void elastic_strain(planner *p, ir_node D[MOST_STRAINS][MOST_STRAINS], const ir_node *stress,
-                           ir_node *strain) {
-  ir *g = p->graph;
-  const int count = p->plan->dimensions;
-  ir_node cofactor[3][3], whole = IR_NONE;
-  for (int k = 0; k < count; k++)
-    for (int m = 0; m < count; m++) {
-      const int k1 = (k + 1) % count, k2 = (k + 2) % count, m1 = (m + 1) % count,
-                m2 = (m + 2) % count;
-      cofactor[k][m] = count == 3         ? minor(g, D, k1, k2, m1, m2)
-                       : (k + m) % 2 == 0 ? D[k1][m1]
-                                          : ir_neg(g, D[k1][m1]);
-    }
-  for (int m = 0; m < count; m++) {
-    const ir_node term = ir_mul(g, D[0][m], cofactor[0][m]);
-    whole = whole == IR_NONE ? term : ir_add(g, whole, term);
-  }
-  for (int m = 0; m < count; m++) {
-    strain[m] = IR_NONE;
-    for (int k = 0; k < count; k++) {
-      const ir_node part = ir_div(g, cofactor[k][m], whole), term = ir_mul(g, part, stress[k]);
-      strain[m] = strain[m] == IR_NONE ? term : ir_add(g, strain[m], term);
-    }
-  }
-}
-
-/* Of a law whose states move the strain without stress: the work from there; IR_NONE where it is
-   not known. In plane strain the point without a stress in the plane counts. */
-static ir_node energy_from_rest(planner *p, const ir_node *stress) {
-  ir *g = p->graph;
-  ir_node D[MOST_STRAINS][MOST_STRAINS], elastic[MOST_STRAINS];
-  if (!find_stiffness(p, stress, D)) return IR_NONE;
-  elastic_strain(p, D, stress, elastic);
-  for (int k = p->plan->dimensions; k < p->strains; k++)
-    elastic[k] = ir_div(g, stress[k], D[k][k]);
-  return half(g, contract(p, stress, elastic));
-}
-
-/* Whether there is a stress without strain, the one along z included: asked before the plane is
-   settled. */
-static bool states_move(planner *p) {
-  ir *g = p->graph;
-  ir_node still[2 * MOST_STRAINS + 2];
-  int count = 0;
+  ir_node still[2 * MOST_STRAINS + 2], rest[MOST_STRAINS + 1];
+  int count = 0, stresses = 0;
   for (int k = 0; k < p->strains; k++) {
     still[count++] = p->strain[k];
     still[count++] = p->rate[k];
+    rest[stresses++] = p->frozen.sigma[point_component(p->plan->dimensions, k)];
   }
   if (p->z != IR_NONE) still[count++] = p->z;
   if (p->z_rate != IR_NONE) still[count++] = p->z_rate;
-  for (int k = 0; k < p->strains; k++) {
-    ir_node rest = p->frozen.sigma[point_component(p->plan->dimensions, k)];
-    rewrite_zero(g, &rest, 1, still, count, &rest);
-    if (!ir_is_number(g, rest, 0)) return true;
-  }
+  if (p->plan->law->setting == SETTING_PLANE_STRESS) rest[stresses++] = p->frozen.sigma[TENSOR_ZZ];
+  rewrite_zero(g, rest, stresses, still, count, rest);
+  for (int k = 0; k < stresses; k++)
+    if (!ir_is_number(g, rest[k], 0)) p->rest[p->rest_count++] = rest[k];
+}
+
+/* Whether states move the strain without stress. */
+static bool states_move(const planner *p) {
+  for (int k = 0; k < p->rest_count; k++)
+    if (!point_rest_is_none(p->plan, p->rest[k])) return true;
   return false;
 }
 
-/* IR_NONE: not known. */
-static ir_node stored_energy(planner *p, bool moved) {
+/* The work from the strain without stress, in plane strain from that without a stress in the plane;
+   IR_NONE where it is not known. */
+static ir_node work_from_rest(planner *p) {
   ir *g = p->graph;
-  if (p->frozen.W != IR_NONE) {
-    ir_node W;
-    rewrite_zero(g, &p->frozen.W, 1, p->rate, p->strains, &W);
-    return W;
-  }
-  ir_node stress[MOST_STRAINS];
+  ir_node stress[MOST_STRAINS], elastic[MOST_STRAINS];
   frozen_stress(p, true, stress);
-  if (moved) return energy_from_rest(p, stress);
+  if (p->rest_count > 0) {
+    if (point_elastic_strain(p->plan, stress, p->strain, p->strains, elastic))
+      return half(g, contract(p, stress, elastic));
+    if (states_move(p)) return IR_NONE;
+  }
   for (int k = 0; k < p->strains; k++) {
     const double degree = rewrite_degree(g, stress[k], p->strain, p->strains);
     if (degree != 1 && degree != REWRITE_ZERO) return path_energy(p, stress);
   }
   return half(g, contract(p, stress, p->strain));
+}
+
+/* At zero rate; IR_NONE: not known. */
+static ir_node stored_energy(planner *p) {
+  ir_node W = p->frozen.W;
+  rewrite_zero(p->graph, &W, 1, p->rate, p->strains, &W);
+  return W;
 }
 
 /* What the stress does at rest as the strain changes: W/m^3. */
@@ -440,7 +391,8 @@ static void want(planner *p, segment *a, ir_node node, segment_target target, in
 }
 
 typedef struct seen_points {
-  ir_node stored, rate_power, still_power;
+  ir_node stored; /* IR_NONE: not known */
+  ir_node rate_power, still_power;
   force_fields stress; /* that of a step */
 } seen_points;
 
@@ -453,9 +405,11 @@ static void plan_step(planner *p, const seen_points *t, segment *a) {
 }
 
 /* What is stored with the old fields less what is with the new ones, both at the present strain;
-   and what that difference is halfway instead, where the step's stress works (plan_losses.h). */
+   and what that difference is halfway instead, where the step's stress works (plan_losses.h). 0
+   where it is not known. */
 static ir_node lost_to_states(planner *p, const seen_points *t) {
   ir *g = p->graph;
+  if (t->stored == IR_NONE) return ir_constant(g, 0);
   const ir_node kept = with_new_fields(p, t->stored), after = with_new_fields(p, t->still_power);
   const ir_node lost = kept == t->stored ? ir_constant(g, 0) : ir_sub(g, t->stored, kept);
   if (t->stress == FORCES_OF_BOTH || after == t->still_power) return lost;
@@ -475,7 +429,7 @@ static void plan_ledger(planner *p, const seen_points *t, segment *a) {
 }
 
 static void plan_observe(planner *p, const seen_points *t, segment *a) {
-  want(p, a, t->stored, TO_OBSERVED, 0);
+  want(p, a, t->stored != IR_NONE ? t->stored : ir_constant(p->graph, 0), TO_OBSERVED, 0);
   for (int k = 0; k < p->plan->law->outputs.count; k++)
     want(p, a, p->frozen.outputs[k], TO_OBSERVED, 1 + k);
 }
@@ -580,22 +534,21 @@ bool plan_points(kernel_plan *plan, diagnostics *d) {
       !lower_law_varying(plan->law, plan->graph, LOWER_FROZEN, v, plan->memory, &p.frozen, d))
     return false;
   point_at_inputs(&p);
-  const bool moved = plan->law->fields.count > 0 && states_move(&p);
+  if (plan->law->fields.count > 0) look_at_rest(&p);
   const force_fields alive = stress_fields(&p),
                      stress = plan->law->failed && alive == FORCES_OF_OLD ? FORCES_OF_BOTH : alive;
   if (plan->dimensions == 3)
     find_tangent(&p, false);
   else
     settle_plane(&p);
+  plan->stores = plan->law->nonconservative == NULL;
+  if (p.frozen.W == IR_NONE) p.frozen.W = work_from_rest(&p);
+  if (p.frozen.W == IR_NONE && plan->stores) return tell_no_energy(plan->law, d);
   fail_points(&p);
   plan->linear = is_linear(&p);
-  plan->stores = plan->law->nonconservative == NULL;
   plan->reads_rates = reads_rates(&p);
   plan->reads_size = law_reads(plan->law, QUANTITY_CELL_SIZE);
-  const ir_node stored = stored_energy(&p, moved);
-  if (stored == IR_NONE && plan->stores) return tell_no_energy(plan->law, d);
-  const ir_node known = stored == IR_NONE ? ir_constant(plan->graph, 0) : stored;
-  seen_points seen = {known, rate_power(&p), still_power(&p), stress};
+  seen_points seen = {stored_energy(&p), rate_power(&p), still_power(&p), stress};
   improve(&p, &seen);
   static void (*const program[])(planner *, const seen_points *,
                                  segment *) = {[PROGRAM_STEP] = plan_step,

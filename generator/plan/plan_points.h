@@ -9,7 +9,9 @@
 
    A law that gives no energy stores sigma : strain/2 where the stress is homogeneous of degree one
    in the strain (linear, also piecewise); else the work of the straight path from rest (Gauss, 4
-   points: exact for stresses up to degree 7). */
+   points: exact for stresses up to degree 7). Where states move the strain without stress
+   (point_rest.h) it is sigma : C^-1 : sigma/2, C the same for all states and strains, else an
+   error: the law has to give its energy. */
 #ifndef PERILAT_GENERATOR_PLAN_POINTS_H
 #define PERILAT_GENERATOR_PLAN_POINTS_H
 

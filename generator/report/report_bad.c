@@ -111,7 +111,7 @@ void report_bad(const run *r) {
   say_error(
       "%s in step %ld (%s%s) at %s %ld, %s", b.what, b.step,
       r->deck->relaxation.increments > 0 ? "after " : "", moment(r, b.time, when),
-      deck_lattice_is_mesh(&r->deck->lattices[b.body]) ? "node" : "particle", b.particle,
+      deck_particle_word(&r->deck->lattices[b.body]), b.particle,
       rows_place_text(simulation_rows(r->simulation, b.body)->dimensions, b.place, place_text));
   if (b.family) print_family(r, &b);
   if (b.point) {

@@ -9,12 +9,19 @@
 #include "generator/report/report_laws.h"
 #include "generator/report/report_mesh.h"
 
+static int lattice_of(const run *r, const char *region_name) {
+  const int region = deck_find_region(r->deck, region_name);
+  return deck_find_lattice(r->deck, r->deck->regions[region].lattice);
+}
+
 /* "mass       0.2 kg on 3 particles of `tip`" */
 static void announce_point_mass(const run *r, int index) {
+  const char *region = r->deck->point_masss[index].region;
   long particles;
   const double mass = simulation_point_mass(r->simulation, index, &particles);
-  printf("  mass       %.6g kg on %ld particle%s of `%s`\n", mass, particles,
-         particles == 1 ? "" : "s", r->deck->point_masss[index].region);
+  printf("  mass       %.6g kg on %ld %s%s of `%s`\n", mass, particles,
+         deck_particle_word(&r->deck->lattices[lattice_of(r, region)]), particles == 1 ? "" : "s",
+         region);
 }
 
 static bool is_written(const deck_item *item, const char *key) {
@@ -26,16 +33,15 @@ static bool is_written(const deck_item *item, const char *key) {
 /* "load       -42 kN/m on 1.2 m of `top`, 60 particles: -50.4 kN along y" */
 static void announce_line_load(const run *r, int force) {
   const deck_force *f = &r->deck->forces[force];
-  const int region = deck_find_region(r->deck, f->region);
-  const int lattice = deck_find_lattice(r->deck, r->deck->regions[region].lattice);
+  const int lattice = lattice_of(r, f->region);
   const int dimensions = simulation_rows(r->simulation, lattice)->dimensions;
   long particles;
   const double length = simulation_loaded_length(r->simulation, force, &particles);
   const bool known = is_written(&f->item, "per_length");
   fputs("  load      ", stdout);
   if (known) print_quantity(" ", f->force.value, "N/m");
-  printf("%s %.6g m of `%s`, %ld particles", known ? " on" : " by length on", length, f->region,
-         particles);
+  printf("%s %.6g m of `%s`, %ld %ss", known ? " on" : " by length on", length, f->region,
+         particles, deck_particle_word(&r->deck->lattices[lattice]));
   if (known) print_quantity(": ", f->force.value * length, "N");
   printf(" along %s\n", deck_component_name(dimensions, f->component));
 }

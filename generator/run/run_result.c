@@ -23,6 +23,7 @@
 #include "runtime/lattice/rows_select.h"
 #include "runtime/lattice/shape_matrix.h"
 #include "runtime/mesh/node_layout.h"
+#include "runtime/result/checkpoint.h"
 #include "runtime/simulation/simulation_save.h"
 
 /* --- paths and fingerprint -------------------------------------------------------------------- */
@@ -47,7 +48,7 @@ void choose_paths(run *r) {
   if (lstat(path, &about) != 0 || !S_ISLNK(about.st_mode)) chosen = path;
   r->result_path = arena_text(r->memory, chosen, strlen(chosen));
   free(target);
-  r->checkpoint_path = arena_printf(r->memory, "%s.checkpoint", r->result_path);
+  r->checkpoint_path = arena_printf(r->memory, "%s" CHECKPOINT_ENDING, r->result_path);
 }
 
 /* What is in the way of a file that is to be put there; NULL: nothing. */

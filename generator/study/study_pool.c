@@ -17,6 +17,7 @@
 #include "generator/run/run.h"
 #include "generator/run/stopping.h"
 #include "runtime/base/processors.h"
+#include "runtime/result/checkpoint.h"
 
 /* --- one run ---------------------------------------------------------------------------------- */
 
@@ -38,7 +39,7 @@ typedef struct work {
 
 static int run_again(run_options *o, const study_case *c) {
   char checkpoint[4200];
-  snprintf(checkpoint, sizeof checkpoint, "%s.checkpoint", c->result);
+  snprintf(checkpoint, sizeof checkpoint, "%s" CHECKPOINT_ENDING, c->result);
   o->resume = access(checkpoint, F_OK) == 0;
   const int status = run_deck(o);
   if (!o->resume || status != INPUT_WRONG) return status;

@@ -51,6 +51,10 @@ const char *deck_lattice_word(const deck_lattice *l) {
                                    : "lattice";
 }
 
+const char *deck_particle_word(const deck_lattice *l) {
+  return deck_lattice_is_mesh(l) ? "node" : "particle";
+}
+
 bool deck_lattice_is_irregular(const deck_lattice *l) {
   const lattice_kind *kind = lattice_kind_find(l->kind);
   return kind && kind->dimensions == 0;

@@ -82,6 +82,8 @@ bool deck_lattice_is_mesh(const deck_lattice *l);
 bool deck_lattice_touches(const deck_lattice *l, const deck_contact *by);
 /* What messages call it: "bar", "link", "mesh", or "lattice". */
 const char *deck_lattice_word(const deck_lattice *l);
+/* And what it consists of: "node" of a mesh, else "particle". */
+const char *deck_particle_word(const deck_lattice *l);
 /* 2 or 3: by the kind, where particles stand on no lattice by the setting; 0 for an unknown
    kind. */
 int deck_lattice_dimensions(const deck_lattice *l);

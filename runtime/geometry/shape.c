@@ -294,8 +294,7 @@ static double box_distance(const deck_shape *shape, const double *p) {
   return both(both(d[0], d[1]), d[2]);
 }
 
-/* Distance to the shape's surface, negative inside. */
-static double shape_distance(const deck_shape *shape, const double *p) {
+double shape_distance(const deck_shape *shape, const double *p) {
   shape_outline s;
   double from[3];
   switch (shape->kind) {

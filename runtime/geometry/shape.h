@@ -52,6 +52,9 @@ typedef struct deck_shape { /* m */
    numbers are not. lower[2] and upper[2] are 0 for shapes of the plane. */
 void shape_box(const deck_shape *shape, double lower[3], double upper[3]);
 
+/* m: of a point from the shape's outline, negative inside. */
+double shape_distance(const deck_shape *shape, const double *point);
+
 /* True inside, on the outline, and outside within `tolerance` of the outline. A polygon's inside is
    where a ray crosses its outline an odd number of times; a disc with an inner radius is a ring;
    points, segments and faces are their own outlines. */

@@ -9,22 +9,6 @@
 #include "runtime/geometry/gmsh_mesh.h"
 #include "runtime/lattice/rows_select.h"
 
-/* A point says how far away the nearest particle is, other shapes where the body is. */
-static void hint_nearest(const char *thing, const double at[3], const rows *w, diagnostics *d) {
-  double best = INFINITY, nearest[3] = {0, 0, 0};
-  char text[ROWS_PLACE_TEXT];
-  for (long p = 0; p < w->particle_count; p++) {
-    double here[3];
-    rows_place(w, w->particle_site[p], here);
-    const double distance = bravais_distance(here, at);
-    if (distance >= best) continue;
-    best = distance;
-    memcpy(nearest, here, sizeof nearest);
-  }
-  diag_hint(d, "the nearest %s stands %.4g mm away at %s; `within` says how far is near enough",
-            thing, 1e3 * best, rows_place_text(w->dimensions, nearest, text));
-}
-
 /* "x = 0 .. 80 mm, y = 0 .. 40 mm" */
 static void extent_text(const rows *w, char *text, size_t size) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -43,40 +27,35 @@ static void extent_text(const rows *w, char *text, size_t size) {
            1e3 * low[1], 1e3 * high[1], above);
 }
 
-/* How far a box is from a place along each axis, squared: 0 within it. */
-static double beyond(const double lower[3], const double upper[3], const double at[3]) {
-  double sum = 0;
-  for (int c = 0; c < 3; c++) {
-    const double out = pl_fmax(pl_fmax(lower[c] - at[c], at[c] - upper[c]), 0);
-    sum += out * out;
-  }
-  return sum;
-}
-
-/* Next to the shape's box; [3] their place. False where no particle is. */
-static bool nearest_to(const deck_shape *shape, const rows *w, double nearest[3]) {
-  double lower[3], upper[3], best = INFINITY;
-  shape_box(shape, lower, upper);
+/* Of the shape; how far it is from it, and [3] where it stands. Infinite where no particle is. */
+static double nearest_to(const deck_shape *shape, const rows *w, double nearest[3]) {
+  double best = INFINITY;
   for (long p = 0; p < w->particle_count; p++) {
     double here[3] = {0, 0, 0};
     rows_place(w, w->particle_site[p], here);
-    const double distance = beyond(lower, upper, here);
+    const double distance = shape_distance(shape, here);
     if (!(distance < best)) continue;
     best = distance;
     memcpy(nearest, here, sizeof here);
   }
-  return isfinite(best);
+  return best;
 }
 
-/* A shape may lie in the body between particles. */
-static void hint_shape(const char *thing, const char *lattice, const deck_shape *shape,
-                       const rows *w, diagnostics *d) {
-  double nearest[3] = {0, 0, 0};
+/* A point says how far away the nearest particle is, other shapes where the body is, too: they may
+   lie in it between particles. */
+static void hint_nearest(const char *thing, const char *lattice, const deck_shape *shape,
+                         const rows *w, diagnostics *d) {
+  double place[3] = {0, 0, 0};
   char text[ROWS_PLACE_TEXT], extent[192];
+  const double distance = nearest_to(shape, w, place);
+  const char *nearest = rows_place_text(w->dimensions, place, text);
   extent_text(w, extent, sizeof extent);
-  if (nearest_to(shape, w, nearest))
+  if (shape->kind == SHAPE_POINT)
+    diag_hint(d, "the nearest %s stands %.4g mm away at %s; `within` says how far is near enough",
+              thing, 1e3 * distance, nearest);
+  else if (isfinite(distance))
     diag_hint(d, "the %ss of `%s` lie in %s; the nearest stands at %s", thing, lattice, extent,
-              rows_place_text(w->dimensions, nearest, text));
+              nearest);
   else
     diag_hint(d, "the %ss of `%s` lie in %s", thing, lattice, extent);
 }
@@ -84,14 +63,10 @@ static void hint_shape(const char *thing, const char *lattice, const deck_shape 
 static void report_empty(const deck *k, const char *lattice, const deck_region *region,
                          const rows *w, diagnostics *d) {
   const int number = deck_find_lattice(k, lattice);
-  const bool nodes = number >= 0 && deck_lattice_is_mesh(&k->lattices[number]);
-  const char *thing = nodes ? "node" : "particle";
+  const char *thing = number < 0 ? "particle" : deck_particle_word(&k->lattices[number]);
   diag_report(d, DIAG_EMPTY_REGION, region->item.where, "region `%s` holds no %s", region->name,
               thing);
-  if (region->shape.kind == SHAPE_POINT)
-    hint_nearest(thing, region->shape.at, w, d);
-  else
-    hint_shape(thing, lattice, &region->shape, w, d);
+  hint_nearest(thing, lattice, &region->shape, w, d);
 }
 
 bool *regions_used(const deck *k) {

@@ -21,7 +21,7 @@ typedef struct motions { /* who holds which component of which particle, while t
                           */
   int32_t *holder;       /* [dof * particle_count]: index of the constraint + 1 */
   int dof;
-  const char *law;
+  const char *law, *particle; /* the latter in words */
   diagnostics *said;
 } motions;
 
@@ -48,7 +48,7 @@ static bool add_motion(loads *l, motions *m, int **supports, int32_t particle, i
         drive >= 0 ? &l->deck->drives[drive].item : &l->deck->supports[support].item;
     char text[ROWS_PLACE_TEXT];
     diag_report(m->said, DIAG_CONFLICT, deck_where(item, "region"),
-                "the particle at %s has its motion in %s prescribed twice",
+                "the %s at %s has its motion in %s prescribed twice", m->particle,
                 place_of(l, l->lattice->particle_site[particle], text),
                 deck_component_name(l->lattice->dimensions, component));
     diag_note(m->said, motion_where(l->deck, first, *supports, *holder - 1),
@@ -438,7 +438,10 @@ loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, 
   l->gives_way =
       deck_lattice_is_mesh(&k->lattices[lattice]) && k->newmark.motion == MOTION_VELOCITY_ONLY;
   l->regions = regions_select(k, k->lattices[lattice].name, w, d);
-  motions m = {.dof = dof, .law = law, .said = d};
+  motions m = {.dof = dof,
+               .law = law,
+               .particle = deck_particle_word(&k->lattices[lattice]),
+               .said = d};
   m.holder = must_calloc((size_t)dof * (size_t)w->particle_count + 1, sizeof *m.holder);
   add_motions(l, &m);
   add_forces(l, lattice, &m);

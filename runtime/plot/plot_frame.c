@@ -10,7 +10,6 @@
 #include "runtime/base/eigen.h"
 #include "runtime/base/quantity.h"
 #include "runtime/base/symmetric_tensor.h"
-#include "runtime/deck/output_fields.h"
 #include "runtime/plot/canvas.h"
 #include "runtime/result/mesh_views.h"
 #include "runtime/result/result_fields.h"
@@ -194,32 +193,16 @@ static bool read_tensor(result_file *f, plot_frame *m, const plot_map_options *o
   return m->values != NULL;
 }
 
-static bool is_a_tensor_of_frames(const char *field) {
-#define X(name, unit, words, of_nodes)                                                             \
-  if (strcmp(field, #name) == 0) return true;
-  OUTPUT_TENSORS(X)
-#undef X
-  return false;
-}
-
-static void say_no_tensor(const plot_map_options *o, char *error, size_t size) {
-  if (is_a_tensor_of_frames(o->field))
-    snprintf(error, size, "the result holds no `%s`: let the deck's `&output` have fields = '%s'",
-             o->field, o->field);
-  else
-    snprintf(error, size, "`%s` has no component `%s`: it is no tensor", o->field, o->part);
-}
-
 static bool read_values(result_file *f, plot_frame *m, const plot_map_options *o, char *error,
                         size_t size) {
   char name[512];
   if (is_tensor(f, m, o->field)) return read_tensor(f, m, o, error, size);
   snprintf(m->shown, sizeof m->shown, "%.250s", o->field);
+  if (!result_find(f, "/frames", o->field, name, sizeof name, error, size)) return false;
   if (o->part) {
-    say_no_tensor(o, error, size);
+    snprintf(error, size, "`%s` has no component `%s`: it is no tensor", o->field, o->part);
     return false;
   }
-  if (!result_find(f, "/frames", o->field, name, sizeof name, error, size)) return false;
   m->values = result_read_frame(f, name, o->frame, &m->value_count, &m->components, m->unit_text,
                                 sizeof m->unit_text, error, size);
   if (!m->values) return false;

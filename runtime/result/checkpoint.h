@@ -7,6 +7,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#define CHECKPOINT_ENDING ".checkpoint" /* behind the path of the run's result */
+
 typedef struct checkpoint_part {
   const char *name; /* for messages */
   void *data;

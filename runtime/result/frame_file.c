@@ -99,8 +99,8 @@ static int open_locked(const char *path, const char *result, bool there, char *e
 frame_file *frame_file_open(const char *result, const char *fingerprint, size_t numbers, bool there,
                             char *error, size_t size) {
   frame_file *f = must_calloc(1, sizeof *f);
-  f->path = must_alloc(strlen(result) + sizeof ".frames");
-  sprintf(f->path, "%s.frames", result);
+  f->path = must_alloc(strlen(result) + sizeof FRAMES_ENDING);
+  sprintf(f->path, "%s" FRAMES_ENDING, result);
   f->fingerprint = must_alloc(strlen(fingerprint) + 1);
   strcpy(f->fingerprint, fingerprint);
   f->numbers = numbers;

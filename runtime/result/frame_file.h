@@ -12,6 +12,8 @@
 
 C_LINKAGE_BEGIN
 
+#define FRAMES_ENDING ".frames" /* behind the path of the run's result */
+
 typedef struct frame_mark {
   int64_t count;
   uint64_t sum;

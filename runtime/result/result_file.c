@@ -9,6 +9,8 @@
 #include "dsl/base/arena.h"
 #include "runtime/base/ordinary_file.h"
 #include "runtime/base/whole_file.h"
+#include "runtime/result/checkpoint.h"
+#include "runtime/result/frame_file.h"
 #include "runtime/result/hdf5_tools.h"
 #include "runtime/result/result_names.h"
 #include "runtime/result/result_sets.h"
@@ -54,12 +56,13 @@ static bool stands_beside(const char *path, const char *ending) {
 
 /* A run that has not come to its end has left what it goes on from, or its frames alone. */
 static void say_unreadable(const char *path, const char *why, char *error, size_t size) {
-  if (access(path, F_OK) != 0 && stands_beside(path, ".checkpoint"))
+  const bool missing = access(path, F_OK) != 0;
+  if (missing && stands_beside(path, CHECKPOINT_ENDING))
     snprintf(error, size,
              "there is no result `%s` yet, but the checkpoint of its run: it is at work, or was "
-             "stopped or killed; a stopped one goes on with: perilat run DECK --resume",
+             "stopped or killed, and then goes on with: perilat run DECK --resume",
              path);
-  else if (access(path, F_OK) != 0 && stands_beside(path, ".frames"))
+  else if (missing && stands_beside(path, FRAMES_ENDING))
     snprintf(error, size,
              "there is no result `%s`, but frames of its run: it is at work, or was killed before "
              "its first checkpoint; then run it again",

@@ -156,8 +156,7 @@ static void no_such_name(result_file *f, const char *group, const char *given, c
   else if (near)
     add_text(error, size, "did you mean `%s`? ", name_shown(near));
   else if (of_frames && can_be_stored(f, given))
-    add_text(error, size,
-             "let the deck's `&output` have fields = 'displacement', '%s' and run again; ", given);
+    add_text(error, size, "add '%s' to `fields` in the deck's `&output` and run again; ", given);
   if (of_frames) {
     add_text(error, size, "fields of particles: ");
     add_names(error, size, n, OF_PARTICLES);

@@ -14,7 +14,6 @@ static int64_t evenly(const frame_times *f, int64_t frame) {
 static int64_t position_at(const frame_times *f, double time) {
   const int64_t end = run_clock_end(f->clock);
   const double whole = f->deck->simulation.end_time;
-  if (f->clock->relaxation && !(whole > 0)) return end;
   const double position =
       f->clock->relaxation ? time / whole * (double)end : time / f->clock->time_step;
   return position < (double)end ? (int64_t)llround(position) : end;

@@ -359,24 +359,24 @@ static void rounded_constants_are_told(void **state) {
   differs(*state, &v, cycle, "the force N is 1.016 times that of the reference in all states");
 }
 
-static void said_ratio(double ratio, const char *wanted) {
+typedef void ratio_teller(double ratio, const char *should, FILE *out);
+
+static void said_by(ratio_teller *tell, double ratio, const char *wanted) {
   char *text;
   size_t length;
   FILE *out = must_open_text(&text, &length);
-  ratio_say(ratio, "right", out);
+  tell(ratio, "right", out);
   must_close_text(out);
   assert_string_equal(text, wanted);
   free(text);
 }
 
+static void said_ratio(double ratio, const char *wanted) {
+  said_by(ratio_say, ratio, wanted);
+}
+
 static void said_plainly(double ratio, const char *wanted) {
-  char *text;
-  size_t length;
-  FILE *out = must_open_text(&text, &length);
-  plain_ratio_say(ratio, "right", out);
-  must_close_text(out);
-  assert_string_equal(text, wanted);
-  free(text);
+  said_by(plain_ratio_say, ratio, wanted);
 }
 
 /* A root would be the formula that is asked for. */
@@ -385,7 +385,7 @@ static void students_read_no_roots(void **state) {
   said_plainly(2, "twice right");
   said_plainly(-3. / 4, "minus 3/4 times right");
   said_plainly(2 / sqrt(3), "1.155 times right");
-  said_plainly(-sqrt(3) / 2, "-0.866 times right");
+  said_plainly(-sqrt(3) / 2, "minus 0.866 times right");
   said_plainly(2 / (3 * sqrt(3)), "0.3849 times right");
   said_plainly(log(10), "2.303 times right");
   said_plainly(3.14159265358979323846 / 4, "0.7854 times right");

@@ -372,9 +372,81 @@ static void stored_energy_without_a_law_of_it(void **state) {
   expect(w, "drive path.nml", 0, "3 of 3");
   expect(w, "drive path.nml --compiled", 0, "3 of 3");
   expect(w, "drive path.nml --set point.setting=plane_stress", 0, "3 of 3");
+  write_text(w, "perfect.plm", PERFECT("  failed when strain[x,x] >= 0.015\n", ""));
+  write_text(w, "path.nml",
+             "&simulation steps = 100 /\n&point test = 'uniaxial stress' setting = 'space' /\n"
+             "&material model = 'perfect.plm' /\n"
+             "&path quantity = 'strain_xx' times = 0, '1 s', '2 s' values = 0, 0.01, 0.02 /\n"
+             "&expect quantity = 'stored' at_time = '1 s' formula = 'f_y**2/(2*E)' "
+             "tolerance = 1e-9 /\n"
+             "&expect quantity = 'stored' at_time = '2 s' value = 0 absolute = '1e-9 J/m^3' /\n");
+  expect(w, "drive path.nml", 0, "2 of 2");
   write_text(w, "perfect.plm",
              PERFECT("  damage D on point\n  D = 1 - exp(-(eps_p:eps_p))\n", "(1 - D)*"));
   expect(w, "check perfect.plm", 1, "what this law stores is not known");
+}
+
+/* Fibres in a matrix that has grown: the normal strains and the shear are coupled. In the plane the
+   growth along z costs nothing that the plane could give back. */
+static void stored_energy_of_coupled_strains(void **state) {
+  workplace *w = *state;
+  static const struct {
+    const char *setting;
+    double of_matrix; /* (strain - grown) : (strain - grown)/2 */
+  } cases[] = {{"space", 1.5e-6}, {"plane_strain", 1e-6}, {"plane_stress", 1e-6}};
+  write_text(w, "fibred.plm",
+             "model fibred\n  law continuum\n  for plane_stress, plane_strain, space, anisotropic\n"
+             "  parameter E = 1 [GPa] in (0, inf)\n  parameter C = 2 [GPa] in [0, inf)\n"
+             "  parameter rho = 1000 [kg/m^3] in (0, inf)\n"
+             "  state grown on point = 0\n  grown = grown\n"
+             "  free  = strain - grown*tensor(1, 1, 1, 0)\n"
+             "  along = tensor(0.75, 0.25, 0, sqrt(3)/4)\n"
+             "  stress sigma = hooke(free, E, 0) + C*(along:free)*along\nend model\n");
+  for (int k = 0; k < 3; k++) {
+    char text[600];
+    snprintf(text, sizeof text,
+             "&point setting = '%s' /\n&material model = 'fibred.plm' /\n&initial grown = 1e-3 /\n"
+             "&path quantity = 'strain_xx' value = 2e-3 rise = '1 s' /\n"
+             "&expect quantity = 'stored' formula = '%g*E + C*5e-4**2/2' tolerance = 1e-9 /\n",
+             cases[k].setting, cases[k].of_matrix);
+    write_text(w, "path.nml", text);
+    expect(w, "drive path.nml", 0, "1 of 1");
+    expect(w, "drive path.nml --compiled", 0, "1 of 1");
+  }
+}
+
+/* A stress along z that a state holds moves the plane where z is free: z follows by
+   -p (1 + nu)(1 - 2 nu)/(1 - nu)/E, which leaves -p nu/(1 - nu) along x and y. */
+static void stored_energy_of_a_stress_along_z(void **state) {
+  workplace *w = *state;
+  write_text(w, "held.plm",
+             "model held\n  law continuum\n  for plane_stress, anisotropic\n"
+             "  parameter E = 1 [GPa] in (0, inf)\n  parameter nu = 0.25 in [0, 0.5)\n"
+             "  parameter rho = 1000 [kg/m^3] in (0, inf)\n"
+             "  state p on point = 0 [MPa]\n  p = p\n"
+             "  stress sigma = hooke(strain, E, nu) + p*tensor(0, 0, 1, 0)\n"
+             "  output given = p\nend model\n");
+  write_text(w, "path.nml",
+             "&point setting = 'plane_stress' /\n&material model = 'held.plm' /\n"
+             "&initial p = '2 MPa' /\n&path quantity = 'strain_xx' value = 0 rise = '1 s' /\n"
+             "&expect quantity = 'stress_xx' formula = '-nu/(1 - nu)*given' tolerance = 1e-9 /\n"
+             "&expect quantity = 'stored' formula = 'nu**2/(1 - nu)*given**2/E' "
+             "tolerance = 1e-9 /\n");
+  expect(w, "drive path.nml", 0, "2 of 2");
+}
+
+/* The graph of sqrt(wear**2) - wear does not show that it is 0: numbers do, and the energy is the
+   work of the straight path from no strain. */
+static void stored_energy_where_numbers_tell(void **state) {
+  workplace *w = *state;
+  write_text(
+      w, "path.nml",
+      "&point setting = 'space' /\n&material model = '" SOURCE_DIR
+      "/tests/generator/check/physics/legal_rounded_opening.plm' nu = 0 /\n"
+      "&path quantity = 'strain_xx' value = 2e-3 rise = '1 s' /\n"
+      "&expect quantity = 'stored' tolerance = 1e-6\n"
+      "  formula = 'E*2e-3**2*(1/2 + (sqrt(2) + log(1 + sqrt(2)) - 1)/40)' /\n");
+  expect(w, "drive path.nml", 0, "1 of 1");
 }
 
 int main(void) {
@@ -394,6 +466,9 @@ int main(void) {
       T(a_stress_that_is_not_borne),
       T(results_can_be_read),
       T(stored_energy_without_a_law_of_it),
+      T(stored_energy_of_coupled_strains),
+      T(stored_energy_of_a_stress_along_z),
+      T(stored_energy_where_numbers_tell),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -143,9 +143,10 @@ static void it_is_drawn(void **state) {
       {"plot a.h5 --map stress", "`stress` is a tensor: give --component xx, yy, xy or principal"},
       {"plot a.h5 --map stress --component zz", "is a tensor"},
       {"plot a.h5 --map displacement --component yy", "it is no tensor"},
-      {"plot a.h5 --map strain --component yy", "let the deck's `&output` have fields = 'strain'"},
+      {"plot a.h5 --map strain --component yy",
+       "has no field `strain`; add 'strain' to `fields` in the deck's `&output` and run again; "},
       {"plot a.h5 --map strain",
-       "has no field `strain`; let the deck's `&output` have fields = 'displacement', 'strain'"},
+       "has no field `strain`; add 'strain' to `fields` in the deck's `&output` and run again; "},
       {"plot a.h5 --map damage", "is of a mesh, which has no damage"},
       {"plot a.h5 --map stress --component yy --range 3", "--range needs two ascending values"},
       {"plot a.h5 --map stress --component yy --range '3 MPa,1 MPa'", "two ascending values"},
@@ -173,7 +174,7 @@ static void fields_that_were_not_stored_are_told(void **state) {
   expect(w, "info arm.h5", 0, "Frames hold: displacement, velocity\n");
   expect(w, "plot arm.h5 --map velocity --component x -o arm.png", 0, "written arm.png");
   expect(w, "plot arm.h5 --map mises", 1,
-         "has no field `mises`; let the deck's `&output` have fields = 'displacement', 'mises'");
+         "has no field `mises`; add 'mises' to `fields` in the deck's `&output` and run again; ");
   expect(w, "plot arm.h5 --map mean", 1, "has no field `mean`; fields of particles: ");
   assert_null(strstr(w->said, "&output"));
 }

@@ -44,7 +44,41 @@ static void regions_hold_the_particles_inside(void **state) {
   small_close(&r);
 }
 
+/* Of the shape itself, not of the box around it: a slanting line between particles, a ring whose
+   hole holds some, and a point. */
+static void what_is_near_an_empty_region_is_told(void **state) {
+  (void)state;
+  static const struct {
+    const char *shape, *near;
+  } empty[] = {
+      {"shape = 'segment' from = '52.5 mm', '3 mm' to = '97.5 mm', '48 mm'",
+       "the particles of `c` lie in x = 0 .. 100 mm, y = 0 .. 95.2628 mm; the nearest stands at "
+       "(75, 25.9808) mm"},
+      {"shape = 'disc' centre = '50 mm', '17.32 mm' radius = '9.7 mm' inner_radius = '9.5 mm'",
+       "the nearest stands at (40, 17.3205) mm"},
+      {"shape = 'point' at = '-30 mm', '-40 mm'",
+       "the nearest particle stands 50 mm away at (0, 0) mm; `within`"},
+  };
+  for (size_t k = 0; k < sizeof empty / sizeof *empty; k++) {
+    char text[1024];
+    snprintf(text, sizeof text,
+             "&simulation end_time = 1e-5 step = 1e-7 /\n"
+             "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 /\n"
+             "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.1, 0.1 /\n"
+             "&material lattice = 'c' model = 'm' /\n&region name = 'none' %s /\n"
+             "&support region = 'none' fix = 'y' /\n&output frames = 0 /\n",
+             empty[k].shape);
+    small_run r;
+    small_open(&r, &elastic_bar, text);
+    assert_null(r.simulation);
+    assert_true(r.said.count > 0 && r.said.items[0].hint);
+    if (!strstr(r.said.items[0].hint, empty[k].near)) fail_msg("%s", r.said.items[0].hint);
+    small_close(&r);
+  }
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(regions_hold_the_particles_inside)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(regions_hold_the_particles_inside),
+                                     cmocka_unit_test(what_is_near_an_empty_region_is_told)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
