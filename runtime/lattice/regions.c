@@ -45,10 +45,10 @@ static double nearest_to(const deck_shape *shape, const rows *w, double nearest[
    lie in it between particles. */
 static void hint_nearest(const char *thing, const char *lattice, const deck_shape *shape,
                          const rows *w, diagnostics *d) {
-  double place[3] = {0, 0, 0};
+  double at[3] = {0, 0, 0};
   char text[ROWS_PLACE_TEXT], extent[192];
-  const double distance = nearest_to(shape, w, place);
-  const char *nearest = rows_place_text(w->dimensions, place, text);
+  const double distance = nearest_to(shape, w, at);
+  const char *nearest = rows_place_text(w->dimensions, at, text);
   extent_text(w, extent, sizeof extent);
   if (shape->kind == SHAPE_POINT)
     diag_hint(d, "the nearest %s stands %.4g mm away at %s; `within` says how far is near enough",
