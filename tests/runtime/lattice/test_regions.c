@@ -54,7 +54,7 @@ static void what_is_near_an_empty_region_is_told(void **state) {
       {"shape = 'segment' from = '52.5 mm', '3 mm' to = '97.5 mm', '48 mm'",
        "the particles of `c` lie in x = 0 .. 100 mm, y = 0 .. 95.2628 mm; the nearest stands at "
        "(75, 25.9808) mm"},
-      {"shape = 'disc' centre = '50 mm', '17.32 mm' radius = '9.7 mm' inner_radius = '9.5 mm'",
+      {"shape = 'disc' centre = '49.9 mm', '17.32 mm' radius = '9.7 mm' inner_radius = '9.5 mm'",
        "the nearest stands at (40, 17.3205) mm"},
       {"shape = 'point' at = '-30 mm', '-40 mm'",
        "the nearest particle stands 50 mm away at (0, 0) mm; `within`"},
