@@ -279,6 +279,13 @@ static bool is_meant_for(const law *l, const char *setting) {
   return l->tree->setting_count == 0;
 }
 
+const law *drive_in_setting(const law *l, const char *setting) {
+  int k = SETTING_PLANE_STRESS;
+  while (k < SETTING_SPACE && strcmp(law_setting_name((law_setting)k), setting) != 0)
+    k++;
+  return law_on_lattice(l, (law_setting)k, false, 0);
+}
+
 const law *drive_point_setting(const drive_input *in, const law *l, diagnostics *d) {
   const char *wanted = in->point.setting;
   if (!wanted) return l;
@@ -289,8 +296,5 @@ const law *drive_point_setting(const drive_input *in, const law *l, diagnostics 
                  "line `for`");
     return NULL;
   }
-  int k = SETTING_PLANE_STRESS;
-  while (k < SETTING_SPACE && strcmp(law_setting_name((law_setting)k), wanted) != 0)
-    k++;
-  return law_on_lattice(l, (law_setting)k, false, 0);
+  return drive_in_setting(l, wanted);
 }

@@ -509,6 +509,43 @@ static void a_particle_is_driven_by_strains(void **state) {
         "a law of families in the plane knows no such strain");
   drive("&material model = 'splm_elastic' /\n&particle lattice = 'kagome' /\n" STRETCHED, "", 1,
         "lattice");
+#undef PARTICLE
+}
+
+/* The law is taken in the first of its settings that suits the lattice. */
+static void the_lattice_says_where_a_particle_is(void **state) {
+  (void)state;
+#define OF(law, lattice)                                                                           \
+  "&material model = '" law "' /\n&particle lattice = '" lattice "' shells = 2 /\n"
+#define PULLED "&path quantity = 'strain_zz' value = 1e-6 rise = '1 s' /\n"
+#define HELD                                                                                       \
+  "&expect quantity = 'stress_zz' formula = 'E*(1 - nu)/((1 + nu)*(1 - 2*nu))*1e-6' "              \
+  "tolerance = 1e-5 /\n"
+  drive(OF("splm_elastic", "fcc") PULLED HELD, "", 0, "1 of 1");
+  drive(OF("splm_concrete", "fcc") PULLED HELD, "--compiled", 0, "1 of 1");
+  drive(OF("splm_elastic", "square") PULLED, "", 1, "a law of families in the plane knows no");
+  static const char of_space[] = "model ball\n  law state\n  for space, plane_strain\n"
+                                 "  parameter k = 1 [MN] in (0, inf)\n"
+                                 "  parameter rho = 1000 [kg/m^3] in (0, inf)\n"
+                                 "  force state F[j] = k*stretch[j]\n"
+                                 "  energy W = sum(s*F[j]*stretch[j])/4\nend model\n",
+                    of_plane[] = "model flat\n  law state\n  for plane_stress\n"
+                                 "  parameter k = 1 [MN] in (0, inf)\n"
+                                 "  parameter rho = 1000 [kg/m^3] in (0, inf)\n"
+                                 "  force state F[j] = k*stretch[j]\n"
+                                 "  energy W = sum(s*F[j]*stretch[j])/4\nend model\n";
+  write_file("ball.plm", of_space);
+  write_file("flat.plm", of_plane);
+  /* six bonds of a hexagon: sigma = sum s n n n n k strain/(2 V), the sum of n^4 is 9/4 */
+  drive("&material model = 'ball.plm' /\n&particle lattice = 'hexagonal' /\n" STRETCHED
+        "&expect quantity = 'stress_xx' formula = '2.25*k*1e-6/(sqrt(3)*spacing*t)' tolerance = "
+        "1e-5 /\n",
+        "", 0, "1 of 1");
+  drive(OF("flat.plm", "fcc") STRETCHED, "", 1, "this lattice does not suit the setting");
+#undef OF
+#undef PULLED
+#undef HELD
+#undef STRETCHED
 }
 
 /* --- info ------------------------------------------------------------------------------------- */
@@ -628,6 +665,7 @@ int main(void) {
       cmocka_unit_test(what_is_no_number_is_named),
       cmocka_unit_test(a_failing_run_leaves_its_bond),
       cmocka_unit_test(a_particle_is_driven_by_strains),
+      cmocka_unit_test(the_lattice_says_where_a_particle_is),
       cmocka_unit_test(the_reference_is_true),
       cmocka_unit_test(info_says_what_a_law_implies),
       cmocka_unit_test(a_rejected_law_is_named),
