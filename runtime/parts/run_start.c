@@ -134,7 +134,7 @@ static bool same_kind(const deck_lattice *l, const char *kind) {
   return deck_lattice_is_irregular(l) && deck_lattice_is_irregular(&other);
 }
 
-static bool body_fits(const starting *s, const run_body *b, const state_body *from) {
+static bool lattice_fits(const starting *s, const run_body *b, const state_body *from) {
   const deck_lattice *l = &s->deck->lattices[b->lattice];
   if (!same_kind(l, from->kind)) {
     diag_report(s->d, DIAG_CONFLICT, s->where, "`%s` is %s in `%s`, and %s in this deck", b->name,
@@ -145,14 +145,17 @@ static bool body_fits(const starting *s, const run_body *b, const state_body *fr
                 "`%s` has a spacing of %.6g mm in `%s`, and of %.6g mm in this deck", b->name,
                 1e3 * from->spacing, name_of(s), 1e3 * l->spacing);
     diag_hint(s->d, "give it the `spacing` of the result's deck, or another name");
-  } else if (b->body->dof != from->dof || b->body->dimensions != s->from->dimensions) {
-    diag_report(s->d, DIAG_CONFLICT, s->where,
-                "particles of `%s` move in other ways in `%s`: they have %d components there, and "
-                "%d in this deck",
-                b->name, name_of(s), from->dof, b->body->dof);
-    diag_hint(s->d, "give it the law of the result's deck, or another name");
   } else
     return true;
+  return false;
+}
+
+static bool motion_fits(const starting *s, const run_body *b, const state_body *from) {
+  if (b->body->dof == from->dof && b->body->dimensions == s->from->dimensions) return true;
+  diag_report(s->d, DIAG_CONFLICT, s->where,
+              "particles of `%s` move in %d components in `%s`, and in %d in this deck", b->name,
+              from->dof, name_of(s), b->body->dof);
+  diag_hint(s->d, "give it the law of the result's deck, or another name");
   return false;
 }
 
@@ -244,7 +247,7 @@ static bool start_body(const starting *s, run_body *b) {
     b->going.new_particles = run_body_particles(b);
     return true;
   }
-  if (!body_fits(s, b, from)) return false;
+  if (!motion_fits(s, b, from)) return false;
   match_particles(s, b, from);
   if (b->going.particles == 0) {
     diag_report(s->d, DIAG_CONFLICT, s->where,
@@ -371,6 +374,15 @@ static bool laws_fit_state(const starting *s) {
   return good;
 }
 
+static bool lattices_fit(const starting *s) {
+  bool good = true;
+  for (int b = 0; b < s->count; b++) {
+    const state_body *from = body_named(s, s->bodies[b].name);
+    good = (!from || lattice_fits(s, &s->bodies[b], from)) && good;
+  }
+  return good;
+}
+
 static bool has_namesakes(const starting *s) {
   for (int b = 0; b < s->count; b++)
     if (body_named(s, s->bodies[b].name)) return true;
@@ -400,7 +412,7 @@ static bool motion_is_free(const starting *s, const deck_initial *items, int cou
 }
 
 static bool start_all(const starting *s) {
-  bool good = has_namesakes(s) && laws_fit_state(s);
+  bool good = has_namesakes(s) && lattices_fit(s) && laws_fit_state(s);
   for (int b = 0; b < s->count && good; b++)
     if (!run_body_is_link(&s->bodies[b])) good = start_body(s, &s->bodies[b]);
   if (!good) return false;
@@ -433,7 +445,8 @@ static result_state *read_state(const char *path, span where, diagnostics *d) {
   result_file *f = result_read(path, error, sizeof error);
   if (!f) {
     diag_report(d, DIAG_FILE, where, "%s", error);
-    diag_hint(d, "the path is from the working folder; the deck of the result is run first");
+    diag_hint(
+        d, "the path is from the working folder; where it is right, run the result's deck again");
     return NULL;
   }
   result_state *s = result_state_read(f, &missing, error, sizeof error);
