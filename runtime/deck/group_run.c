@@ -157,12 +157,7 @@ static bool has_states(deck_reader *r, span where, const char *what) {
 static void check_start(deck_reader *r, const namelist_group *from, void *into) {
   const deck_start *item = into;
   (void)from;
-  if (!has_states(r, item->item.where, "runs with meshes begin at rest") || !r->k->contact_count)
-    return;
-  diag_report(r->d, DIAG_NOT_SUPPORTED, item->item.where,
-              "a run with contact begins at rest: where bonds were lost is not kept");
-  diag_note(r->d, r->k->contacts[0].item.where, "this contact");
-  diag_hint(r->d, "let one run take all of the loading: loads have `start` and `end`");
+  has_states(r, item->item.where, "runs with meshes begin at rest");
 }
 
 DECK_ONE(start, .check = check_start,

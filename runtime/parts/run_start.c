@@ -72,16 +72,39 @@ static state_field take_field(const run_law *l, int field) {
   return f;
 }
 
-static state_law take_law(const run_law *l) {
+/* Where a contact keeps the distances at which bonds of that body were lost; NULL where it does
+   not. */
+static double *lost_of(const run_contact *c, int number) {
+  size_t size;
+  for (int side = 0; side < c->count; side++)
+    if (c->of[side] == number) return contact_lost(c->found, side, &size);
+  return NULL;
+}
+
+static state_field take_lost(const run_law *l, const char *name, const double *lost) {
+  state_field f = {.name = must_copy(name), .count = l->rows->bond_count, .columns = 1};
+  f.values = must_calloc((size_t)f.count + 1, sizeof *f.values);
+  for (long m = 0; m < f.count; m++)
+    f.values[m] = lost[l->bonds[m].slot];
+  return f;
+}
+
+static state_law take_law(const run_law *l, int body_number, const run_contacts *contacts) {
   const int count = l->law->field_count;
   state_law taken = {.interaction = must_copy(l->from->name), .law = must_copy(l->law->name)};
   taken.fields = must_calloc((size_t)count + 1, sizeof *taken.fields);
   for (int f = 0; f < count; f++)
     taken.fields[taken.field_count++] = take_field(l, f);
+  taken.lost = must_calloc((size_t)contacts->count + 1, sizeof *taken.lost);
+  for (int k = 0; k < contacts->count; k++) {
+    const double *lost = lost_of(&contacts->items[k], body_number);
+    if (lost) taken.lost[taken.lost_count++] = take_lost(l, contacts->items[k].from->name, lost);
+  }
   return taken;
 }
 
-result_state *run_state_take(const run_body *bodies, int count, const deck *k, double step) {
+result_state *run_state_take(const run_body *bodies, int count, const run_contacts *contacts,
+                             const deck *k, double step) {
   result_state *s = must_calloc(1, sizeof *s);
   s->step = step;
   s->bodies = must_calloc((size_t)count + 1, sizeof *s->bodies);
@@ -89,7 +112,7 @@ result_state *run_state_take(const run_body *bodies, int count, const deck *k, d
   for (int b = 0; b < count; b++) {
     if (!run_body_is_link(&bodies[b])) s->bodies[s->body_count++] = take_body(&bodies[b], k, step);
     for (int n = 0; n < bodies[b].law_count; n++)
-      s->laws[s->law_count++] = take_law(&bodies[b].laws[n]);
+      s->laws[s->law_count++] = take_law(&bodies[b].laws[n], b, contacts);
   }
   return s;
 }
@@ -100,6 +123,7 @@ result_state *run_state_take(const run_body *bodies, int count, const deck *k, d
 typedef struct starting {
   run_body *bodies;
   int count;
+  const run_contacts *contacts;
   const deck *deck;
   const result_state *from;
   int32_t *former; /* [particles of the run] that of the result, or -1 */
@@ -159,10 +183,14 @@ static bool motion_fits(const starting *s, const run_body *b, const state_body *
   return false;
 }
 
-static const state_field *field_named(const state_law *l, const char *name) {
-  for (int f = 0; f < l->field_count; f++)
-    if (strcmp(l->fields[f].name, name) == 0) return &l->fields[f];
+static const state_field *named(const state_field *fields, int count, const char *name) {
+  for (int f = 0; f < count; f++)
+    if (strcmp(fields[f].name, name) == 0) return &fields[f];
   return NULL;
+}
+
+static const state_field *field_named(const state_law *l, const char *name) {
+  return named(l->fields, l->field_count, name);
 }
 
 /* Rows and columns are those of the result's particles and bonds. */
@@ -307,6 +335,17 @@ static int32_t former_of(const starting *s, const run_body *b, int32_t particle)
   return s->former[of->first_particle + (copy ? copy->particle[0] : particle)];
 }
 
+/* A contact that the result does not have finds lost bonds where they are now. */
+static void put_lost(const starting *s, const run_body *b, const state_law *from, int64_t slot,
+                     long there) {
+  for (int k = 0; k < s->contacts->count; k++) {
+    const run_contact *c = &s->contacts->items[k];
+    const state_field *was = named(from->lost, from->lost_count, c->from->name);
+    double *lost = was ? lost_of(c, (int)(b - s->bodies)) : NULL;
+    if (lost) lost[slot] = was->values[there];
+  }
+}
+
 static void put_bond(const run_law *l, const state_law *from, long here, long there, bool turned) {
   for (int f = 0; f < l->law->field_count; f++) {
     const field_shape shape = shape_of(l, f);
@@ -328,6 +367,7 @@ static void start_bonds(const starting *s, run_body *b, const run_law *l, const 
     if (turned) there = find_bond(known, from->bond_count, j, i);
     if (there < 0) continue;
     put_bond(l, from, m, there, turned);
+    put_lost(s, b, from, l->bonds[m].slot, there);
     kept++;
   }
   free(known);
@@ -423,18 +463,23 @@ static bool start_all(const starting *s) {
          motion_is_free(s, k->initial_displacements, k->initial_displacement_count, "displacement");
 }
 
+static uint64_t hash_fields(uint64_t sum, const state_field *fields, int count) {
+  for (int f = 0; f < count; f++)
+    sum = hash_more(sum, fields[f].values,
+                    (size_t)fields[f].count * (size_t)fields[f].columns * sizeof(double));
+  return sum;
+}
+
 static uint64_t hash_of(const result_state *s) {
   uint64_t sum = hash_more(HASH_START, &s->step, sizeof s->step);
   for (int b = 0; b < s->body_count; b++) {
     const size_t bytes = (size_t)s->bodies[b].count * (size_t)s->bodies[b].dof * sizeof(double);
     sum = hash_more(hash_more(sum, s->bodies[b].displacement, bytes), s->bodies[b].velocity, bytes);
   }
-  for (int n = 0; n < s->law_count; n++)
-    for (int f = 0; f < s->laws[n].field_count; f++) {
-      const state_field *of = &s->laws[n].fields[f];
-      sum =
-          hash_more(sum, of->values, (size_t)of->count * (size_t)of->columns * sizeof *of->values);
-    }
+  for (int n = 0; n < s->law_count; n++) {
+    sum = hash_fields(sum, s->laws[n].fields, s->laws[n].field_count);
+    sum = hash_fields(sum, s->laws[n].lost, s->laws[n].lost_count);
+  }
   return sum;
 }
 
@@ -459,7 +504,8 @@ static result_state *read_state(const char *path, span where, diagnostics *d) {
   return NULL;
 }
 
-bool run_start(run_body *bodies, int count, const deck *k, uint64_t *fingerprint, diagnostics *d) {
+bool run_start(run_body *bodies, int count, const run_contacts *contacts, const deck *k,
+               uint64_t *fingerprint, diagnostics *d) {
   if (!k->start.result) return true;
   const span where = deck_where(&k->start.item, "result");
   result_state *from = read_state(k->start.result, where, d);
@@ -467,7 +513,13 @@ bool run_start(run_body *bodies, int count, const deck *k, uint64_t *fingerprint
   long particles = 0;
   for (int b = 0; b < count; b++)
     particles += run_body_particles(&bodies[b]);
-  starting s = {.bodies = bodies, .count = count, .deck = k, .from = from, .where = where, .d = d};
+  starting s = {.bodies = bodies,
+                .count = count,
+                .contacts = contacts,
+                .deck = k,
+                .from = from,
+                .where = where,
+                .d = d};
   s.former = must_alloc(((size_t)particles + 1) * sizeof *s.former);
   for (long p = 0; p < particles; p++)
     s.former[p] = -1;

@@ -1,5 +1,6 @@
 #include "runtime/result/result_state.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -37,7 +38,10 @@ static double *read_motion(result_file *f, const char *group, const char *name, 
   snprintf(path, sizeof path, "%s/%s", group, name);
   double *values = result_read_table(f, path, false, 1, MOST_DOF, &count, &dof);
   if (values && b->dof == 0) b->dof = dof, b->count = count;
-  if (values && count == b->count && dof == b->dof) return values;
+  bool good = values && count == b->count && dof == b->dof;
+  for (long k = 0; good && k < count * dof; k++)
+    good = isfinite(values[k]);
+  if (good) return values;
   free(values);
   return NULL;
 }
@@ -54,7 +58,8 @@ static bool read_body(result_file *f, const char *lattice, long particles, state
   bool good = b->kind && b->displacement && b->velocity && read_number(f, path, &b->spacing);
   snprintf(path, sizeof path, "%s/first", group);
   good = good && read_place(f, path, &b->first);
-  return good && b->spacing > 0 && b->first >= 0 && b->count <= particles - b->first;
+  return good && b->spacing > 0 && isfinite(b->spacing) && b->first >= 0 &&
+         b->count <= particles - b->first;
 }
 
 static bool read_field(result_file *f, const char *group, const char *name, state_field *into) {
@@ -66,19 +71,31 @@ static bool read_field(result_file *f, const char *group, const char *name, stat
   return into->values != NULL;
 }
 
+/* *fields[*count] of a group; none where it is not there. */
+static bool read_fields(result_file *f, const char *interaction, const char *what,
+                        state_field **fields, int *count) {
+  char path[NAME];
+  snprintf(path, sizeof path, RESULT_STATE "/laws/%.200s/%s", interaction, what);
+  result_names names = result_list(f, path);
+  bool good = true;
+  *fields = must_calloc((size_t)names.count + 1, sizeof **fields);
+  for (int k = 0; good && k < names.count; k++)
+    good = read_field(f, path, names.items[k], &(*fields)[(*count)++]);
+  result_names_free(&names);
+  return good;
+}
+
 static bool read_law(result_file *f, const char *interaction, state_law *l) {
   char path[NAME];
   l->interaction = must_copy(interaction);
   snprintf(path, sizeof path, RESULT_STATE "/laws/%.200s/law", interaction);
   l->law = result_read_text(f, path);
   l->pairs = result_read_bonds(f, interaction, &l->bond_count);
-  snprintf(path, sizeof path, RESULT_STATE "/laws/%.200s/fields", interaction);
-  result_names fields = result_list(f, path);
-  bool good = l->law && l->pairs;
-  l->fields = must_calloc((size_t)fields.count + 1, sizeof *l->fields);
-  for (int k = 0; good && k < fields.count; k++)
-    good = read_field(f, path, fields.items[k], &l->fields[l->field_count++]);
-  result_names_free(&fields);
+  bool good = l->law && l->pairs &&
+              read_fields(f, interaction, "fields", &l->fields, &l->field_count) &&
+              read_fields(f, interaction, "lost", &l->lost, &l->lost_count);
+  for (int k = 0; k < l->lost_count && good; k++)
+    good = l->lost[k].columns == 1 && l->lost[k].count == l->bond_count;
   return good;
 }
 
@@ -112,6 +129,14 @@ result_state *result_state_read(result_file *f, bool *missing, char *error, size
   return NULL;
 }
 
+static void free_fields(state_field *fields, int count) {
+  for (int f = 0; f < count; f++) {
+    free(fields[f].name);
+    free(fields[f].values);
+  }
+  free(fields);
+}
+
 void result_state_free(result_state *s) {
   if (!s) return;
   for (int b = 0; b < s->body_count; b++) {
@@ -121,11 +146,8 @@ void result_state_free(result_state *s) {
     free(s->bodies[b].velocity);
   }
   for (int n = 0; n < s->law_count; n++) {
-    for (int f = 0; f < s->laws[n].field_count; f++) {
-      free(s->laws[n].fields[f].name);
-      free(s->laws[n].fields[f].values);
-    }
-    free(s->laws[n].fields);
+    free_fields(s->laws[n].fields, s->laws[n].field_count);
+    free_fields(s->laws[n].lost, s->laws[n].lost_count);
     free(s->laws[n].interaction);
     free(s->laws[n].law);
     free(s->laws[n].pairs);

@@ -6,7 +6,9 @@
      /state/bodies/<lattice>/        kind (text), spacing [1] m, first [1] its first particle;
                                      displacement, velocity [n, dof] m, rad; m/s, rad/s
      /state/laws/<interaction>/      law (text), fields/<name>: [n, 1] of particles, [M, 1] of bonds,
-                                     [M, 2] at both ends of bonds, in the order of /bonds; SI */
+                                     [M, 2] at both ends of bonds, in the order of /bonds; SI;
+                                     lost/<contact> [M, 1] m: distance at which a bond was lost, 0:
+                                     it was not */
 #ifndef PERILAT_RUNTIME_RESULT_STATE_H
 #define PERILAT_RUNTIME_RESULT_STATE_H
 
@@ -38,8 +40,10 @@ typedef struct state_field {
 
 typedef struct state_law {
   char *interaction, *law;
-  state_field *fields;
+  state_field *fields; /* [field_count] */
   int field_count;
+  state_field *lost; /* [lost_count] of each contact of its body */
+  int lost_count;
   int32_t *pairs; /* [bond_count][2] particles of the result; where it was read */
   long bond_count;
 } state_law;

@@ -35,15 +35,22 @@ static bool write_field(hid_t file, const char *group, const state_field *f) {
   return h5_write_doubles(file, in(group, f->name, path), f->values, 2, shape, "1");
 }
 
+static bool write_fields(hid_t file, const state_law *l, const char *what,
+                         const state_field *fields, int count) {
+  char group[NAME / 2];
+  snprintf(group, sizeof group, RESULT_STATE "/laws/%s/%s", l->interaction, what);
+  bool good = h5_make_group(file, group);
+  for (int f = 0; good && f < count; f++)
+    good = write_field(file, group, &fields[f]);
+  return good;
+}
+
 static bool write_law(hid_t file, const state_law *l) {
   char group[NAME / 2], path[NAME];
   snprintf(group, sizeof group, RESULT_STATE "/laws/%s", l->interaction);
-  bool good = h5_make_group(file, group) && h5_write_text(file, in(group, "law", path), l->law);
-  snprintf(group, sizeof group, RESULT_STATE "/laws/%s/fields", l->interaction);
-  good = good && h5_make_group(file, group);
-  for (int f = 0; good && f < l->field_count; f++)
-    good = write_field(file, group, &l->fields[f]);
-  return good;
+  return h5_make_group(file, group) && h5_write_text(file, in(group, "law", path), l->law) &&
+         write_fields(file, l, "fields", l->fields, l->field_count) &&
+         (l->lost_count == 0 || write_fields(file, l, "lost", l->lost, l->lost_count));
 }
 
 bool state_write(hid_t file, const result_state *s) {

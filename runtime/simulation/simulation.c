@@ -266,7 +266,8 @@ static bool set_up(simulation *s, rows *const *lattices, diagnostics *d) {
   if (!choose_step(s, d) || !open_bodies(s, d) || !take_frequencies(s, d)) return false;
   if (!step_fits(s->deck, &s->limit, d) || !step_plan_make(s->deck, &s->limit, &s->plan, d))
     return false;
-  if (!run_start(s->bodies, s->body_count, s->deck, &s->started_from, d)) return false;
+  if (!run_start(s->bodies, s->body_count, &s->contacts, s->deck, &s->started_from, d))
+    return false;
   open_clock(s);
   if (!can_stand(s, d)) return false;
   if (!open_monitors(s, d) || !open_frames(s, d)) return false;
@@ -403,7 +404,8 @@ long simulation_step_done(const simulation *s) {
 }
 result_state *simulation_take_state(const simulation *s) {
   if (s->clock.at.status == STEP_BAD) return NULL;
-  return run_state_take(s->bodies, s->body_count, s->deck, s->relaxation ? 0 : s->limit.step);
+  return run_state_take(s->bodies, s->body_count, &s->contacts, s->deck,
+                        s->relaxation ? 0 : s->limit.step);
 }
 run_going simulation_going(const simulation *s, int number) {
   return s->bodies[number].going;

@@ -143,7 +143,6 @@ static const fault faults[] = {
     {"broken", "first.h5", "broken.h5", false},
     {"velocity", "&start",
      "&initial_velocity  region = 'tip'  component = 'x'  value = 1  /\n&start", false},
-    {"contact", "&start", "&contact  /\n&start", false},
     {"itself", "second.h5", "first.h5", false},
     {"nothing", "result = 'first.h5'", "", false},
     {"mesh", "&start",

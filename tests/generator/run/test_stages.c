@@ -66,6 +66,15 @@ static void rotations_in_space_go_on(void **state) {
                            "'constant'  /\n") > 0.1);
 }
 
+/* Broken bonds of a block that is crushed push where they were lost, in the second stage, too. */
+static void contact_goes_on(void **state) {
+  assert_true(check_stages(*state,
+                           BLOCK("kind = 'square'  spacing = '5 mm'  horizon = 2.015",
+                                 "model = 'pmb'  G_0 = '0.02 N/m'", BEAM),
+                           "&contact  /\n&force  region = 'tip'  component = 'x'  total = '-9 kN'  "
+                           "history = 'constant'  /\n" STEADY) == 1);
+}
+
 /* Of two blocks that are not joined one is cut out: the other one moves as if it had always been
    alone. */
 static void what_is_cut_out_takes_nothing_along(void **state) {
@@ -107,6 +116,7 @@ int main(void) {
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(rotations_in_space_go_on, set_up_workplace,
                                       tear_down_workplace),
+      cmocka_unit_test_setup_teardown(contact_goes_on, set_up_workplace, tear_down_workplace),
       cmocka_unit_test_setup_teardown(what_is_cut_out_takes_nothing_along, set_up_workplace,
                                       tear_down_workplace),
   };
