@@ -57,6 +57,7 @@ static void balance_stays(void **state) {
   run_stage(w, "second");
   assert_true(fabs(last_of(w, "second", "x", true) - x) == 0);
   assert_true(fabs(last_of(w, "second", "x", false) - x) <= 1e-5 * x);
+  assert_true(last_of(w, "second", "dissipated_damping", false) < 1e-6 * stored); /* no swing */
   write_stage(w, "second", block, "0.2 ms", go_on); /* in steps of time */
   run_stage(w, "second");
   assert_true(fabs(last_of(w, "second", "stored", true) / stored - 1) < 1e-9);

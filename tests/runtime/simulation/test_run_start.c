@@ -11,21 +11,22 @@
 #include "runtime/parts/run_start.h"
 #include "runtime/result/result.h"
 #include "runtime/simulation/simulation_state.h"
+#include "tests/runtime/family_law.h"
 #include "tests/runtime/small_run.h"
 
 static const char path[] = "test_run_start.h5";
 
-#define BODY(size, more)                                                                           \
+#define BODY(more)                                                                                 \
   "&simulation end_time = 2e-4 step = 1e-7 threads = 1 /\n"                                        \
   "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 /\n"                      \
   "&material lattice = 'c' model = 'm' S_t = 1e-5 /\n"                                             \
-  "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = " size ", 0.04 /\n"                \
+  "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.06, 0.04 /\n"                    \
   "&region name = 'left' shape = 'rectangle' corner = 0, 0 size = 0.004, 0.1 /\n"                  \
   "&support region = 'left' fix = 'xy' /\n"                                                        \
   "&gravity acceleration = 0, -1e4 /\n&output frames = 0 /\n" more
 
-#define FIRST  BODY("0.06", "")
-#define SECOND BODY("0.06", "&start result = 'test_run_start.h5' /\n")
+#define FIRST  BODY("")
+#define SECOND BODY("&start result = 'test_run_start.h5' /\n")
 
 static void open_run(small_run *r, const char *text) {
   small_open(r, &elastic_beam, text);
@@ -121,6 +122,35 @@ static void the_state_is_that_of_the_arrays(void **state) {
   unlink(path);
 }
 
+/* Of laws of families a bond has a value at either end; particles have theirs. */
+static void both_ends_keep_their_values(void **state) {
+  (void)state;
+  small_run first, second;
+  small_open(&first, &family_hexagon, FIRST);
+  assert_non_null(first.simulation);
+  const simulation *s = first.simulation;
+  const sweep *w = s->laws[0].state;
+  const rows *g = w->lattice;
+  for (long p = 0; p < g->particle_count; p++) {
+    const long q = g->particle_site[p];
+    w->field[0][q] = 1e-3 * (double)(p + 1);
+    for (int k = 0; k < 2 * g->directions; k++)
+      if (rows_has_neighbour(g, q, k)) w->field[1][k * g->size + q] = (double)(10 * p + k);
+  }
+  result_state *left = run_state_take(s->bodies, 1, &s->contacts, s->deck, 1e-7);
+  leave(s, left);
+  result_state_free(left);
+  small_open(&second, &family_hexagon, SECOND);
+  assert_non_null(second.simulation);
+  const sweep *v = second.simulation->laws[0].state;
+  const size_t bytes = (size_t)g->size * sizeof(double);
+  assert_memory_equal(v->field[0], w->field[0], bytes);
+  assert_memory_equal(v->field[1], w->field[1], 2 * (size_t)g->directions * bytes);
+  small_close(&first);
+  small_close(&second);
+  unlink(path);
+}
+
 /* The second deck is told off with this sentence. */
 static void refused(const simulation *s, const result_state *state, const char *text,
                     const char *wanted) {
@@ -176,6 +206,7 @@ static void a_made_up_state_is_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_state_is_that_of_the_arrays),
+      cmocka_unit_test(both_ends_keep_their_values),
       cmocka_unit_test(a_made_up_state_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
