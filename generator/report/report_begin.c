@@ -8,6 +8,7 @@
 #include "generator/report/report_bodies.h"
 #include "generator/report/report_laws.h"
 #include "generator/report/report_mesh.h"
+#include "runtime/parts/run_body.h"
 
 static int lattice_of(const run *r, const char *region_name) {
   const int region = deck_find_region(r->deck, region_name);
@@ -61,6 +62,41 @@ static void announce_increments(const run *r) {
   fputs("  steps      of ", stdout);
 }
 
+/* "12 particles and 40 bonds", "1 bond" */
+static void print_counts(long particles, long bonds) {
+  if (particles > 0) printf("%ld particle%s", particles, particles == 1 ? "" : "s");
+  if (particles > 0 && bonds > 0) fputs(" and ", stdout);
+  if (bonds > 0 || particles == 0) printf("%ld bond%s", bonds, bonds == 1 ? "" : "s");
+}
+
+static void print_going(const run_going *g) {
+  if (g->particles + g->bonds > 0) {
+    print_counts(g->particles, g->bonds);
+    fputs(" go on", stdout);
+  }
+  if (g->new_particles + g->new_bonds > 0) {
+    if (g->particles + g->bonds > 0) fputs("; ", stdout);
+    print_counts(g->new_particles, g->new_bonds);
+    fputs(" are new", stdout);
+  }
+  if (g->gone_particles + g->gone_bonds > 0) {
+    fputs("; ", stdout);
+    print_counts(g->gone_particles, g->gone_bonds);
+    fputs(" are gone", stdout);
+  }
+}
+
+/* "start      first.h5, `plate`: 120 particles and 330 bonds go on; 20 bonds are gone" */
+static void announce_start(const run *r) {
+  if (!r->deck->start.result) return;
+  for (int k = 0; k < r->deck->lattice_count; k++) {
+    const run_going g = simulation_going(r->simulation, k);
+    printf("  start      %s, `%s`: ", r->deck->start.result, r->deck->lattices[k].name);
+    print_going(&g);
+    puts("");
+  }
+}
+
 static double hertz(double omega) {
   return omega / (2 * M_PI);
 }
@@ -105,6 +141,7 @@ void announce(const run *r) {
     announce_notches(r, k);
     announce_laws(r, k);
   }
+  announce_start(r);
   for (int p = 0; p < r->deck->point_mass_count; p++)
     announce_point_mass(r, p);
   for (int f = 0; f < r->deck->force_count; f++)

@@ -137,6 +137,7 @@ bool result_spares_inputs(run *r) {
     good = result_spares(r, particles);
     free(particles);
   }
+  if (good && r->deck->start.result) good = result_spares(r, r->deck->start.result);
   return good && result_spares_parameters(r) &&
          result_spares_starts(r, r->deck->initial_velocitys, r->deck->initial_velocity_count) &&
          result_spares_starts(r, r->deck->initial_displacements,
@@ -177,6 +178,8 @@ void fingerprint(run *r) {
     const uint64_t values = parameter_planes_fingerprint(simulation_planes(r->simulation, k));
     if (values) text = arena_printf(r->memory, "%s\nparameters %016" PRIx64, text, values);
   }
+  const uint64_t from = simulation_started_from(r->simulation);
+  if (from) text = arena_printf(r->memory, "%s\nstart %016" PRIx64, text, from);
   r->fingerprint = text;
 }
 
@@ -598,7 +601,10 @@ bool finish_result(run *r, const run_end *end, const terminal_record *said) {
   e.said = texts;
   e.said_count = list_said(r, said, texts);
   e.history_count = simulation_history(r->simulation, &e.time);
+  result_state *state = r->deck->output.state ? simulation_take_state(r->simulation) : NULL;
+  e.state = state;
   const bool good = result_finish(r->result, &e, error, sizeof error);
+  result_state_free(state);
   if (!good) say_error("%s", error);
   return good;
 }

@@ -405,7 +405,13 @@ typedef struct deck_output {
   const span *field_where; /* [field_count]; NULL when the key was not written */
   bool energy;             /* ledger on: default true */
   bool losses;             /* and what laws of families lose: default false */
+  bool state;              /* the whole state at the end is kept: default false */
 } deck_output;
+
+typedef struct deck_start {
+  deck_item item;
+  const char *result; /* from the working directory; NULL: the run begins at rest */
+} deck_start;
 
 typedef struct deck_checkpoint {
   deck_item item;
@@ -505,6 +511,7 @@ typedef struct deck_file { /* a table that a load was read from */
   LIST(contact)                                                                                    \
   LIST(initial_velocity)                                                                           \
   LIST(initial_displacement)                                                                       \
+  ONE(start)                                                                                       \
   LIST(monitor)                                                                                    \
   LIST(stop)                                                                                       \
   LIST(frame)                                                                                      \

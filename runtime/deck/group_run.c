@@ -1,6 +1,7 @@
 #include "runtime/deck/group_run.h"
 
 #include "runtime/deck/deck_check.h"
+#include "runtime/deck/lattice_kind.h"
 
 /* --- the run as a whole ---------------------------------------------------------------------- */
 
@@ -130,6 +131,39 @@ DECK_ROW(static, .single = true, .place = offsetof(deck, at_rest), .check = chec
          .doc = "Makes the run static: the displacements of meshes whose laws are linear solve the "
                 "equations K u = F, without steps in time.");
 
+/* --- what it begins from ---------------------------------------------------------------------- */
+
+static const deck_key_info start_keys[] = {
+    {.name = "result",
+     .type = DECK_NAME,
+     .required = true,
+     DECK_AT(start, result),
+     .doc = "path of the result, from the working folder; its deck has `state = .true.` in "
+            "&output"},
+};
+
+/* Of meshes the state is not kept. False after a message. */
+static bool has_states(deck_reader *r, span where, const char *what) {
+  for (int n = 0; n < r->k->lattice_count; n++) {
+    if (!deck_lattice_is_mesh(&r->k->lattices[n])) continue;
+    diag_report(r->d, DIAG_NOT_SUPPORTED, where, "`%s` is a mesh, and %s", r->k->lattices[n].name,
+                what);
+    diag_hint(r->d, "let one run take all of the loading: loads have `start` and `end`");
+    return false;
+  }
+  return true;
+}
+
+static void check_start(deck_reader *r, const namelist_group *from, void *into) {
+  const deck_start *item = into;
+  (void)from;
+  has_states(r, item->item.where, "runs with meshes begin at rest");
+}
+
+DECK_ONE(start, .check = check_start,
+         .doc = "Begins the run from the end of another one, whose deck may differ, see "
+                "[Stages](#stages).");
+
 /* --- what is written -------------------------------------------------------------------------- */
 
 static const deck_key_info output_keys[] = {
@@ -174,6 +208,11 @@ static const deck_key_info output_keys[] = {
      DECK_AT(output, losses),
      .doc = "and in it what laws of families lose to states, damage and rate terms: then their "
             "imbalance is checked, too. Takes time, of some laws more than the steps themselves"},
+    {.name = "state",
+     .type = DECK_LOGICAL,
+     .fallback = ".false.",
+     DECK_AT(output, state),
+     .doc = "keep in the result all of the state at the end, for a `&start` of another deck"},
 };
 
 /* False after a message. */
@@ -204,6 +243,8 @@ static void check_output(deck_reader *r, const namelist_group *from, void *into)
   const double end = r->k->simulation.end_time;
   keep_field_places(r, from, item);
   if (end > 0) deck_samples_fit(item, end, r->d);
+  if (item->state)
+    has_states(r, deck_where(&item->item, "state"), "the state of meshes is not kept");
 }
 
 DECK_ONE(output, .check = check_output, .doc = "What is written, and how often.");

@@ -6,7 +6,7 @@
 #include "runtime/deck/deck_schema.h"
 
 extern const deck_group_info deck_group_simulation, deck_group_relaxation, deck_group_static,
-    deck_group_output, deck_group_checkpoint, deck_group_study;
+    deck_group_start, deck_group_output, deck_group_checkpoint, deck_group_study;
 
 /* Of a run that ends at `end`, s; false after a message. */
 bool deck_samples_fit(const deck_output *item, double end, diagnostics *d);

@@ -42,10 +42,18 @@ double load_clock_part_after(const body *w, double start, double t) {
   return start <= 0 ? 1 : pl_fmin(pl_fmax((t - start) / w->time_step + 0.5, 0), 1);
 }
 
+/* In the first increment of a body that goes on: what acts at time 0 already, as far as it still
+   does. */
+static double acting_before(const load_clock *c, const time_function *f, long step) {
+  if (!c->goes_on || c->from > 0 || f->start > 0) return 0;
+  return (1 - load_clock_part(c, step)) * time_function_at(f, 0);
+}
+
 /* What acts in the step: the value at its instant, of a jump nearby the part that is covered. At
    the end the last value falls away. */
 double load_clock_acting(const load_clock *c, const body *w, const time_function *f, long step) {
-  if (c->ramp > 0) return load_clock_value(c, w, f, time_function_at, step);
+  if (c->ramp > 0)
+    return load_clock_value(c, w, f, time_function_at, step) + acting_before(c, f, step);
   const double t = load_clock_time(c, w, step), end = time_function_end(f),
                jump = time_function_jump(f), over = load_clock_part_after(w, end, t);
   double value = time_function_at(f, pl_fmin(t, end));

@@ -10,10 +10,11 @@
 /* Steps times their length where `ramp` is 0. Else, in an increment of a quasi-static run, time and
    loads go evenly from what they are at `from` to what they are at `to` within so many steps, and
    stand. The body begins without loads; those that begin at the end of an increment come in the
-   next one. */
+   next one. A body that goes on from another run begins with the loads of time 0. */
 typedef struct load_clock {
   double from, to; /* s */
   int64_t first, ramp;
+  int64_t goes_on;
 } load_clock;
 
 /* Time functions or their integrals. */

@@ -310,23 +310,39 @@ static double force_at_once(const loads *l, const applied *f) {
   return f->share * time_function_at(&here, 0);
 }
 
-/* With v- = 2/(1 + decay) v - dt/2 a the step (motion.h) goes to v+ with (v- + v+)/2 = v. */
+/* s: twice the time that the velocity of a particle is to be set back by. */
+static double time_to_set_back(const loads *l, const body *w, int64_t site) {
+  return l->goes_on && l->goes_on[site] ? w->time_step - l->former_step : w->time_step;
+}
+
+/* With v- = 2/(1 + decay) v - dt/2 a the step (motion.h) goes to v+ with (v- + v+)/2 = v. What goes
+   on from a run with the same step has that velocity, to the bit. */
+static void set_particle_back(const loads *l, body *w, int component, int64_t site, double weight,
+                              double rate) {
+  const double time = time_to_set_back(l, w, site),
+               back = 2 / (1 + (rate > 0 ? pl_exp(-rate * time) : 1));
+  double *v = &w->velocity[component][site];
+  if (time == 0) return;
+  *v = back * *v - 0.5 * time *
+                       ((w->force[component][site] + body_outer(w, component, site)) /
+                            body_mass(w, component, site) +
+                        weight);
+}
+
 void load_steps_set_back(loads *l, body *w) {
-  const double half = 0.5 * w->time_step, back = 2 / (1 + decay_with(w, damping_at_once(l)));
+  const double rate = damping_at_once(l);
   for (int d = 0; d < w->dof; d++) {
     const double weight = d < w->dimensions ? weight_at_once(l, d) : 0;
     for (long p = 0; p < l->lattice->particle_count; p++) {
       const int64_t q = l->lattice->particle_site[p];
-      double *v = &w->velocity[d][q];
       if (!(body_mass(w, d, q) > 0)) continue; /* a tie moves it */
-      *v =
-          back * *v - half * ((w->force[d][q] + body_outer(w, d, q)) / body_mass(w, d, q) + weight);
+      set_particle_back(l, w, d, q, weight, rate);
     }
   }
   for (long i = 0; i < l->force_count; i++) {
     applied *f = &l->forces[i];
-    w->velocity[f->component][f->site] -=
-        half * force_at_once(l, f) / body_mass(w, f->component, f->site);
+    w->velocity[f->component][f->site] -= 0.5 * time_to_set_back(l, w, f->site) *
+                                          force_at_once(l, f) / body_mass(w, f->component, f->site);
   }
   for (long i = 0; i < l->constraint_count; i++) {
     constraint *c = &l->constraints[i];

@@ -466,6 +466,7 @@ void loads_free(loads *l) {
   free(l->constraints);
   free(l->forces);
   free(l->places);
+  free(l->goes_on);
   free(l);
 }
 

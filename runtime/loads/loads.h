@@ -65,6 +65,10 @@ typedef struct loads {
   long force_count;
   double (*places)[3]; /* [place_count] m */
   long place_count;
+  /* [size] 1: the particle goes on from another run, whose steps were so long (s; 0: it was at
+     rest): its velocity is already that of half of it before the run; NULL: of none */
+  unsigned char *goes_on;
+  double former_step;
   load_clock clock;
 } loads;
 

@@ -264,7 +264,8 @@ bool mesh_rest_check(mesh_rest *r, const char *name, span where, int increments,
   kept_loads kept = keep_loads(r->l);
   const bool pins = has_pins(r);
   for (int k = 0; k < increments && good; k++) {
-    const load_clock clock = {k * interval, (k + 1) * interval, k, 1};
+    const load_clock clock = {
+        .from = k * interval, .to = (k + 1) * interval, .first = k, .ramp = 1};
     r->l->clock = clock;
     good = is_stiff(r, name, where, d);
     if (!good || !pins) continue;

@@ -32,6 +32,12 @@ typedef struct run_law { /* a law at work on a body: an interaction of the run *
   rows_bond *bonds;         /* of `rows` */
 } run_law;
 
+/* Of a body that goes on from another run: what of its particles and of the bonds of all its laws
+   does, what begins as it is made, what of the other run is not here any more. */
+typedef struct run_going {
+  long particles, new_particles, gone_particles, bonds, new_bonds, gone_bonds;
+} run_going;
+
 typedef struct run_body {
   int lattice;        /* its number in the deck */
   const char *name;   /* the lattice's */
@@ -54,6 +60,7 @@ typedef struct run_body {
   ledger ledger;
   ledger_laws energies;
   load_look look;         /* of the state observed last */
+  run_going going;        /* all 0 of one that begins at rest */
   int32_t first_particle; /* its number in results; of no use of a link */
   int first_block;        /* of the team: the block that its first one belongs to */
 } run_body;

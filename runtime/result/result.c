@@ -10,6 +10,7 @@
 #include "runtime/result/hdf5_tools.h"
 #include "runtime/result/mesh_views.h"
 #include "runtime/result/sealed_file.h"
+#include "runtime/result/state_write.h"
 #include "runtime/result/views.h"
 #include "runtime/result/xdmf.h"
 
@@ -359,6 +360,7 @@ static bool write_hdf5(const result *r, const result_ending *e, frame_sets *fram
       (e->said_count == 0 || write_texts(file, "/said", e->said, e->said_count)) &&
       write_particles(file, &r->header) && mesh_views_write_meshes(file, &r->header) &&
       write_history(file, &r->header, e) && write_frames(file, r, frames, error, size) &&
+      (!e->state || state_write(file, e->state)) &&
       views_write(file, &r->header, &frames->meshes, frames->count);
   if (good) return sealed_file_close(file, path);
   H5Fclose(file);

@@ -35,6 +35,8 @@
                             of cells (1 a finite element, 2 blended, 3 element-free); of a file
                             node_numbers [N], cell_numbers [C] there; attributes
                             first_particle (of its nodes in /particles) and thickness (m)
+     /state                 all of the state at the end, for another run (result_state.h); only where
+                            the deck asks for it
      /VTKHDF, /xdmf         the same for other programs (views.h)
 
    The times are dimension scales of what stands beside them. */
@@ -48,6 +50,7 @@
 
 #include "dsl/base/c_linkage.h"
 #include "runtime/result/frame_file.h"
+#include "runtime/result/result_state.h"
 
 C_LINKAGE_BEGIN
 
@@ -155,6 +158,7 @@ typedef struct result_ending {
   long history_count;
   const result_series *series;
   int series_count;
+  const result_state *state; /* NULL: it is not kept */
 } result_ending;
 
 typedef struct result result;

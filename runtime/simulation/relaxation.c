@@ -57,6 +57,7 @@ relaxation *relaxation_new(const deck *k, const run_body *bodies, int count, dou
   relaxation *r = must_calloc(1, sizeof *r);
   size_t largest = 0;
   r->deck = &k->relaxation;
+  r->goes_on = k->start.result != NULL;
   r->bodies = bodies;
   r->body_count = count;
   r->interval = k->simulation.end_time / k->relaxation.increments;
@@ -106,7 +107,8 @@ load_clock relaxation_clock(const relaxation *r, int64_t first) {
   return (load_clock){.from = (double)r->state.done * r->interval,
                       .to = (double)(r->state.done + 1) * r->interval,
                       .first = first,
-                      .ramp = r->ramp};
+                      .ramp = r->ramp,
+                      .goes_on = r->goes_on};
 }
 
 void relaxation_next(relaxation *r, int64_t step) {

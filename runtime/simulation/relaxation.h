@@ -44,6 +44,7 @@ typedef struct relaxation {
   relaxed_body *looked_at; /* [body_count] */
   double interval;         /* s of the deck's time in an increment */
   long ramp;               /* steps */
+  bool goes_on;            /* from another run */
 
   /* own */
   const deck_relaxation *deck;

@@ -11,6 +11,7 @@
 #include "runtime/deck/group_run.h"
 #include "runtime/parts/law_fits.h"
 #include "runtime/parts/link_limit.h"
+#include "runtime/parts/run_start.h"
 #include "runtime/simulation/fields_fit.h"
 #include "runtime/simulation/modes.h"
 #include "runtime/simulation/monitor_setup.h"
@@ -265,6 +266,8 @@ static bool set_up(simulation *s, rows *const *lattices, diagnostics *d) {
   if (!choose_step(s, d) || !open_bodies(s, d) || !take_frequencies(s, d)) return false;
   if (!step_fits(s->deck, &s->limit, d) || !step_plan_make(s->deck, &s->limit, &s->plan, d))
     return false;
+  if (!run_start(s->bodies, s->body_count, &s->contacts, s->deck, &s->started_from, d))
+    return false;
   open_clock(s);
   if (!can_stand(s, d)) return false;
   if (!open_monitors(s, d) || !open_frames(s, d)) return false;
@@ -398,6 +401,17 @@ long simulation_step_count(const simulation *s) {
 }
 long simulation_step_done(const simulation *s) {
   return (long)s->clock.at.step;
+}
+result_state *simulation_take_state(const simulation *s) {
+  if (s->clock.at.status == STEP_BAD) return NULL;
+  return run_state_take(s->bodies, s->body_count, &s->contacts, s->deck,
+                        s->relaxation ? 0 : s->limit.step);
+}
+run_going simulation_going(const simulation *s, int number) {
+  return s->bodies[number].going;
+}
+uint64_t simulation_started_from(const simulation *s) {
+  return s->started_from;
 }
 double simulation_progress(const simulation *s) {
   return (double)run_clock_position(&s->clock) / (double)run_clock_end(&s->clock);

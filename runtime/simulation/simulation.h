@@ -27,6 +27,8 @@ C_LINKAGE_BEGIN
 typedef struct simulation simulation;
 struct mesh_tie;
 struct profile;
+struct result_state;
+struct run_going;
 struct sweep;
 struct tips;
 
@@ -83,6 +85,13 @@ int simulation_ruling_body(const simulation *s);
 long simulation_step_count(
     const simulation *s); /* planned; without meaning for quasi-static runs */
 long simulation_step_done(const simulation *s);
+/* What a &start of another deck needs (to be freed by result_state_free); NULL of a run that has
+   gone bad. */
+struct result_state *simulation_take_state(const simulation *s);
+/* Of a body that goes on from another run; and what tells states that runs go on from from each
+   other, 0: this one begins at rest. */
+struct run_going simulation_going(const simulation *s, int body);
+uint64_t simulation_started_from(const simulation *s);
 double simulation_progress(const simulation *s); /* part of the run that is done, 0 to 1 */
 /* Increments done of a quasi-static run, and how many of them ended without balance; 0 else. */
 long simulation_increments(const simulation *s, long *unbalanced);

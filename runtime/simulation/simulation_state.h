@@ -49,6 +49,7 @@ struct simulation {
   int link_stages;       /* then of links; none without them */
   int observe_stages;    /* the same of observing */
   bool observe, go_on;   /* set by one thread for all */
+  uint64_t started_from; /* tells states of &start from each other; 0 without */
   int64_t observed_step; /* of the state observed last; -1: none */
   profile *profile;      /* NULL: nothing is measured */
   double links_begun;    /* s of the clock: their stages, where it is */

@@ -1,0 +1,124 @@
+/* Loading in stages: a run that begins from another one's result. Two stages are one run to the last
+   bit where nothing changes, for laws of all kinds, bars, links and regions; and where a part that
+   was joined to nothing is cut out. */
+#define _GNU_SOURCE /* nftw */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "tests/generator/run/stages.h"
+
+static void two_stages_are_one_run(void **state) {
+  workplace *w = *state;
+  assert_true(check_stages(w, BLOCK(HEXAGON, "model = 'mplm_bilinear'", BEAM), STEADY) > 0.5);
+  assert_true(check_stages(w, BLOCK(HEXAGON, "model = 'splm_concrete'", BEAM), STEADY) > 0);
+  assert_true(check_stages(w,
+                           BLOCK("kind = 'square'  spacing = '5 mm'  horizon = 2.015",
+                                 "model = 'pmb'  G_0 = '0.02 N/m'", BEAM),
+                           STEADY) > 0);
+  assert_true(check_stages(w, BLOCK("kind = 'blue_noise'  spacing = '5 mm'", "model = 'lps'", BEAM),
+                           STEADY) >= 0);
+}
+
+#define BAR                                                                                        \
+  "&bar       name = 'b'  points = '2 mm', '12 mm', '58 mm', '12 mm'  diameter = '4 mm'  spacing " \
+  "= '8 mm'  /\n"                                                                                  \
+  "&material  bar = 'b'  model = 'steel_bar'  F_y = '10 MPa'  /\n"
+
+static void bars_links_and_regions_go_on(void **state) {
+  workplace *w = *state;
+  static const char beam[] = BLOCK(HEXAGON, "model = 'mplm_bilinear'", BEAM);
+  char block[DECK];
+  snprintf(block, sizeof block, "%s%s", beam,
+           BAR "&link  name = 'k'  bar = 'b'  lattice = 'c'  to = 'place'  /\n"
+               "&material  link = 'k'  model = 'bond_slip'  f_cm = '20 MPa'  /\n");
+  assert_true(check_stages(w, block, STEADY) > 0);
+  snprintf(block, sizeof block, "%s%s", beam,
+           BAR "&link  name = 'k'  bar = 'b'  lattice = 'c'  /\n"
+               "&material  link = 'k'  model = 'bar_bond'  /\n");
+  assert_true(check_stages(w, block, STEADY) > 0);
+  snprintf(block, sizeof block, "%s%s", beam,
+           "&region  name = 'end'  lattice = 'c'  shape = 'rectangle'  corner = '30 mm', '-1 mm'  "
+           "size = '40 mm', '40 mm'  /\n"
+           "&material  lattice = 'c'  region = 'end'  model = 'elastic_micropolar'  /\n");
+  assert_true(check_stages(w, block, STEADY) > 0);
+}
+
+#define SPACE                                                                                      \
+  "&lattice   name = 'c'  kind = 'fcc'  spacing = '8 mm'  shells = 2  /\n"                         \
+  "&material  lattice = 'c'  model = 'mplm_concrete_space'  /\n"                                   \
+  "&body      lattice = 'c'  shape = 'box'  corner = 0, 0, 0  size = '60 mm', '26 mm', '26 mm'  "  \
+  "/\n"                                                                                            \
+  "&region    name = 'foot'  shape = 'box'  corner = '-1 mm', '-1 mm', '-1 mm'  size = '3 mm', "   \
+  "'40 mm', '40 mm'  /\n"                                                                          \
+  "&region    name = 'tip'  shape = 'box'  corner = '54 mm', '-1 mm', '-1 mm'  size = '10 mm', "   \
+  "'40 mm', '40 mm'  /\n"                                                                          \
+  "&support   region = 'foot'  fix = 'xyz', 'rotation'  /\n"
+
+static void rotations_in_space_go_on(void **state) {
+  assert_true(check_stages(*state, SPACE,
+                           "&force  region = 'tip'  component = 'y'  total = '-900 N'  history = "
+                           "'constant'  /\n"
+                           "&force  region = 'tip'  component = 'z'  total = '-500 N'  history = "
+                           "'constant'  /\n") > 0.1);
+}
+
+/* Broken bonds of a block that is crushed push where they were lost, in the second stage, too. */
+static void contact_goes_on(void **state) {
+  assert_true(check_stages(*state,
+                           BLOCK("kind = 'square'  spacing = '5 mm'  horizon = 2.015",
+                                 "model = 'pmb'  G_0 = '0.02 N/m'", BEAM),
+                           "&contact  /\n&force  region = 'tip'  component = 'x'  total = '-9 kN'  "
+                           "history = 'constant'  /\n" STEADY) == 1);
+}
+
+/* Of two blocks that are not joined one is cut out: the other one moves as if it had always been
+   alone. */
+static void what_is_cut_out_takes_nothing_along(void **state) {
+  workplace *w = *state;
+  static const char alone[] = BLOCK(HEXAGON, "model = 'mplm_bilinear'", BEAM) STEADY,
+                    far[] = "&body  lattice = 'c'  shape = 'rectangle'  corner = '-90 mm', '-60 "
+                            "mm'  size = '40 mm', '50 mm'  /\n";
+  write_stage(w, "one", alone, "0.6 ms", "");
+  write_stage(w, "first", alone, "0.25 ms", far);
+  write_stage(w, "second", alone, "0.35 ms", "&start  result = 'first.h5'  /\n");
+  run_stage(w, "one");
+  run_stage(w, "first");
+  run_stage(w, "second");
+  assert_non_null(strstr(w->said, " go on; "));
+  assert_non_null(strstr(w->said, " are gone"));
+  assert_null(strstr(w->said, " new"));
+  assert_true(same_ends(w, "one", "second") > 0.5);
+  /* and the other way round: what is new is at rest, and sets nothing in motion */
+  write_stage(w, "first", alone, "0.25 ms", "");
+  char more[1000];
+  snprintf(more, sizeof more, "%s&start  result = 'first.h5'  /\n", far);
+  write_stage(w, "second", alone, "0.35 ms", more);
+  run_stage(w, "first");
+  run_stage(w, "second");
+  assert_non_null(strstr(w->said, " are new"));
+  result_state *one = state_of(w, "one"), *two = state_of(w, "second");
+  assert_true(two->bodies[0].count > one->bodies[0].count);
+  const double far_below = largest(two->bodies[0].displacement, 2);
+  assert_true(far_below > 0); /* its weight */
+  result_state_free(one);
+  result_state_free(two);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test_setup_teardown(two_stages_are_one_run, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(bars_links_and_regions_go_on, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(rotations_in_space_go_on, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(contact_goes_on, set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(what_is_cut_out_takes_nothing_along, set_up_workplace,
+                                      tear_down_workplace),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
