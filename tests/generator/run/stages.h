@@ -42,10 +42,14 @@ static inline void write_stage(const workplace *w, const char *name, const char 
   write_text(w, file, deck);
 }
 
-static inline void run_stage(workplace *w, const char *name) {
+static inline void run_stage_by(workplace *w, const char *name, int threads) {
   char arguments[200];
-  snprintf(arguments, sizeof arguments, "run %s.nml --no-physics", name);
+  snprintf(arguments, sizeof arguments, "run %s.nml --no-physics --threads %d", name, threads);
   expect(w, arguments, 0, "written");
+}
+
+static inline void run_stage(workplace *w, const char *name) {
+  run_stage_by(w, name, 1);
 }
 
 static inline result_state *state_of(const workplace *w, const char *name) {
@@ -95,16 +99,16 @@ static inline double same_ends(const workplace *w, const char *one, const char *
   return most;
 }
 
-/* Returns the largest damage. */
+/* By different numbers of threads; returns the largest damage. */
 static inline double check_stages(workplace *w, const char *block, const char *more) {
   char second[2000];
   write_stage(w, "one", block, "0.6 ms", more);
   write_stage(w, "first", block, "0.25 ms", more);
   snprintf(second, sizeof second, "%s&start  result = 'first.h5'  /\n", more);
   write_stage(w, "second", block, "0.35 ms", second);
-  run_stage(w, "one");
-  run_stage(w, "first");
-  run_stage(w, "second");
+  run_stage_by(w, "one", 1);
+  run_stage_by(w, "first", 2);
+  run_stage_by(w, "second", 3);
   const double damage = same_ends(w, "one", "second");
   print_message("the same bits, with a damage or state of up to %.3g\n", damage);
   return damage;
