@@ -24,6 +24,7 @@
 #include "runtime/lattice/shape_matrix.h"
 #include "runtime/mesh/node_layout.h"
 #include "runtime/result/checkpoint.h"
+#include "runtime/result/result_state.h"
 #include "runtime/simulation/simulation_save.h"
 
 /* --- paths and fingerprint -------------------------------------------------------------------- */

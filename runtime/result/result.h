@@ -50,9 +50,10 @@
 
 #include "dsl/base/c_linkage.h"
 #include "runtime/result/frame_file.h"
-#include "runtime/result/result_state.h"
 
 C_LINKAGE_BEGIN
+
+struct result_state; /* result_state.h */
 
 typedef struct result_text {
   const char *name, *text;
@@ -158,7 +159,7 @@ typedef struct result_ending {
   long history_count;
   const result_series *series;
   int series_count;
-  const result_state *state; /* NULL: it is not kept */
+  const struct result_state *state; /* NULL: it is not kept */
 } result_ending;
 
 typedef struct result result;
