@@ -346,10 +346,10 @@ typedef struct pl_rectangles {
   long cells;                        /* that there are: the last ones but fill a vector up */
   double *const *force;              /* [2][cells] N, written: of lower nodes, but for the right one
                                         of the last cell */
-  double *const *above;              /* [2][cells] N, of these nodes: what the row below does to them,
-                                        then of the nodes above them, what this row does */
-  double (*right)[2];                /* [2][low, high] N: what the cell before the first does to its
-                                        right nodes, then what the last one does */
+  double *const *above;              /* [2][cells] N, of these nodes: what the row below does to
+                                        them, then of those above, what this row does */
+  double (*right)[2];                /* [2][low, high] N: what the cell before the first does to
+                                        its right nodes, then what the last one does */
   const pl_points *points;
 } pl_rectangles;
 

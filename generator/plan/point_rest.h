@@ -1,5 +1,5 @@
-/* The strain at which a point of a continuum has no stress: what strains it beside that, and whether
-   states move it at all. */
+/* The strain at which a point of a continuum has no stress: what strains it beside that, and
+   whether states move it at all. */
 #ifndef PERILAT_GENERATOR_POINT_REST_H
 #define PERILAT_GENERATOR_POINT_REST_H
 

@@ -620,9 +620,9 @@ static void add_losses(const point_forces *p, const point_strip *s, double *cons
   row->pending += 0.5 * now;
 }
 
-/* Lanes that fill up the last of a row of rectangles are strained by whatever stands beside the last
-   node (step_rectangles). Nobody asks for them but sums, where they count with a volume of 0, which
-   takes a number to be nothing: they are as made when looked at. */
+/* Lanes that fill up the last of a row of rectangles are strained by whatever stands beside the
+   last node (step_rectangles). Nobody asks for them but sums, where they count with a volume of 0,
+   which takes a number to be nothing: they are as made when looked at. */
 static void forget_filling(const point_forces *p, const point_strip *s) {
   const cell_group *last = &p->strips.groups[s->last - 1];
   const long all = p->strips.count;

@@ -30,8 +30,8 @@ void rectangle_cells_gather(int cells, double *const pushed[RECTANGLE_PUSHES],
                             double *const force[2], long stride);
 
 /* Sums over rows that are nothing but such cells, from the left and from below, which kernels go on
-   with (pl_rectangles): what a row does to its upper nodes waits for the next one. The sum at a node
-   is the same to the bit where it does not wait but is added later. */
+   with (pl_rectangles): what a row does to its upper nodes waits for the next one. The sum at a
+   node is the same to the bit where it does not wait but is added later. */
 typedef struct rectangle_rows {
   double *above[2];   /* [nodes of a row] N */
   double right[2][2]; /* [axis][low and high] N: what the last cell does to its right nodes */

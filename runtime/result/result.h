@@ -35,8 +35,8 @@
                             of cells (1 a finite element, 2 blended, 3 element-free); of a file
                             node_numbers [N], cell_numbers [C] there; attributes
                             first_particle (of its nodes in /particles) and thickness (m)
-     /state                 all of the state at the end, for another run (result_state.h); only where
-                            the deck asks for it
+     /state                 all of the state at the end, for another run (result_state.h); only
+                            where the deck asks for it
      /VTKHDF, /xdmf         the same for other programs (views.h)
 
    The times are dimension scales of what stands beside them. */

@@ -1,12 +1,12 @@
-/* The whole state at the end of a run, as a result keeps it where its deck asks for it: what another
-   run needs to go on from there.
+/* The whole state at the end of a run, as a result keeps it where its deck asks for it: what
+   another run needs to go on from there.
 
      /state/step                     [1] s: velocities are those half of it before the places; 0: of
                                      bodies at rest
      /state/bodies/<lattice>/        kind (text), spacing [1] m, first [1] its first particle;
                                      displacement, velocity [n, dof] m, rad; m/s, rad/s
-     /state/laws/<interaction>/      law (text), fields/<name>: [n, 1] of particles, [M, 1] of bonds,
-                                     [M, 2] at both ends of bonds, in the order of /bonds; SI;
+     /state/laws/<interaction>/      law (text), fields/<name>: [n, 1] of particles, [M, 1] of
+                                     bonds, [M, 2] at both ends of bonds, in the order of /bonds; SI;
                                      lost/<contact> [M, 1] m: distance at which a bond was lost, 0:
                                      it was not */
 #ifndef PERILAT_RUNTIME_RESULT_STATE_H
