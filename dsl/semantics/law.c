@@ -12,11 +12,34 @@ const char *law_setting_name(law_setting setting) {
   return setting_names[setting];
 }
 
-law_setting law_first_setting(const law *l) {
+bool law_setting_find(const char *name, law_setting *setting) {
   for (int k = SETTING_PLANE_STRESS; k <= SETTING_SPACE; k++)
-    if (l->tree->setting_count && strcmp(l->tree->settings[0], setting_names[k]) == 0)
-      return (law_setting)k;
-  return SETTING_PLANE_STRESS;
+    if (strcmp(name, setting_names[k]) == 0) {
+      *setting = (law_setting)k;
+      return true;
+    }
+  return false;
+}
+
+law_setting law_first_setting(const law *l) {
+  law_setting first = SETTING_PLANE_STRESS;
+  if (l->tree->setting_count) law_setting_find(l->tree->settings[0], &first);
+  return first;
+}
+
+bool law_is_for(const law *l, law_setting setting) {
+  for (int k = 0; k < l->tree->setting_count; k++)
+    if (strcmp(l->tree->settings[k], setting_names[setting]) == 0) return true;
+  return l->tree->setting_count == 0;
+}
+
+law_setting law_setting_in(const law *l, int dimensions) {
+  law_setting named;
+  for (int k = 0; k < l->tree->setting_count; k++)
+    if (law_setting_find(l->tree->settings[k], &named) &&
+        (named == SETTING_SPACE) == (dimensions == 3))
+      return named;
+  return dimensions == 3 ? SETTING_SPACE : SETTING_PLANE_STRESS;
 }
 
 int law_field_of(const symbol *tensor, int k) {

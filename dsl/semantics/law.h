@@ -108,8 +108,14 @@ typedef struct law {
 } law;
 
 const char *law_setting_name(law_setting setting);
+bool law_setting_find(const char *name, law_setting *setting);
 /* The first that the law names in its line `for`; plane stress without one. */
 law_setting law_first_setting(const law *l);
+/* Whether its line `for` names it; a law without one is meant for all. */
+bool law_is_for(const law *l, law_setting setting);
+/* That of a lattice with 2 or 3 dimensions: the first of these that the law names; plane stress or
+   space where it names none. */
+law_setting law_setting_in(const law *l, int dimensions);
 /* Of a state that is a tensor, the field that keeps component k; -1 of zz of a deviator, which is
    -(xx + yy). */
 int law_field_of(const symbol *tensor, int k);

@@ -654,12 +654,6 @@ static void check_setting(point_bench *b, const physics_options *o, int sets) {
   point_flows_close(flows);
 }
 
-static bool is_meant_for(const law *l, law_setting setting) {
-  for (int k = 0; k < l->tree->setting_count; k++)
-    if (strcmp(l->tree->settings[k], law_setting_name(setting)) == 0) return true;
-  return l->tree->setting_count == 0;
-}
-
 /* A deck's law is judged in the deck's setting alone, and where others do not ask for less, every
    law in those that it names, most of all in the first. */
 void physics_check_points(const law *l, const physics_options *o, diagnostics *d,
@@ -672,7 +666,7 @@ void physics_check_points(const law *l, const physics_options *o, diagnostics *d
   if (point_bench_open(b, l->setting)) check_setting(b, o, SETS);
   point_bench_close(b);
   for (int k = 0; k < COUNT && !o->parameters && d->errors == errors; k++) {
-    if (settings[k] == l->setting || !is_meant_for(l, settings[k])) continue;
+    if (settings[k] == l->setting || !law_is_for(l, settings[k])) continue;
     if (point_bench_open(b, settings[k])) check_setting(b, o, FEWER_SETS);
     point_bench_close(b);
   }

@@ -72,16 +72,6 @@ static bool read_family(deck_lattice *l, const info_law_options *o) {
   return true;
 }
 
-/* The setting of such a lattice that the law is meant for, plane stress before plane strain. */
-static law_setting meant_setting(const model *m, int dimensions) {
-  char meant[96];
-  if (dimensions == 3) return SETTING_SPACE;
-  for (int k = SETTING_PLANE_STRESS; k <= SETTING_PLANE_STRAIN; k++)
-    if (model_suits(m, law_setting_name((law_setting)k), meant, sizeof meant))
-      return (law_setting)k;
-  return SETTING_PLANE_STRESS;
-}
-
 static bool choose_lattice(law_facts *f, const info_law_options *o) {
   const model *m = &f->model;
   deck_lattice *d = &f->lattice;
@@ -107,7 +97,7 @@ static bool choose_lattice(law_facts *f, const info_law_options *o) {
   if (dimensions == 3 || chain) thickness = 0;
   d->thickness = d->stiffness_thickness = d->mass_thickness = thickness;
   d->area = chain ? area : 0;
-  d->setting = law_setting_name(meant_setting(m, dimensions));
+  d->setting = law_setting_name(law_setting_in(m->law, dimensions));
   return true;
 }
 

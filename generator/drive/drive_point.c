@@ -272,29 +272,14 @@ bool drive_point_suits(const drive_input *in, const pl_law *kernel, diagnostics 
   return point_control_read(in, kernel->dimensions, &control, d);
 }
 
-/* The settings that a law names after `for`; none: it is meant for all. */
-static bool is_meant_for(const law *l, const char *setting) {
-  for (int k = 0; k < l->tree->setting_count; k++)
-    if (strcmp(l->tree->settings[k], setting) == 0) return true;
-  return l->tree->setting_count == 0;
-}
-
-const law *drive_in_setting(const law *l, const char *setting) {
-  int k = SETTING_PLANE_STRESS;
-  while (k < SETTING_SPACE && strcmp(law_setting_name((law_setting)k), setting) != 0)
-    k++;
-  return law_on_lattice(l, (law_setting)k, false, 0);
-}
-
 const law *drive_point_setting(const drive_input *in, const law *l, diagnostics *d) {
   const char *wanted = in->point.setting;
-  if (!wanted) return l;
-  if (!is_meant_for(l, wanted)) {
-    diag_report(d, DIAG_CONFLICT, deck_where(&in->point.item, "setting"),
-                "the law `%s` is not meant for %s", l->tree->name, wanted);
-    diag_hint(d, "take another setting; where the equations hold in it, too, add it to the law's "
-                 "line `for`");
-    return NULL;
-  }
-  return drive_in_setting(l, wanted);
+  law_setting setting;
+  if (!wanted || !law_setting_find(wanted, &setting)) return l;
+  if (law_is_for(l, setting)) return law_on_lattice(l, setting, false, 0);
+  diag_report(d, DIAG_CONFLICT, deck_where(&in->point.item, "setting"),
+              "the law `%s` is not meant for %s", l->tree->name, wanted);
+  diag_hint(d, "take another setting; where the equations hold in it, too, add it to the law's "
+               "line `for`");
+  return NULL;
 }

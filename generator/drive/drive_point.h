@@ -27,7 +27,5 @@ bool drive_point_suits(const drive_input *in, const pl_law *kernel, diagnostics 
 /* The law in the setting that the path asks for; without one in that which the law names first.
    NULL after a message, where the law is not meant for it. */
 const law *drive_point_setting(const drive_input *in, const law *l, diagnostics *d);
-/* The law in "plane_stress", "plane_strain" or "space". */
-const law *drive_in_setting(const law *l, const char *setting);
 
 #endif

@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "dsl/semantics/law_reads.h"
+#include "dsl/semantics/law_variant.h"
 #include "generator/drive/drive_bond.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/material_law.h"
@@ -79,27 +80,25 @@ static bool suits_law(driven_law *r) {
   return driven_law_kind(r) != DRIVE_OF_POINTS || drive_point_suits(r->in, r->law, r->said);
 }
 
-/* The law in the first of its settings that suits the path's lattice; where none does, as it is. */
-static const law *setting_of_lattice(const drive_input *in, const law *l) {
-  const bool space = in->particle.lattice && bravais_dimensions(in->particle.lattice) == 3;
-  if (!in->particle.lattice || space == (l->setting == SETTING_SPACE)) return l;
-  for (int k = 0; k < l->tree->setting_count; k++) {
-    const char *name = l->tree->settings[k];
-    const bool solid = strcmp(name, law_setting_name(SETTING_SPACE)) == 0,
-               plane = strcmp(name, law_setting_name(SETTING_PLANE_STRESS)) == 0 ||
-                       strcmp(name, law_setting_name(SETTING_PLANE_STRAIN)) == 0;
-    if (space ? solid : plane) return drive_in_setting(l, name);
-  }
-  return l;
+/* A particle's lattice says whether it is in space; one that the law is not meant for is refused
+   with the path. */
+static law_setting setting_of_particle(const drive_input *in, const law *l) {
+  const char *lattice = in->particle.lattice;
+  const law_setting first = law_first_setting(l),
+                    suits = lattice ? law_setting_in(l, bravais_dimensions(lattice)) : first;
+  return law_is_for(l, suits) ? suits : first;
+}
+
+static const law *law_of_particle(const drive_input *in, const law *l) {
+  const law_setting setting = setting_of_particle(in, l);
+  return setting == l->setting ? l : law_on_lattice(l, setting, false, 0);
 }
 
 /* A point is of the setting that the path asks for, a particle of one that suits its lattice. */
 static bool take_setting(driven_law *r) {
-  const law *first = r->model.law, *in_setting = first->tree->law == LAW_CONTINUUM
-                                                     ? drive_point_setting(r->in, first, r->said)
-                                                 : first->tree->law == LAW_STATE
-                                                     ? setting_of_lattice(r->in, first)
-                                                     : first;
+  const law *first = r->model.law, *in_setting = first;
+  if (first->tree->law == LAW_CONTINUUM) in_setting = drive_point_setting(r->in, first, r->said);
+  if (first->tree->law == LAW_STATE) in_setting = law_of_particle(r->in, first);
   if (!in_setting) return false;
   if (in_setting == first) return true;
   r->model.law = in_setting;
@@ -193,16 +192,13 @@ driven_outcome driven_law_open(driven_law *r, arena *memory, const drive_input *
   return outcome == DRIVEN_READY ? suit_path(r) : outcome;
 }
 
-static bool same_lattice(const char *a, const char *b) {
-  return a == b || (a && b && strcmp(a, b) == 0);
-}
-
 /* What a path sets has no part in the kernel, but for options and the setting. */
 static bool has_kernel_of(const driven_law *kept, const drive_input *in) {
   char *path = model_find(in->material.model, in->path);
   const bool same = path && kept->model.path && strcmp(path, kept->model.path) == 0 &&
                     kept->law->kind != PL_CONTINUUM && kept->model.law->options.count == 0 &&
-                    same_lattice(kept->in->particle.lattice, in->particle.lattice);
+                    (kept->law->kind != PL_STATE ||
+                     setting_of_particle(in, kept->model.law) == kept->model.law->setting);
   free(path);
   return same;
 }

@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "dsl/base/arena.h"
 #include "generator/check/physics_point_bench.h"
@@ -52,12 +51,6 @@ static void find_facts(point_bench *b, point_facts *f) {
   f->c_R = m.c_R;
 }
 
-static bool is_named(const law *l, law_setting setting) {
-  for (int k = 0; k < l->tree->setting_count; k++)
-    if (strcmp(l->tree->settings[k], law_setting_name(setting)) == 0) return true;
-  return l->tree->setting_count == 0;
-}
-
 int point_facts_of(const law *l, const double *values, point_facts found[POINT_SETTINGS]) {
   static const law_setting settings[POINT_SETTINGS] = {SETTING_PLANE_STRESS, SETTING_PLANE_STRAIN,
                                                        SETTING_SPACE};
@@ -68,7 +61,7 @@ int point_facts_of(const law *l, const double *values, point_facts found[POINT_S
   diag_begin(&unsaid, NULL);
   point_bench *b = must_calloc(1, sizeof *b);
   for (int k = 0; k < POINT_SETTINGS; k++) {
-    if (!is_named(l, settings[k])) continue;
+    if (!law_is_for(l, settings[k])) continue;
     *b = (point_bench){.law = l, .said = &unsaid, .report = &unwanted};
     if (point_bench_open(b, settings[k])) {
       point_bench_parameters(b, &options, true);

@@ -120,9 +120,9 @@ bool material_law_read(const deck_material *m, const char *path, model *out, dia
 /* --- the lattice ------------------------------------------------------------------------------ */
 
 law_setting material_setting(const deck_lattice *l) {
-  for (int k = SETTING_PLANE_STRESS; k <= SETTING_SPACE; k++)
-    if (strcmp(l->setting, law_setting_name((law_setting)k)) == 0) return (law_setting)k;
-  return SETTING_PLANE_STRESS;
+  law_setting setting = SETTING_PLANE_STRESS;
+  (void)law_setting_find(l->setting, &setting);
+  return setting;
 }
 
 /* Of a full family; 0 where particles stand on no lattice. */

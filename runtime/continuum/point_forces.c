@@ -509,7 +509,7 @@ static void step_strip(const point_forces *p, const point_strip *s, point_scratc
     return;
   }
   const int first = p->strips.groups[s->first].first, cells = cells_of(p, s);
-  rectangle_rows_begin(&own->sums, p->strips.layout.nodes[0]);
+  rectangle_rows_begin(&own->sums, first, first + cells + 1);
   step_rectangles(p, s, own, at, own->low);
   rectangle_rows_end(&own->sums, first + cells,
                      (double *const[]){own->low[0] + cells, own->low[1] + cells});
@@ -534,7 +534,7 @@ static void step_whole_row(const point_forces *p, int row, bool first, bool last
     low[d] = force[d] + s->layout.origin + row * s->layout.stride;
     high[d] = cell_strips_pushed_row(s, row, p->pushed[d]);
   }
-  if (first) rectangle_rows_begin(&own->sums, s->layout.nodes[0]);
+  if (first) rectangle_rows_begin(&own->sums, 0, s->layout.nodes[0]);
   for (int k = p->parts->first_of_row[row]; k < p->parts->first_of_row[row + 1]; k++) {
     const point_strip *part = &p->parts->items[k];
     const int from = s->groups[part->first].first;

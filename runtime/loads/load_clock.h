@@ -14,7 +14,7 @@
 typedef struct load_clock {
   double from, to; /* s */
   int64_t first, ramp;
-  int64_t goes_on;
+  int64_t goes_on; /* 0 or 1 */
 } load_clock;
 
 /* Time functions or their integrals. */

@@ -113,9 +113,9 @@ static void begin_row(rectangle_rows *r) {
     r->right[d][0] = r->right[d][1] = NONE;
 }
 
-void rectangle_rows_begin(rectangle_rows *r, int nodes) {
+void rectangle_rows_begin(rectangle_rows *r, int first, int end) {
   for (int d = 0; d < 2; d++)
-    for (int n = 0; n < nodes; n++)
+    for (int n = first; n < end; n++)
       r->above[d][n] = NONE;
   begin_row(r);
 }

@@ -37,8 +37,8 @@ typedef struct rectangle_rows {
   double right[2][2]; /* [axis][low and high] N: what the last cell does to its right nodes */
 } rectangle_rows;
 
-/* Before a row below which there is none. */
-void rectangle_rows_begin(rectangle_rows *r, int nodes);
+/* Before a row below which there is none: its nodes first <= n < end. */
+void rectangle_rows_begin(rectangle_rows *r, int first, int end);
 /* The last node of a row; force: of it. */
 void rectangle_rows_end(rectangle_rows *r, int node, double *const force[2]);
 

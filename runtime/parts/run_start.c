@@ -63,6 +63,7 @@ static long place_in(const run_law *l, const field_shape *shape, long row, int c
 static state_field take_field(const run_law *l, int field) {
   const field_shape shape = shape_of(l, field);
   state_field f = {.name = must_copy(l->law->fields[field].name),
+                   .unit = l->law->fields[field].unit,
                    .count = shape.count,
                    .columns = shape.columns};
   f.values = must_calloc((size_t)(shape.count * shape.columns) + 1, sizeof *f.values);
@@ -82,7 +83,8 @@ static double *lost_of(const run_contact *c, int number) {
 }
 
 static state_field take_lost(const run_law *l, const char *name, const double *lost) {
-  state_field f = {.name = must_copy(name), .count = l->rows->bond_count, .columns = 1};
+  state_field f = {
+      .name = must_copy(name), .unit = "m", .count = l->rows->bond_count, .columns = 1};
   f.values = must_calloc((size_t)f.count + 1, sizeof *f.values);
   for (long m = 0; m < f.count; m++)
     f.values[m] = lost[l->bonds[m].slot];
@@ -107,6 +109,7 @@ result_state *run_state_take(const run_body *bodies, int count, const run_contac
                              const deck *k, double step) {
   result_state *s = must_calloc(1, sizeof *s);
   s->step = step;
+  s->dimensions = bodies[0].body->dimensions;
   s->bodies = must_calloc((size_t)count + 1, sizeof *s->bodies);
   s->laws = must_calloc((size_t)k->interaction_count + 1, sizeof *s->laws);
   for (int b = 0; b < count; b++) {

@@ -37,7 +37,10 @@ static double *read_motion(result_file *f, const char *group, const char *name, 
   int dof = 0;
   snprintf(path, sizeof path, "%s/%s", group, name);
   double *values = result_read_table(f, path, false, 1, MOST_DOF, &count, &dof);
-  if (values && b->dof == 0) b->dof = dof, b->count = count;
+  if (values && b->dof == 0) {
+    b->dof = dof;
+    b->count = count;
+  }
   bool good = values && count == b->count && dof == b->dof;
   for (long k = 0; good && k < count * dof; k++)
     good = isfinite(values[k]);

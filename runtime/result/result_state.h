@@ -4,7 +4,7 @@
      /state/step                     [1] s: velocities are those half of it before the places; 0: of
                                      bodies at rest
      /state/bodies/<lattice>/        kind (text), spacing [1] m, first [1] its first particle;
-                                     displacement, velocity [n, dof] m, rad; m/s, rad/s
+                                     displacement, velocity [n, dof] m, of rotations rad; m/s, rad/s
      /state/laws/<interaction>/      law (text), fields/<name>: [n, 1] of particles, [M, 1] of
                                      bonds, [M, 2] at both ends of bonds, in the order of /bonds; SI;
                                      lost/<contact> [M, 1] m: distance at which a bond was lost, 0:
@@ -33,6 +33,7 @@ typedef struct state_body {
 
 typedef struct state_field {
   char *name;
+  const char *unit; /* "Pa"; where it is written */
   long count;
   int columns;
   double *values; /* [count][columns] */
@@ -54,9 +55,9 @@ typedef struct result_state { /* of a run */
   int body_count;
   state_law *laws;
   int law_count;
+  int dimensions;
   double *reference; /* [particle_count][dimensions] m; where it was read */
   long particle_count;
-  int dimensions;
 } result_state;
 
 /* NULL with a sentence in `error`: there is none, `*missing`, or it cannot be read. Numbers of

@@ -17,22 +17,25 @@ static bool write_number(hid_t file, const char *name, double value, const char 
   return h5_write_doubles(file, name, &value, 1, one, unit_text);
 }
 
-static bool write_body(hid_t file, const state_body *b) {
+static bool write_body(hid_t file, const state_body *b, int dimensions) {
   char group[NAME / 2], path[NAME];
   const hsize_t shape[] = {(hsize_t)b->count, (hsize_t)b->dof}, one[] = {1};
   const int32_t first = (int32_t)b->first;
+  const bool turns = b->dof > dimensions;
   snprintf(group, sizeof group, RESULT_STATE "/bodies/%s", b->lattice);
   return h5_make_group(file, group) && h5_write_text(file, in(group, "kind", path), b->kind) &&
          write_number(file, in(group, "spacing", path), b->spacing, "m") &&
          h5_write_integers(file, in(group, "first", path), &first, 1, one) &&
-         h5_write_doubles(file, in(group, "displacement", path), b->displacement, 2, shape, "m") &&
-         h5_write_doubles(file, in(group, "velocity", path), b->velocity, 2, shape, "m/s");
+         h5_write_doubles(file, in(group, "displacement", path), b->displacement, 2, shape,
+                          turns ? "m, rad" : "m") &&
+         h5_write_doubles(file, in(group, "velocity", path), b->velocity, 2, shape,
+                          turns ? "m/s, rad/s" : "m/s");
 }
 
 static bool write_field(hid_t file, const char *group, const state_field *f) {
   char path[NAME];
   const hsize_t shape[] = {(hsize_t)f->count, (hsize_t)f->columns};
-  return h5_write_doubles(file, in(group, f->name, path), f->values, 2, shape, "1");
+  return h5_write_doubles(file, in(group, f->name, path), f->values, 2, shape, f->unit);
 }
 
 static bool write_fields(hid_t file, const state_law *l, const char *what,
@@ -58,7 +61,7 @@ bool state_write(hid_t file, const result_state *s) {
               h5_make_group(file, RESULT_STATE "/laws") &&
               write_number(file, RESULT_STATE "/step", s->step, "s");
   for (int b = 0; good && b < s->body_count; b++)
-    good = write_body(file, &s->bodies[b]);
+    good = write_body(file, &s->bodies[b], s->dimensions);
   for (int n = 0; good && n < s->law_count; n++)
     good = write_law(file, &s->laws[n]);
   return good;

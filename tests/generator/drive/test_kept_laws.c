@@ -19,15 +19,9 @@ typedef struct keeper {
   driven_law kept;
 } keeper;
 
-/* The force at the end of a path with this material, on a law that is kept and on one that is
-   not. */
-static double final_force(keeper *k, const char *material) {
-  char text[400];
-  double force[2];
-  snprintf(text, sizeof text,
-           "&material %s /\n&simulation steps = 10 /\n&bond spacing = '10 mm' thickness = '100 mm' "
-           "/\n&path quantity = 'stretch' times = 0, '1 s' values = 0, 1e-4 /\n",
-           material);
+/* A quantity at the end of a path, on a law that is kept and on one that is not. */
+static double final_value(keeper *k, const char *text, const char *quantity) {
+  double value[2];
   char *path = arena_printf(k->memory, "%s/path.nml", k->w->folder);
   const int file = source_add(&k->sources, path, text, strlen(text));
   drive_input *in = drive_read(k->memory, &k->sources, file, NULL, 0, &k->said);
@@ -41,12 +35,32 @@ static double final_force(keeper *k, const char *material) {
             : driven_law_open_kept(&of, &k->kept, k->memory, in, &k->said);
     assert_int_equal(outcome, DRIVEN_READY);
     assert_true(driven_law_march(&of, &t, &band));
-    force[own] = t.columns[drive_column_find(&t, "N")].values[t.rows - 1];
+    value[own] = t.columns[drive_column_find(&t, quantity)].values[t.rows - 1];
     drive_table_free(&t);
     driven_law_close(&of);
   }
-  assert_true(force[0] == force[1]);
-  return force[0];
+  assert_true(value[0] == value[1]);
+  return value[0];
+}
+
+static double final_force(keeper *k, const char *material) {
+  char text[400];
+  snprintf(text, sizeof text,
+           "&material %s /\n&simulation steps = 10 /\n&bond spacing = '10 mm' thickness = '100 mm' "
+           "/\n&path quantity = 'stretch' times = 0, '1 s' values = 0, 1e-4 /\n",
+           material);
+  return final_value(k, text, "N");
+}
+
+/* Of a particle whose sides are held. */
+static double final_stress(keeper *k, const char *particle) {
+  char text[400];
+  snprintf(text, sizeof text,
+           "&material model = 'splm_elastic' E = '1 GPa' nu = 0.2 /\n&simulation steps = 10 /\n"
+           "&particle spacing = '10 mm' %s /\n"
+           "&path quantity = 'strain_xx' times = 0, '1 s' values = 0, 1e-6 /\n",
+           particle);
+  return final_value(k, text, "stress_xx");
 }
 
 static void each_path_has_its_own_values(void **state) {
@@ -76,8 +90,26 @@ static void each_path_has_its_own_values(void **state) {
   arena_free(k.memory);
 }
 
+/* Plane stress E/(1 - nu^2), space E (1 - nu)/((1 + nu)(1 - 2 nu)). */
+static void each_path_has_its_own_setting(void **state) {
+  keeper k = {.w = *state, .memory = arena_new()};
+  diag_begin(&k.said, &k.sources);
+  const double plane = 1e3 / 0.96, space = 1e3 * 0.8 / (1.2 * 0.6);
+  assert_true(fabs(final_stress(&k, "") / plane - 1) < 1e-5);
+  assert_true(fabs(final_stress(&k, "lattice = 'fcc' shells = 2") / space - 1) < 1e-5);
+  assert_true(fabs(final_stress(&k, "lattice = 'hexagonal'") / plane - 1) < 1e-5);
+  driven_law_close(&k.kept);
+  assert_true(fabs(final_stress(&k, "lattice = 'fcc' shells = 2") / space - 1) < 1e-5);
+  assert_true(fabs(final_stress(&k, "") / plane - 1) < 1e-5);
+  driven_law_close(&k.kept);
+  diag_clear(&k.said);
+  source_clear(&k.sources);
+  arena_free(k.memory);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test_setup_teardown(
-      each_path_has_its_own_values, set_up_workplace, tear_down_workplace)};
+#define T(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
+  const struct CMUnitTest tests[] = {T(each_path_has_its_own_values),
+                                     T(each_path_has_its_own_setting)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -193,7 +193,7 @@ static void sums_of_rows_are_those_of_cells(void **state) {
   for (int begins = 0; begins < ROWS; begins++) { /* in this row, too */
     rectangle_rows sums = {.above = {above[0], above[1]}};
     for (int row = 0; row < ROWS; row++) {
-      if (row == 0 || row == begins) rectangle_rows_begin(&sums, NODES);
+      if (row == 0 || row == begins) rectangle_rows_begin(&sums, 0, NODES);
       for (int s = 0; s < 3; s++)
         add_strip(&sums, strips[s], strips[s + 1], pushed_from(&p, row, strips[s]), force);
       rectangle_rows_end(&sums, CELLS, (double *const[]){force[0] + CELLS, force[1] + CELLS});
