@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/base/source.h"
+#include "generator/kernel/model.h"
 
 /* The first line of the page (a path in the sources) with `beginning` holds `figure`, too. */
 static inline void page_line_says(const char *page_path, const char *beginning,

@@ -8,8 +8,10 @@
 
 #include <cmocka.h>
 
+#include "runtime/result/result_fields.h"
 #include "tests/generator/run/stages.h"
 #include "tests/generator/run/wrong_decks.h"
+#include "tests/verification/page.h"
 
 /* --- at rest ---------------------------------------------------------------------------------- */
 
@@ -128,6 +130,49 @@ static void a_stage_may_have_another_step(void **state) {
   assert_true(fabs(last_of(w, "second", "u", false) / u - 1) < 2e-4);
 }
 
+/* --- the example ------------------------------------------------------------------------------ */
+
+static const char tunnel_page[] = "examples/stages/README.md";
+
+static void closure_is(workplace *w, const char *result, const char *line, const char *format) {
+  char figure[64];
+  snprintf(figure, sizeof figure, format, 1e3 * last_of(w, result, "closure", false));
+  page_line_says(tunnel_page, line, figure);
+}
+
+/* MPa: the largest pressure along y. */
+static double pressure_of(const workplace *w, const char *result) {
+  char unit_text[64], error[500] = "";
+  long count = 0;
+  int components = 0;
+  double most = 0;
+  result_file *f = open_result_of(w, result);
+  double *stress = result_read_frame(f, "stress_yy", 1, &count, &components, unit_text,
+                                     sizeof unit_text, error, sizeof error);
+  assert_non_null(stress);
+  for (long k = 0; k < count; k++)
+    most = fmax(most, -1e-6 * stress[k]);
+  free(stress);
+  result_read_close(f);
+  return most;
+}
+
+static void the_tunnel_is_as_its_page_says(void **state) {
+  workplace *w = *state;
+  char figure[64];
+  expect(w, "run " SOURCE_DIR "/examples/stages/rock.nml", 0, "written");
+  expect(w, "run " SOURCE_DIR "/examples/stages/tunnel.nml", 0,
+         "18648 particles and 55338 bonds go on; 241 particles and 780 bonds are gone");
+  assert_int_equal(
+      shell(w, "sed '/&start/d' " SOURCE_DIR "/examples/stages/tunnel.nml > at_once.nml"), 0);
+  expect(w, "run at_once.nml --set output.result=at_once.h5", 0, "written");
+  closure_is(w, "rock", "| before the tunnel |", " %.4f |");
+  closure_is(w, "tunnel", "| with the tunnel, cut out", " %.5f |");
+  closure_is(w, "at_once", "| with the tunnel, there before", " %.5f |");
+  snprintf(figure, sizeof figure, "bears %.1f MPa", pressure_of(w, "tunnel.h5"));
+  page_line_says(tunnel_page, "The 241 particles", figure);
+}
+
 /* --- what it may not begin from --------------------------------------------------------------- */
 
 static const fault faults[] = {
@@ -176,6 +221,8 @@ int main(void) {
       cmocka_unit_test_setup_teardown(a_drive_begins_where_it_finds_its_particles, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(a_stage_may_have_another_step, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(the_tunnel_is_as_its_page_says, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(wrong_starts_are_told, set_up_workplace, tear_down_workplace),
   };
