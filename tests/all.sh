@@ -11,7 +11,7 @@ bash examples/first_light.sh
 
 sanitized=build-sanitize
 PERILAT_BUILD=$sanitized .ci/setup -DPERILAT_SANITIZE=ON
-# Minutes long there, and mostly at work in kernels or programs without sanitizers: these run only below.
+# Minutes long there: many laws checked or graded, or kernels and programs that are not built with sanitizers. These run only below.
 ctest --test-dir "$sanitized" -L fast -E 'kernel\..*match|command\.(options|study)|check\.physics|grade\.hostile|run\.(digests|lost_runs)' \
   --output-on-failure -j 2
 
