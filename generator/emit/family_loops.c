@@ -107,6 +107,17 @@ void family_loops_particles(emitter *e, const segment *a) {
   expression_close(e);
 }
 
+/* On a list a number that no particle of the chunk has a bond of: what is kept of it beyond the pass
+   is 0. */
+static void skip_absent(emitter *e, const segment *a) {
+  say(e, SAY_UNLESS_SOME);
+  for (int k = 0; k < a->root_count; k++)
+    if (segment_asks(&a->roots[k]) && !family_root_is_reduction(&a->roots[k]) &&
+        !segment_is_loss(&a->roots[k]))
+      say(e, SAY_ZEROS, numeral(e, k), family_root_array(e, &a->roots[k], &in_loops));
+  say(e, SAY_NEXT_NEIGHBOUR);
+}
+
 void family_loops_neighbours(emitter *e, const segment *a) {
   const bool list = family_is_list(e);
   const scope in = {.before = "      ",
@@ -118,6 +129,7 @@ void family_loops_neighbours(emitter *e, const segment *a) {
   const bool odd = expression_reads(e, IR_FROM_SHARED_ODD);
   family_loops_start(e, a);
   say(e, a->kind == OVER_BONDS ? SAY_OVER_OWNED : SAY_OVER_NEIGHBOURS);
+  if (list) skip_absent(e, a);
   say(e, list ? SAY_WAY_OF_LIST : SAY_WAY_OF_ROWS);
   if (family_segment_asks(a)) say(e, list ? SAY_BONDS_OF_LIST : SAY_BONDS_OF_ROWS);
   if (odd) say(e, SAY_SIGN);

@@ -2,6 +2,7 @@
 
 #include <inttypes.h>
 
+#include "generator/emit/family_arrays.h"
 #include "generator/emit/family_loops.h"
 #include "generator/emit/family_pairs.h"
 #include "generator/emit/family_unrolled.h"
@@ -11,11 +12,11 @@
 #include "generator/plan/program_facts.h"
 
 /* Particles at a time. Long chunks read the planes of large families in long pieces; what a pass
-   keeps between its segments should stay in the first cache. */
-static int chunk_of(const program_pass *p) {
+   keeps between its segments should stay in the first cache. Short ones on lists leave out more. */
+static int chunk_of(const program_pass *p, bool list) {
   enum { LONGEST = 512, KEPT = 16384 }; /* B */
   int chunk = LONGEST;
-  if (p->plane_count > 0 || program_is_paired(p)) return FAMILY_CHUNK;
+  if (p->plane_count > 0 || program_is_paired(p) || list) return FAMILY_CHUNK;
   while (chunk > FAMILY_CHUNK && p->slot_count * chunk * (int)sizeof(double) > KEPT)
     chunk /= 2;
   return chunk;
@@ -46,6 +47,12 @@ static void write_changes(emitter *e) {
   say(e, SAY_CHANGES_END);
 }
 
+static bool loops_over_neighbours(const program_pass *p) {
+  for (int k = 0; k < p->segment_count; k++)
+    if (p->segments[k].kind > OVER_PARTICLES) return true;
+  return false;
+}
+
 /* Particles and neighbours by loops: chunk by chunk, segment after segment. */
 static void write_loops(emitter *e, const program_pass *p) {
   static void (*const forms[])(emitter *,
@@ -53,8 +60,8 @@ static void write_loops(emitter *e, const program_pass *p) {
                                                    [OVER_NEIGHBOURS] = family_loops_neighbours,
                                                    [OVER_BONDS] = family_loops_neighbours,
                                                    [OVER_PAIRS] = family_pairs};
-  const bool rows = e->plan->form == FORM_UNROLLED;
-  say(e, SAY_CHUNK, numeral(e, chunk_of(p)));
+  const bool rows = e->plan->form == FORM_UNROLLED, list = family_is_list(e);
+  say(e, SAY_CHUNK, numeral(e, chunk_of(p, list)));
   if (program_sum_count(&e->plan->programs[PROGRAM_STEP]) > 0 && !program_is_paired(p))
     say(e, SAY_RETURN_IF_AHEAD);
   for (int k = 0; k < p->slot_count; k++)
@@ -63,6 +70,7 @@ static void write_loops(emitter *e, const program_pass *p) {
     say(e, SAY_KEEP_PLANE, numeral(e, k));
   say(e, rows ? SAY_OVER_ROWS : SAY_ONE_RUN);
   say(e, SAY_OVER_CHUNKS);
+  if (list && loops_over_neighbours(p)) say(e, SAY_SOME_BONDS);
   const bool seldom = p == e->plan->programs[PROGRAM_LEDGER].passes && e->plan->loses_by_own_fields;
   if (seldom) say(e, SAY_IF_FIELDS_CHANGED);
   for (int k = 0; k < p->segment_count; k++)

@@ -138,9 +138,9 @@ static void rates_against_chord(ir *g, vector e, vector dv, ir_node per_length, 
 /* The stretch e/s with e = L - s: from L^2 - s^2 = 2 s e + e^2 follows e = (L^2 - s^2 - e^2)/(2 s).
    With L - s, which is as good as L, for the small e on the right the left one is as good as the
    displacements are, and needs no division. */
-static ir_node stretch_of(ir *g, ir_node s, ir_node length, ir_node growth) {
+static ir_node stretch_of(ir *g, ir_node s, ir_node half_per_square, ir_node length,
+                          ir_node growth) {
   const ir_node rough = ir_sub(g, length, s), square = ir_mul(g, rough, rough);
-  const ir_node below = ir_mul(g, s, s), half_per_square = ir_div(g, ir_constant(g, 0.5), below);
   return ir_mul(g, ir_sub(g, growth, square), half_per_square);
 }
 
@@ -205,7 +205,8 @@ bond_kinematics kinematics_bond(ir *g, bool rotations, bool twists) {
   k.s = ir_input(g, IR_FROM_QUANTITY, QUANTITY_S, "s", ON_BODY);
   const chord_motion m = motion_of_chord(g, k.s);
   find_length(g, &k, &m, rotations);
-  k.stretch = named(g, stretch_of(g, k.s, k.length, m.growth), "stretch");
+  const ir_node half_per_square = ir_div(g, ir_constant(g, 0.5), ir_mul(g, k.s, k.s));
+  k.stretch = named(g, stretch_of(g, k.s, half_per_square, k.length, m.growth), "stretch");
   vector e = {ir_mul(g, m.now.x, k.per_length), ir_mul(g, m.now.y, k.per_length)};
   k.e_x = named(g, e.x, "e_x");
   k.e_y = named(g, e.y, "e_y");
@@ -237,7 +238,8 @@ static ir_node dot_of(ir *g, int dimensions, const ir_node *a, const ir_node *b)
 }
 
 /* The length of a family's bond and its stretch from what has been found of its chord. */
-static void find_stretch(ir *g, family_kinematics *k, int dimensions, ir_node s, const ir_node *d) {
+static void find_stretch(ir *g, family_kinematics *k, int dimensions, ir_node s,
+                         ir_node half_per_square, const ir_node *d) {
   ir_node both[3] = {IR_NONE, IR_NONE, IR_NONE};
   for (int c = 0; c < dimensions; c++)
     both[c] = ir_add(g, k->reference_chord[c], k->chord[c]);
@@ -245,7 +247,7 @@ static void find_stretch(ir *g, family_kinematics *k, int dimensions, ir_node s,
   k->per_length = named(g, ir_make(g, IR_INVERSE_ROOT, square, IR_NONE, IR_NONE), "per_length");
   k->length = named(g, ir_mul(g, square, k->per_length), "length");
   ir_node growth = dot_of(g, dimensions, d, both); /* L^2 - s^2 */
-  k->stretch = named(g, stretch_of(g, s, k->length, growth), "stretch");
+  k->stretch = named(g, stretch_of(g, s, half_per_square, k->length, growth), "stretch");
 }
 
 /* (1 - (1 + h)^(-1/2))/h for |h| < 1/128 through Chebyshev's points, to 2^-56. */
@@ -310,7 +312,7 @@ static void rotations_in_plane(ir *g, family_kinematics *k, ir_node s, bool near
 }
 
 /* Both ends compute the same bits: exchanging them changes signs only. */
-family_kinematics kinematics_family(ir *g, int dimensions, bool rotations, bool near) {
+family_kinematics kinematics_family(ir *g, int dimensions, bool rotations, bool near, bool listed) {
   static const ends_input u_i[] = {ENDS_U_IX, ENDS_U_IY, ENDS_U_IZ},
                           u_j[] = {ENDS_U_JX, ENDS_U_JY, ENDS_U_JZ},
                           v_i[] = {ENDS_V_IX, ENDS_V_IY, ENDS_V_IZ},
@@ -330,9 +332,15 @@ family_kinematics kinematics_family(ir *g, int dimensions, bool rotations, bool 
     k.chord[c] = ir_add(g, k.reference_chord[c], k.d[c]);
     from = kinematics_input(g, v_i[c]), to = kinematics_input(g, v_j[c]);
     dv[c] = ir_sub(g, to, from);
-    k.reference[c] = ir_div(g, k.reference_chord[c], s);
+    k.reference[c] =
+        listed ? ir_mul(g, k.reference_chord[c], per_s) : ir_div(g, k.reference_chord[c], s);
   }
-  (near ? find_stretch_near : find_stretch)(g, &k, dimensions, s, k.d);
+  const ir_node half = ir_constant(g, 0.5), square = ir_mul(g, s, s);
+  if (near)
+    find_stretch_near(g, &k, dimensions, s, k.d);
+  else
+    find_stretch(g, &k, dimensions, s,
+                 listed ? ir_mul(g, ir_mul(g, half, per_s), per_s) : ir_div(g, half, square), k.d);
   for (int c = 0; c < dimensions; c++)
     k.now[c] = named(g, ir_mul(g, k.chord[c], k.per_length), e_names[c]);
   ir_node rate = dot_of(g, dimensions, k.now, dv);

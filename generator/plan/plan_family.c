@@ -232,7 +232,8 @@ static int motion_in_space(const kernel_plan *plan, const family_kinematics *k, 
 program_motion plan_motion(const kernel_plan *plan, bool reference) {
   ir *g = plan->graph;
   const bool in_plane = plan->rotations && plan->dimensions == 2;
-  family_kinematics k = kinematics_family(g, plan->dimensions, in_plane, plan->form == FORM_PAIRS);
+  family_kinematics k = kinematics_family(g, plan->dimensions, in_plane, plan->form == FORM_PAIRS,
+                                          plan->law->irregular);
   ir_node *from = arena_alloc(plan->memory, MOST_MOTION * sizeof *from);
   ir_node *to = arena_alloc(plan->memory, MOST_MOTION * sizeof *to);
   int n = 0;

@@ -19,6 +19,7 @@ typedef struct run {
   const deck *deck;
   model *models; /* [material_count] */
   int open_models;
+  int processors; /* what the process was kept to before (processors.h); 0: it still is */
   model **model_of; /* [run_law_count] of these; NULL where it is built in or not known */
   /* [lattice_count] the simulation's, when there is one; NULL where it is not known */
   rows **lattices;

@@ -26,6 +26,7 @@
 #include "generator/run/run_result.h"
 #include "generator/run/stopping.h"
 #include "runtime/base/clock.h"
+#include "runtime/base/processors.h"
 #include "runtime/deck/deck_read.h"
 #include "runtime/filling/lattice.h"
 
@@ -64,6 +65,12 @@ static bool load_deck(run *r) {
   r->deck = deck_read_what_is_right(r->memory, &r->sources, file, o->overrides, o->override_count,
                                     &r->said);
   return true;
+}
+
+/* Setting up does not take more threads than the run. */
+static void keep_to_threads(run *r) {
+  const int asked = r->options->threads > 0 ? r->options->threads : r->deck->simulation.threads;
+  if (asked > 0) r->processors = processors_keep_to(asked);
 }
 
 /* The deck is as it was read, but for the threads that the command line asks for. */
@@ -136,6 +143,7 @@ static int set_up(run *r) {
   r->built_in = must_calloc(laws, sizeof *r->built_in);
   r->model_of = must_calloc(laws, sizeof *r->model_of);
   r->lattices = must_calloc(lattices, sizeof *r->lattices);
+  keep_to_threads(r);
   choose_paths(r);
   const bool writes = !r->options->check_only || r->options->shapes;
   if (writes) result_can_be_written(r);
@@ -176,6 +184,7 @@ static void announce_kept(run *r) {
 }
 
 static void let_go(run *r) {
+  if (r->processors > 0) processors_keep_to(r->processors);
   if (r->result) result_close(r->result);
   if (r->simulation) simulation_free(r->simulation);
   for (int k = 0; r->laws && k < run_law_count(r); k++)

@@ -21,7 +21,9 @@ int usable_processors(void) {
   return offered < kept_to ? offered : kept_to;
 }
 
-void processors_keep_to(int most) {
+int processors_keep_to(int most) {
+  const int before = kept_to;
   kept_to = most < 1 ? 1 : most;
   omp_set_num_threads(usable_processors());
+  return before;
 }

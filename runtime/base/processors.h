@@ -6,7 +6,8 @@
    batch system or the cpuset of a container says so. A container's share of time is not looked
    at. */
 int usable_processors(void);
-/* From here on this process uses no more than `most`, whatever it may. */
-void processors_keep_to(int most);
+/* From here on this process uses no more than `most`, whatever it may. Returns what it was kept to
+   before. */
+int processors_keep_to(int most);
 
 #endif

@@ -133,12 +133,16 @@ static void exchange(colouring *c, long p, int a, int b) {
     give(c, c->path[k], k % 2 == 0 ? b : a);
 }
 
+/* The lowest number that is free on both sides; or the lowest of the owner's, where the other side
+   has none higher than it, or its own lowest, to exchange: high numbers stay rare. */
 static void number_bond(colouring *c, long bond) {
   const long owner = c->bonds[bond].owner, other = c->bonds[bond].other;
   const uint64_t here = c->free[OWNER][owner], there = c->free[OTHER][other];
+  const int a = __builtin_ctzll(here), b = __builtin_ctzll(there), higher = a > b ? a : b;
   const uint64_t both = here & there;
-  if (both == 0) exchange(c, other, __builtin_ctzll(here), __builtin_ctzll(there));
-  give(c, bond, __builtin_ctzll(both ? both : here));
+  const int shared = both ? __builtin_ctzll(both) : MOST_NUMBERS;
+  if (shared > higher) exchange(c, other, a, b);
+  give(c, bond, shared > higher ? a : shared);
 }
 
 /* Most bonds that a particle has on one side. */

@@ -192,6 +192,56 @@ static void join_neighbours(rows *w, const numbered_bond *bonds, long count) {
   w->bond_count = count;
 }
 
+typedef struct packed { /* a particle of a row, by the numbers of its bonds */
+  int32_t rank;
+  int highest;
+} packed;
+
+static int by_highest(const void *a, const void *b) {
+  const packed *p = a, *q = b;
+  if (p->highest != q->highest) return p->highest < q->highest ? -1 : 1;
+  return p->rank < q->rank ? -1 : 1;
+}
+
+/* Particles along the curve change places: that now at place r was p[r].rank. */
+static void renumber(builder *b, const packed *p, int32_t *moved) {
+  const size_t n = (size_t)b->points.count + 1;
+  int32_t *order = must_alloc(n * sizeof *order);
+  for (long r = 0; r < b->points.count; r++) {
+    moved[p[r].rank] = (int32_t)r;
+    order[r] = b->order[p[r].rank];
+  }
+  free(b->order);
+  b->order = order;
+  for (int a = 0; a < b->points.dimensions; a++)
+    for (long r = 0; r < b->points.count; r++)
+      b->at[a][r] = b->from->points.at[a][order[r]];
+}
+
+/* Particles of a row that need as many numbers stand together: loops over some of them leave out
+   the numbers that none of these has. */
+static void pack_rows(builder *b, numbered_bond *bonds) {
+  const long count = b->points.count;
+  packed *p = must_alloc(((size_t)count + 1) * sizeof *p);
+  int32_t *moved = must_alloc(((size_t)count + 1) * sizeof *moved);
+  for (long r = 0; r < count; r++)
+    p[r] = (packed){(int32_t)r, 0};
+  for (long m = 0; m < b->pairs.count; m++) {
+    packed *const ends[] = {&p[bonds[m].owner], &p[bonds[m].other]};
+    for (int side = 0; side < 2; side++)
+      if (bonds[m].number > ends[side]->highest) ends[side]->highest = bonds[m].number;
+  }
+  for (long r = 0; r < count; r += ROW_SITES)
+    qsort(p + r, (size_t)(count - r < ROW_SITES ? count - r : ROW_SITES), sizeof *p, by_highest);
+  renumber(b, p, moved);
+  for (long m = 0; m < b->pairs.count; m++) {
+    bonds[m].owner = moved[bonds[m].owner];
+    bonds[m].other = moved[bonds[m].other];
+  }
+  free(p);
+  free(moved);
+}
+
 static int by_rank(const void *a, const void *b) {
   const point_pair *p = a, *q = b;
   if (p->i != q->i) return p->i < q->i ? -1 : 1;
@@ -238,6 +288,7 @@ rows *scattered_rows(const scattered *from, long *crowded) {
   }
   numbered_bond *bonds = must_alloc(((size_t)b.pairs.count + 1) * sizeof *bonds);
   const int numbers = bond_numbers(&b.pairs, b.points.count, bonds);
+  pack_rows(&b, bonds);
   const bool good = new_rows(&b, numbers);
   if (good) {
     place_particles(&b);

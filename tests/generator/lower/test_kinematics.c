@@ -169,7 +169,7 @@ static void small_displacements_lose_nothing(void **state) {
 /* The bond of a large family: 1/length, stretch, length. */
 static void evaluate_near(const bond_state *b, double *value) {
   ir *g = ir_new();
-  const family_kinematics k = kinematics_family(g, 2, false, true);
+  const family_kinematics k = kinematics_family(g, 2, false, true, false);
   const ir_node roots[] = {k.per_length, k.stretch, k.length};
   const double *ends[ENDS_COUNT] = {
       [ENDS_U_IX] = &b->u[0][0],           [ENDS_U_IY] = &b->u[0][1],
