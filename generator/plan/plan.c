@@ -52,23 +52,33 @@ static kernel_plan *plan_families(const law *l, const law_variation *v, kernel_f
 
 /* Fields on bonds are worth adding to both ends with few neighbours already: such loops write them
    only where they change. So are end rotations, which are dear. */
-static bool is_for_pairs(const law *l) {
-  enum { WRITTEN_OUT_FASTER = 12 };
+static bool is_on_bonds(const law *l) {
   bool on_bonds = law_kind_turns(l->tree->law);
   for (int k = 0; k < l->fields.count; k++)
     on_bonds = on_bonds || l->fields.items[k]->place == ON_BOND;
-  return on_bonds || l->neighbours > WRITTEN_OUT_FASTER;
+  return on_bonds;
+}
+
+/* Some pass goes over the neighbours for the particle's own sake: bond by bond it would have as
+   many short loops as there are neighbours. */
+static bool has_own_sums(const kernel_plan *plan) {
+  const kernel_program *step = &plan->programs[PROGRAM_STEP];
+  for (int p = 0; p < step->pass_count; p++)
+    for (int k = 0; k < step->passes[p].segment_count; k++)
+      if (step->passes[p].segments[k].kind == OVER_NEIGHBOURS) return true;
+  return false;
 }
 
 kernel_plan *plan_kernel_of_families(const law *l, const law_variation *v, diagnostics *d) {
-  enum { MOST_WRITTEN_OUT = 18 };
+  enum { WRITTEN_OUT_FASTER = 12, MOST_WRITTEN_OUT = 18 };
+  const bool few = l->neighbours <= MOST_WRITTEN_OUT, on_bonds = is_on_bonds(l);
   if (l->irregular || l->neighbours == 0) return plan_families(l, v, FORM_LOOPS, d);
-  if (is_for_pairs(l)) {
+  if (on_bonds || l->neighbours > WRITTEN_OUT_FASTER) {
     kernel_plan *plan = plan_families(l, v, FORM_PAIRS, d);
-    if (!plan || program_sum_count(&plan->programs[PROGRAM_STEP]) > 0) return plan;
-    plan_free(plan); /* no pass finds what far ends add */
+    const bool adds = plan && program_sum_count(&plan->programs[PROGRAM_STEP]) > 0;
+    if (!plan || (adds && (on_bonds || !few || !has_own_sums(plan)))) return plan;
+    plan_free(plan);
   }
-  const bool few = l->neighbours <= MOST_WRITTEN_OUT;
   return plan_families(l, v, few ? FORM_UNROLLED : FORM_LOOPS, d);
 }
 
