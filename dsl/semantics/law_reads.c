@@ -2,12 +2,17 @@
 
 #include "dsl/semantics/decided.h"
 
+typedef struct found {
+  bool quantity[QUANTITY_COUNT], function[FUNCTION_COUNT];
+} found;
+
 /* With a law, case lines that are never chosen do not count. */
-static void find(const law *l, const expr *e, bool *read) {
+static void find(const law *l, const expr *e, found *read) {
   if (!e) return;
   if (e->symbol && e->kind == EXPR_NAME && e->symbol->kind == SYMBOL_QUANTITY)
-    read[e->symbol->index] = true;
+    read->quantity[e->symbol->index] = true;
   if (e->symbol && e->kind == EXPR_CALL) find(l, e->symbol->declared->value, read);
+  if (!e->symbol && e->kind == EXPR_CALL && e->builtin >= 0) read->function[e->builtin] = true;
   find(l, e->left, read);
   find(l, e->right, read);
   for (int i = 0; i < e->argument_count; i++)
@@ -23,14 +28,25 @@ static void find(const law *l, const expr *e, bool *read) {
 }
 
 void quantities_read(const expr *e, bool read[QUANTITY_COUNT]) {
-  find(NULL, e, read);
+  found all = {{false}, {false}};
+  find(NULL, e, &all);
+  for (int q = 0; q < QUANTITY_COUNT; q++)
+    read[q] = read[q] || all.quantity[q];
+}
+
+static found find_all(const law *l) {
+  found all = {{false}, {false}};
+  for (int k = 0; k < l->rule_count; k++) {
+    find(l, l->rules[k]->value, &all);
+    find(l, l->rules[k]->when, &all);
+  }
+  return all;
 }
 
 bool law_reads(const law *l, builtin_quantity q) {
-  bool read[QUANTITY_COUNT] = {false};
-  for (int k = 0; k < l->rule_count; k++) {
-    find(l, l->rules[k]->value, read);
-    find(l, l->rules[k]->when, read);
-  }
-  return read[q];
+  return find_all(l).quantity[q];
+}
+
+bool law_calls(const law *l, builtin_function f) {
+  return find_all(l).function[f];
 }

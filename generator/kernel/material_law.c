@@ -129,7 +129,7 @@ law_setting material_setting(const deck_lattice *l) {
 static int neighbours_of(const deck_lattice *l) {
   bravais_neighbour list[PL_MAX_DIRECTIONS];
   bravais b;
-  if (deck_lattice_is_irregular(l) || !bravais_of(l, &b)) return 0;
+  if (deck_lattice_is_listed(l) || !bravais_of(l, &b)) return 0;
   return 2 * bravais_family(&b, l->horizon, l->shells, list);
 }
 
@@ -148,14 +148,41 @@ static void warn_of_plane_strain(const deck_lattice *l, const model *m, diagnost
             "else take another one, such as `splm_elastic`");
 }
 
+/* Exact where neighbours lack are families that know which of them do, by an operator that is made
+   for it. */
+static bool suits_edges(const deck_lattice *l, const model *m, diagnostics *said) {
+  const char *name = m->law->tree->name;
+  const span where = deck_where(&l->item, "edges");
+  if (m->law->tree->law != LAW_STATE)
+    diag_report(said, DIAG_CONFLICT, where,
+                "`%s` is a law of bonds, and a bond does not know which others its ends lack",
+                name);
+  else if (!model_suits_irregular(m))
+    diag_report(said, DIAG_CONFLICT, where,
+                "the law `%s` is meant for whole families of a lattice: its line `for` does not "
+                "name `irregular`",
+                name);
+  else if (!law_calls(m->law, FUNCTION_UNIFORM_FORCE))
+    diag_report(said, DIAG_CONFLICT, where,
+                "the law `%s` is not exact at edges: it does not make its force state by "
+                "`uniform_force`",
+                name);
+  else
+    return true;
+  diag_hint(said, "edges = 'lattice' runs with every law; `splm_elastic` and `splm_concrete` have "
+                  "exact edges");
+  return false;
+}
+
 /* The law takes the setting of its lattice; without one it keeps the first that it names. */
 static bool take_setting(const deck_material *m, const deck_lattice *l, model *out,
                          diagnostics *said) {
   char meant[96];
   if (!l) return true;
-  const bool irregular = deck_lattice_is_irregular(l);
+  const bool irregular = deck_lattice_is_listed(l);
   out->law = law_on_lattice(out->law, material_setting(l), irregular, neighbours_of(l));
   const char *name = law_setting_name(out->law->setting);
+  if (l->edges == EDGES_EXACT && !suits_edges(l, out, said)) return false;
   if (out->law->irregular && !deck_lattice_is_bar(l) && !deck_lattice_is_link(l) &&
       !model_suits_irregular(out)) {
     diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),

@@ -8,6 +8,7 @@
 #include "runtime/continuum/mesh_ties.h"
 #include "runtime/filling/bar_placing.h"
 #include "runtime/geometry/polyline.h"
+#include "runtime/lattice/edged_rows.h"
 #include "runtime/lattice/notch_depth.h"
 
 static void announce_notch(const notch_depth *n, int number, bool only) {
@@ -148,18 +149,30 @@ static void announce_link(const run *r, int lattice) {
          w->particle_count - of_bar, k->around);
 }
 
+/* "edges      exact: 138 particles lack neighbours and have 211 bonds to further ones; a particle
+   has 0.42 to 1.37 of a site's volume" */
+static void announce_exact_edges(const edged_rows_facts *f) {
+  printf("  edges      exact: %ld particles lack neighbours and have %ld bonds to further ones; a "
+         "particle has %.3g to %.3g of a site's volume\n",
+         f->short_of, f->further, f->least, f->most);
+}
+
 static void announce_lattice(const run *r, int lattice) {
   const rows *w = simulation_rows(r->simulation, lattice);
   const deck_lattice *k = &r->deck->lattices[lattice];
+  const bool exact = k->edges == EDGES_EXACT;
+  const edged_rows_facts edges = exact ? edged_rows_look(w, k) : (edged_rows_facts){0};
+  const int whole = exact ? edges.whole : 2 * w->directions;
   char depth[32] = "", family[64] = "";
   if (w->dimensions == 3) snprintf(depth, sizeof depth, " x %.5g", 1e3 * w->depth);
-  if (w->shell[w->directions - 1] > 1)
-    snprintf(family, sizeof family, ", %d neighbours", 2 * w->directions);
+  if (exact ? k->horizon > 0 || k->shells > 1 : w->shell[w->directions - 1] > 1)
+    snprintf(family, sizeof family, ", %d neighbours", whole);
   printf(
       "  lattice    %s: %s, spacing %.6g mm%s, %ld particles, %ld bonds, %.5g x %.5g%s mm between "
       "outermost sites\n",
       k->name, k->kind, 1e3 * w->spacing, family, w->particle_count, w->bond_count, 1e3 * w->width,
       1e3 * w->height, depth);
+  if (exact) announce_exact_edges(&edges);
 }
 
 /* "tie        core to left: 17 particles, 0.31 kg of which goes to 18 nodes; 16 bonds count by
@@ -184,7 +197,7 @@ void announce_body(const run *r, int lattice) {
     announce_bar(r, lattice);
   else if (deck_lattice_is_link(k))
     announce_link(r, lattice);
-  else if (simulation_rows(r->simulation, lattice)->list)
+  else if (deck_lattice_is_irregular(k))
     announce_particles(r, lattice);
   else
     announce_lattice(r, lattice);

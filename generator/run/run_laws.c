@@ -75,7 +75,7 @@ static deck_lattice lattice_like(const deck_lattice *d, const rows *w) {
     return lattice_default_bars(d->setting, d->spacing, d->area);
   if (deck_lattice_is_mesh(d)) return lattice_default(d->setting, d->spacing, d->thickness);
   if (deck_lattice_is_link(d)) return lattice_default(d->setting, d->spacing, d->thickness);
-  if (!deck_lattice_is_irregular(d)) return like;
+  if (!deck_lattice_is_listed(d)) return like;
   const deck_lattice usual = lattice_default(d->setting, 0, 0);
   like.kind = usual.kind;
   like.spacing = nearest_distance(w);

@@ -256,6 +256,7 @@ rows *implied_lattice_like(const deck_lattice *l, double rho) {
   const double s = l->spacing;
   deck_lattice lattice = *l;
   lattice.name = "lattice";
+  lattice.edges = EDGES_OF_LATTICE; /* what is asked about is inside */
   deck_body body = {
       .lattice = lattice.name,
       .shape = {.kind = bravais_dimensions(l->kind) == 3 ? SHAPE_BOX : SHAPE_RECTANGLE,

@@ -37,6 +37,10 @@ enum link_to { LINK_TO_SITES, LINK_TO_PLACE };
 
 typedef enum volume_correction { VOLUME_WHOLE, VOLUME_LINEAR } volume_correction;
 
+/* Particles short of neighbours: as the lattice's others, or with operators and volumes of their
+   own. */
+typedef enum lattice_edges { EDGES_OF_LATTICE, EDGES_EXACT } lattice_edges;
+
 /* Of nodes and cells: bilinear finite elements, or moving least squares. */
 typedef enum mesh_method { MESH_ELEMENT_FREE, MESH_FINITE_ELEMENTS } mesh_method;
 /* Of the points of an element: each its own, or the mean of the cell. */
@@ -55,6 +59,7 @@ typedef struct deck_lattice {
   int seed;         /* blue_noise */
   const char *file; /* particles: as written; deck_file_path finds it */
   enum volume_correction volume_correction;
+  lattice_edges edges;
   double rotation;                            /* rad; deck: degrees as a plain number or '17 deg' */
   double axis[3];                             /* of the rotation, in space; 0, 0, 0: z */
   double origin[3];                           /* m: a point that is a lattice site; default 0, 0 */

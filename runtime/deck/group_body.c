@@ -304,7 +304,14 @@ static void check_can_be_filled(deck_reader *r, const deck_item *item, const dec
       diag_hint(r->d, "&notch mesh = '%s' ... is a hole in it", deck_shown(r->memory, lattice));
     return;
   }
-  if (suits || !deck_lattice_is_irregular(&r->k->lattices[l])) return;
+  if (suits || !deck_lattice_is_listed(&r->k->lattices[l])) return;
+  if (!deck_lattice_is_irregular(&r->k->lattices[l])) {
+    if (!is_body) return; /* a notch may take a single site */
+    diag_report(r->d, DIAG_CONFLICT, deck_where(item, "shape"),
+                "%s has no area or volume, of which `edges = 'exact'` gives each particle its part",
+                shape_words[shape->kind]);
+    return;
+  }
   diag_report(r->d, DIAG_CONFLICT, deck_where(item, "shape"),
               shape->kind == SHAPE_POINT ? "%s means a site of a lattice, but here are none"
                                          : "%s cannot be filled with particles",

@@ -80,6 +80,15 @@ static const deck_key_info lattice_keys[] = {
      .doc = "part of a neighbour's volume that counts, for laws that use it; `linear`: (horizon + "
             "spacing/2 - "
             "distance)/spacing, from 0 to 1"},
+    {.name = "edges",
+     .type = DECK_CHOICE,
+     .choices = "lattice|exact",
+     .fallback = "'lattice'",
+     DECK_AT(lattice, edges),
+     .doc = "of bodies and notches. `lattice`: particles there lack neighbours and are otherwise "
+            "as all others; `exact`: they have the volume of their part of the body, further "
+            "neighbours, and exactly the stress of a uniform strain, for laws such as "
+            "`splm_elastic`"},
     {.name = "rotation",
      .type = DECK_ANGLE,
      .fallback = "0",
@@ -147,12 +156,14 @@ static const char *const dimension_words[] = {[PLANE] = "a lattice in the plane"
                                               [SPACE] = "a lattice in space",
                                               [IRREGULAR_SPACE] = "a lattice of particles in space",
                                               [CHAIN] = "a chain"};
-static const deck_key_use dimension_uses[] = {{"axis", IN_SPACE, false},
-                                              {"thickness", IN_PLANE, true},
-                                              {"stiffness_thickness", IN_PLANE, false},
-                                              {"mass_thickness", IN_PLANE, false},
-                                              {"area", IN_CHAIN, true},
-                                              {"setting", IN_PLANE | IN_IRREGULAR_SPACE, false}};
+static const deck_key_use dimension_uses[] = {
+    {"axis", IN_SPACE, false},
+    {"thickness", IN_PLANE, true},
+    {"stiffness_thickness", IN_PLANE, false},
+    {"mass_thickness", IN_PLANE, false},
+    {"area", IN_CHAIN, true},
+    {"edges", IN_PLANE | IN_SPACE, false},
+    {"setting", IN_PLANE | IN_IRREGULAR_SPACE, false}};
 enum { DIMENSION_USES = sizeof dimension_uses / sizeof *dimension_uses };
 
 enum {
@@ -181,6 +192,7 @@ static bool refuse_keys_of_sites(deck_reader *r, const namelist_group *from) {
               {"rotation", "have no direction that could be turned"},
               {"axis", "have no direction that could be turned"},
               {"origin", "have no origin; the bodies say where they are"},
+              {"edges", "have families and volumes of their own everywhere"},
               {"volume_correction", "have no volume correction: they have volumes of their own"}};
   bool good = true;
   for (size_t k = 0; k < sizeof none / sizeof *none; k++) {
@@ -209,7 +221,7 @@ static void check_neighbours(deck_reader *r, const namelist_group *from, deck_la
     diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "neighbours"),
                 "a particle has at least one neighbour");
   if (!namelist_find(from, "neighbours") && !namelist_find(from, "horizon"))
-    item->neighbours = dimensions == 2 ? 12 : 18;
+    item->neighbours = lattice_usual_neighbours(dimensions);
 }
 
 /* A &lattice of that kind may be. */
@@ -241,6 +253,13 @@ static bool setting_suits(deck_reader *r, const deck_lattice *item, int dimensio
   return false;
 }
 
+/* A neighbour then has the volume that its cell has. */
+static void check_edges(deck_reader *r, const deck_lattice *item) {
+  if (item->edges != EDGES_EXACT || item->volume_correction == VOLUME_WHOLE) return;
+  diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "volume_correction"),
+              "with `edges = 'exact'` a particle has the volume of its cell, without a correction");
+}
+
 /* Which keys a lattice has depends on its dimensions and on whether there are sites at all. */
 static void check_kind(deck_reader *r, const namelist_group *from, deck_lattice *item) {
   const int dimensions = deck_lattice_dimensions(item), arrangement = arrangement_of(item);
@@ -256,6 +275,7 @@ static void check_kind(deck_reader *r, const namelist_group *from, deck_lattice 
   deck_check_places(r, from, &deck_group_lattice, dimensions);
   if (!item->setting) item->setting = dimensions == 2 ? "plane_stress" : "space";
   if (arrangement != REGULAR) check_neighbours(r, from, item, dimensions);
+  check_edges(r, item);
 }
 
 static void check_lattice(deck_reader *r, const namelist_group *from, void *into) {

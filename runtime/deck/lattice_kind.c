@@ -51,6 +51,10 @@ const char *deck_lattice_word(const deck_lattice *l) {
                                    : "lattice";
 }
 
+int lattice_usual_neighbours(int dimensions) {
+  return dimensions == 2 ? 12 : 18;
+}
+
 const char *deck_particle_word(const deck_lattice *l) {
   return deck_lattice_is_mesh(l) ? "node" : "particle";
 }
@@ -58,6 +62,10 @@ const char *deck_particle_word(const deck_lattice *l) {
 bool deck_lattice_is_irregular(const deck_lattice *l) {
   const lattice_kind *kind = lattice_kind_find(l->kind);
   return kind && kind->dimensions == 0;
+}
+
+bool deck_lattice_is_listed(const deck_lattice *l) {
+  return deck_lattice_is_irregular(l) || l->edges == EDGES_EXACT;
 }
 
 static bool is_space(const char *setting) {

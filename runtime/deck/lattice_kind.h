@@ -65,6 +65,9 @@ extern const lattice_kind lattice_kinds[LATTICE_KIND_COUNT];
 /* NULL for an unknown name. */
 const lattice_kind *lattice_kind_find(const char *name);
 
+/* With so many a family that stands on no lattice tells all strains apart. */
+int lattice_usual_neighbours(int dimensions);
+
 /* Directions in which sites follow each other: 1, a chain, to 3; 0 for particles on no lattice. */
 int lattice_kind_axes(const lattice_kind *kind);
 
@@ -72,6 +75,9 @@ int lattice_kind_axes(const lattice_kind *kind);
 bool deck_lattice_is_chain(const deck_lattice *l);
 /* True for particles that stand on no lattice, those of bars and links, too. */
 bool deck_lattice_is_irregular(const deck_lattice *l);
+/* True for particles whose families each are of their own: these, and those on a lattice with
+   edges = 'exact'. */
+bool deck_lattice_is_listed(const deck_lattice *l);
 /* True for the particles of a &bar. */
 bool deck_lattice_is_bar(const deck_lattice *l);
 /* True for the copies of particles that a &link joins. */

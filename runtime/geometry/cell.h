@@ -31,7 +31,7 @@ typedef struct cell_moments {
 
 void cell_begin(cell *c, int dimensions); /* empty; memory is kept from use to use */
 void cell_end(cell *c);
-/* A box, lower < 0 < upper. */
+/* A box, lower <= 0 <= upper. */
 void cell_set_box(cell *c, const double lower[3], const double upper[3]);
 /* Takes away where q.normal > level > 0. False when there was nothing. */
 bool cell_cut(cell *c, const double normal[3], double level);

@@ -396,11 +396,12 @@ static void compare_sizes(const rows *w, const deck_lattice *l, diagnostics *d) 
 }
 
 /* A few at corners and slits are no matter. */
-static void count_unresolved(const rows *w, const deck_lattice *l, diagnostics *d) {
+void scattered_warn_unresolved(const rows *w, const deck_lattice *l, diagnostics *d) {
+  const char *key = l->horizon > 0 ? "horizon" : l->shells > 0 ? "shells" : "neighbours";
   const long count = shape_unresolved(w, NULL);
   if (100 * count <= w->particle_count) return;
   diag_report(
-      d, DIAG_DECK_WARNING, deck_where(&l->item, l->horizon > 0 ? "horizon" : "neighbours"),
+      d, DIAG_DECK_WARNING, deck_where(&l->item, key),
       "%ld of %ld particles have too few bonds to tell all strains apart: the body may fall "
       "to pieces or move without force",
       count, w->particle_count);
@@ -434,6 +435,6 @@ rows *scattered_build(const deck *k, int lattice, diagnostics *d) {
     if (site_of_lattice(l, k->notchs[n].lattice)) cut_notch(w, &k->notchs[n], l, longest, d);
   rows_count_bonds(w);
   compare_sizes(w, l, d);
-  count_unresolved(w, l, d);
+  scattered_warn_unresolved(w, l, d);
   return w;
 }

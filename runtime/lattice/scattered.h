@@ -34,5 +34,7 @@ rows *scattered_rows(const scattered *from, long *crowded);
 /* The particles of a deck's lattice, whose kind deck_lattice_is_irregular; notches that cut bonds
    have cut them. NULL with diagnostics. */
 rows *scattered_build(const deck *k, int lattice, diagnostics *d);
+/* Where many families of the lattice do not resolve all strains. */
+void scattered_warn_unresolved(const rows *w, const deck_lattice *l, diagnostics *d);
 
 #endif

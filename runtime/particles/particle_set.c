@@ -27,7 +27,7 @@ static double spacing_for(int dimensions, double measure) {
   return dimensions == 2 ? sqrt(measure / sqrt(0.75)) : pl_cbrt(measure / sqrt(0.5));
 }
 
-static particle_set *set_new(int dimensions, long count) {
+particle_set *particle_set_new(int dimensions, long count) {
   particle_set *set = must_calloc(1, sizeof *set);
   set->dimensions = dimensions;
   set->count = count;
@@ -130,7 +130,7 @@ static particle_set *fill(maker *m) {
     report_nothing_left(m, measure);
     return NULL;
   }
-  particle_set *set = set_new(dimensions, count);
+  particle_set *set = particle_set_new(dimensions, count);
   set->spacing = m->lattice->spacing;
   voronoi_points p = points_of(set);
   blue_noise_fill(&p, &m->solid, (uint64_t)m->lattice->seed);
@@ -316,4 +316,11 @@ particle_set *particle_set_make(const deck *k, int lattice, diagnostics *d) {
   particle_set *set = strcmp(m.lattice->kind, "particles") == 0 ? load(&m) : fill(&m);
   solid_end(&m.solid);
   return set;
+}
+
+void particle_set_measure(particle_set *set, const deck *k, int lattice) {
+  maker m = {.deck = k, .lattice = &k->lattices[lattice]};
+  solid_begin(&m.solid, k, lattice);
+  measure_cells(&m, set);
+  solid_end(&m.solid);
 }

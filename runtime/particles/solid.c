@@ -17,7 +17,8 @@ enum {
   ALWAYS_SPLIT_TO = 6
 };
 
-#define ROUGH 1e-3 /* tolerance of cells whose volumes are not kept */
+#define ROUGH      1e-3 /* tolerance of cells whose volumes are not kept */
+#define ON_SURFACE 1e-9 /* of the reach of a cell: a point nearer to a surface may lie outside */
 
 /* --- the set ---------------------------------------------------------------------------------- */
 
@@ -358,7 +359,8 @@ static cell_moments fill_polyhedron(const filling *f) {
   const cell_part *p = &f->cell->now;
   const solid *near = &f->scratch->near;
   f->scratch->leaves_once = near->body_count == 1 && near->notch_count == 0 &&
-                         shape_is_convex(near->bodies[0]) && solid_holds(near, f->at);
+                            shape_is_convex(near->bodies[0]) &&
+                            shape_contains(near->bodies[0], f->at, -ON_SURFACE * f->cell->reach);
   cell_moments sum = {0};
   for (int face = 0; face < p->face_count; face++)
     for (int k = p->face[face] + 1; k + 1 < p->face[face + 1]; k++) {

@@ -8,9 +8,10 @@
 #include "dsl/base/elementary.h"
 #include "runtime/geometry/bins.h"
 
-#define FIRST_REACH 2.5 /* spacings: half the side of the box that a cell begins with */
-#define BOX_SIZE    1.0 /* spacings: of the boxes that points are sorted into */
-enum { FEW = 48 };      /* points: no more than these are sorted by insertion */
+#define FIRST_REACH 2.5  /* spacings: half the side of the box that a cell begins with */
+#define BOX_SIZE    1.0  /* spacings: of the boxes that points are sorted into */
+#define ON_SIDE     1e-9 /* of the reach: a point so near to a side of the bodies' box lies on it */
+enum { FEW = 48 };       /* points: no more than these are sorted by insertion */
 
 /* --- boxes around a box, nearest first -------------------------------------------------------- */
 
@@ -154,14 +155,16 @@ static void cut_by_neighbours(cutter *w, const voronoi_points *p, const bins *b,
   }
 }
 
-/* The box about the point, within that of the bodies where the point is in there. */
+/* The box about the point, within that of the bodies where the point is in there or, up to rounding,
+   on its side. */
 static void begin_cell(cutter *w, const solid *s, const double at[3], double reach) {
   double lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};
   for (int c = 0; c < s->dimensions; c++) {
     lower[c] = -reach;
     upper[c] = reach;
-    if (at[c] > s->lower[c]) lower[c] = pl_fmax(lower[c], s->lower[c] - at[c]);
-    if (at[c] < s->upper[c]) upper[c] = pl_fmin(upper[c], s->upper[c] - at[c]);
+    const double below = s->lower[c] - at[c], above = s->upper[c] - at[c];
+    if (below < ON_SIDE * reach) lower[c] = pl_fmax(lower[c], pl_fmin(below, 0));
+    if (above > -ON_SIDE * reach) upper[c] = pl_fmin(upper[c], pl_fmax(above, 0));
   }
   cell_set_box(&w->cell, lower, upper);
 }

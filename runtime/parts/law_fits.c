@@ -97,9 +97,13 @@ static bool topology_serves(const pl_law *law, const deck_lattice *l, const rows
   }
   if (law->kind == PL_STATE && same) return true;
   if (law->kind == PL_STATE) {
-    diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&l->item, "kind"),
-                "this solver was built for particles that stand on %s",
-                list ? "a lattice" : "no lattice");
+    if (l->edges == EDGES_EXACT)
+      diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&l->item, "edges"),
+                  "this solver was built for edges = 'lattice'");
+    else
+      diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&l->item, "kind"),
+                  "this solver was built for particles that stand on %s",
+                  list ? "a lattice" : "no lattice, or for edges = 'exact'");
     diag_hint(d, "build another one with `perilat build`, or use `perilat run`");
     return false;
   }

@@ -71,16 +71,19 @@ static inline double specimen_ends(const deck_case *c, long until) {
   return difference;
 }
 
-/* A deck of examples/ until `end_time` (as in a deck; NULL: its own end), with one more override or
-   NULL; the peak must have been passed by then. The asymmetry is looked at every 500 steps, and not
-   a number where particles have no image. */
-static inline outcome specimen_run(const char *deck_name, const char *end_time, const char *more) {
+/* A deck of examples/ until `end_time` (as in a deck; NULL: its own end), with `count` more overrides;
+   the peak must have been passed by then. The asymmetry is looked at every 500 steps, and not a
+   number where particles have no image. */
+static inline outcome specimen_run_with(const char *deck_name, const char *end_time,
+                                        const char *const *more, int more_count) {
+  enum { MOST = 8 };
   char until[64];
-  const char *overrides[3] = {"simulation.threads=1"};
+  const char *overrides[MOST + 2] = {"simulation.threads=1"};
   int count = 1;
   snprintf(until, sizeof until, "simulation.end_time=%s", end_time ? end_time : "");
   if (end_time) overrides[count++] = until;
-  if (more) overrides[count++] = more;
+  for (int k = 0; k < more_count && k < MOST; k++)
+    overrides[count++] = more[k];
   deck_case c;
   assert_true(deck_case_run(&c, deck_name, overrides, count));
   const sweep *w = simulation_state(c.simulation, 0);
@@ -104,6 +107,11 @@ static inline outcome specimen_run(const char *deck_name, const char *end_time, 
   free(image);
   deck_case_close(&c);
   return o;
+}
+
+/* With one more override or NULL. */
+static inline outcome specimen_run(const char *deck_name, const char *end_time, const char *more) {
+  return specimen_run_with(deck_name, end_time, &more, more ? 1 : 0);
 }
 
 #endif

@@ -1,5 +1,6 @@
 /* The state-based lattice gives the same bits for any number of threads, and after a checkpoint: a
-   prism at 15 degrees, pressed so fast that it yields, cracks and crushes within a millisecond. */
+   prism at 15 degrees, pressed so fast that it yields, cracks and crushes within a millisecond, with
+   the lattice's edges and with exact ones. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,10 +12,14 @@
 #include "tests/runtime/same_runs.h"
 #include "tests/verification/case.h"
 
-static void open_prism(deck_case *c, const char *threads) {
-  const char *const overrides[] = {threads, "simulation.end_time=0.9 ms", "drive.rise=1 ms",
-                                   "output.sample=0.01 ms", "output.frames=0"};
-  assert_true(deck_case_run(c, "examples/compression/rot15.nml", overrides, 5));
+#define EXACT   "lattice.edges=exact"
+#define LATTICE "lattice.edges=lattice"
+
+static void open_prism(deck_case *c, const char *edges, const char *threads) {
+  const char *const overrides[] = {threads,           "simulation.end_time=0.9 ms",
+                                   "drive.rise=1 ms", "output.sample=0.01 ms",
+                                   "output.frames=0", edges};
+  assert_true(deck_case_run(c, "examples/compression/rot15.nml", overrides, 6));
 }
 
 /* Particles whose value of a field is not 0 on any of its planes. */
@@ -31,10 +36,9 @@ static long touched(const sweep *w, int field) {
   return count;
 }
 
-static void any_number_of_threads_gives_the_same_bits(void **state) {
-  (void)state;
+static void compare_threads(const char *edges) {
   deck_case one, more;
-  open_prism(&one, "simulation.threads=1");
+  open_prism(&one, edges, "simulation.threads=1");
   assert_int_equal(deck_case_go(&one), STEP_END);
   const sweep *w = simulation_state(one.simulation, 0);
   for (int f = 0; f < w->law->field_count; f++) { /* every rule of the law was at work */
@@ -43,7 +47,7 @@ static void any_number_of_threads_gives_the_same_bits(void **state) {
     assert_true(touched(w, f) > 20);
   }
   for (int threads = 2; threads <= 3; threads++) {
-    open_prism(&more, threads == 2 ? "simulation.threads=2" : "simulation.threads=3");
+    open_prism(&more, edges, threads == 2 ? "simulation.threads=2" : "simulation.threads=3");
     assert_int_equal(deck_case_go(&more), STEP_END);
     same_runs(one.simulation, more.simulation);
     deck_case_close(&more);
@@ -51,16 +55,21 @@ static void any_number_of_threads_gives_the_same_bits(void **state) {
   deck_case_close(&one);
 }
 
-/* Stopped in the midst of yielding, an odd and an even number of steps in. */
-static void a_resumed_run_gives_the_same_bits(void **state) {
+static void any_number_of_threads_gives_the_same_bits(void **state) {
   (void)state;
+  compare_threads(LATTICE);
+  compare_threads(EXACT);
+}
+
+/* Stopped in the midst of yielding, an odd and an even number of steps in. */
+static void compare_resumed(const char *edges) {
   deck_case straight;
-  open_prism(&straight, "simulation.threads=1");
+  open_prism(&straight, edges, "simulation.threads=1");
   assert_int_equal(deck_case_go(&straight), STEP_END);
   for (long stop = 1200; stop <= 1201; stop++) {
     deck_case first, second;
-    open_prism(&first, "simulation.threads=1");
-    open_prism(&second, "simulation.threads=2");
+    open_prism(&first, edges, "simulation.threads=1");
+    open_prism(&second, edges, "simulation.threads=2");
     hand_over(first.simulation, stop, second.simulation);
     deck_case_close(&first);
     assert_int_equal(deck_case_go(&second), STEP_END);
@@ -68,6 +77,12 @@ static void a_resumed_run_gives_the_same_bits(void **state) {
     deck_case_close(&second);
   }
   deck_case_close(&straight);
+}
+
+static void a_resumed_run_gives_the_same_bits(void **state) {
+  (void)state;
+  compare_resumed(LATTICE);
+  compare_resumed(EXACT);
 }
 
 int main(void) {

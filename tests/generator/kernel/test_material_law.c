@@ -118,6 +118,38 @@ static void a_law_that_is_judged_stays_as_it_was_opened(void **state) {
   close_law(&o);
 }
 
+/* What a law lacks for exact edges is told at the deck's key. */
+static void exact_edges_need_a_law_that_has_them(void **state) {
+  (void)state;
+  static const struct {
+    const char *law, *message;
+  } cases[] = {
+      {"mplm_concrete",
+       "`mplm_concrete` is a law of bonds, and a bond does not know which others its ends lack"},
+      {"lps", "the law `lps` is not exact at edges: it does not make its force state by "
+              "`uniform_force`"},
+      {SOURCE_DIR "/tests/generator/kernel/whole_families.plm",
+       "the law `whole_families` is meant for whole families of a lattice: its line `for` does not "
+       "name `irregular`"},
+  };
+  deck_lattice l = {.kind = "hexagonal",
+                    .setting = "plane_stress",
+                    .spacing = 0.01,
+                    .thickness = 0.1,
+                    .edges = EDGES_EXACT};
+  opened_law o;
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    assert_false(open_on(&o, cases[k].law, NULL, 0, &l));
+    assert_int_equal(o.said.errors, 1);
+    assert_string_equal(o.said.items[0].message, cases[k].message);
+    close_law(&o);
+  }
+  assert_true(open_on(&o, "splm_elastic", NULL, 0, &l));
+  assert_true(o.model.law->irregular);
+  assert_int_equal(o.model.law->neighbours, 0);
+  close_law(&o);
+}
+
 static void c_is_written_when_it_is_asked_for(void **state) {
   (void)state;
   opened_law o;
@@ -161,6 +193,7 @@ int main(void) {
       cmocka_unit_test(options_are_taken_in_one_opening),
       cmocka_unit_test(a_choice_that_the_law_has_not_is_told),
       cmocka_unit_test(a_law_that_is_judged_stays_as_it_was_opened),
+      cmocka_unit_test(exact_edges_need_a_law_that_has_them),
       cmocka_unit_test(c_is_written_when_it_is_asked_for),
       cmocka_unit_test_setup_teardown(no_compiler_is_asked_where_none_is_needed, set_up_workplace,
                                       tear_down_workplace),

@@ -45,6 +45,26 @@ static void quasi_static_runs_count_increments(void **state) {
   expect(w, "run stop.nml", 0, "ended early at increment 4 of 8: moved was above 4e-07 m\n");
 }
 
+/* Rows of 4, 3 and 4 sites: one has all neighbours. */
+static void exact_edges_are_told(void **state) {
+  workplace *w = *state;
+  write_text(w, "edges.nml",
+             "&simulation  end_time = '0.01 ms'  /\n"
+             "&lattice     name = 'c'  kind = 'hexagonal'  spacing = '10 mm'  thickness = '10 mm'  "
+             "edges = 'exact'  /\n"
+             "&material    lattice = 'c'  model = 'splm_elastic'  E = '25 GPa'  nu = 0.2  /\n"
+             "&body        lattice = 'c'  shape = 'rectangle'  corner = 0, 0  size = '30 mm', "
+             "'17.33 mm'  /\n");
+  expect(w, "info edges.nml", 0, "lattice    c: hexagonal, spacing 10 mm, 11 particles, ");
+  assert_non_null(strstr(w->said, "  edges      exact: 10 particles lack neighbours and have "));
+  assert_non_null(strstr(w->said, ": held in a uniform strain E = 25 GPa, nu = 0.2000\n"));
+  assert_non_null(strstr(w->said, "; 0 particles whose bonds do not resolve all strains\n"));
+  assert_null(strstr(w->said, "blue noise"));
+  expect(w, "info edges.nml --set material.model=elastic_micropolar", 1,
+         "`elastic_micropolar` is a law of bonds, and a bond does not know which others its ends "
+         "lack");
+}
+
 /* Frames are at increments 3, where the beam has moved 0.375 um, 6 and 8, the end. */
 static void runs_say_whether_frames_came(void **state) {
   workplace *w = *state;
@@ -356,6 +376,7 @@ int main(void) {
 #define ONE(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
   const struct CMUnitTest tests[] = {
       ONE(quasi_static_runs_count_increments),
+      ONE(exact_edges_are_told),
       ONE(runs_say_whether_frames_came),
       ONE(dynamic_runs_have_times),
       ONE(progress_is_what_is_done),

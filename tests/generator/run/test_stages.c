@@ -16,6 +16,10 @@ static void two_stages_are_one_run(void **state) {
   assert_true(check_stages(w, BLOCK(HEXAGON, "model = 'mplm_bilinear'", BEAM), STEADY) > 0.5);
   assert_true(check_stages(w, BLOCK(HEXAGON, "model = 'splm_concrete'", BEAM), STEADY) > 0);
   assert_true(check_stages(w,
+                           BLOCK(HEXAGON "  rotation = 15  edges = 'exact'",
+                                 "model = 'splm_concrete'", BEAM),
+                           STEADY) > 0);
+  assert_true(check_stages(w,
                            BLOCK("kind = 'square'  spacing = '5 mm'  horizon = 2.015",
                                  "model = 'pmb'  G_0 = '0.02 N/m'", BEAM),
                            STEADY) > 0);
