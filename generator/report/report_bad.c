@@ -81,9 +81,24 @@ static void print_point(const run *r, const bad_state *b) {
   fputc('\n', stderr);
 }
 
+static const char *stamp_too_far(const run *r) {
+  for (int k = 0; k < r->deck->stamp_count; k++)
+    if (simulation_stamp(r->simulation, k).too_far) return r->deck->stamps[k].name;
+  return NULL;
+}
+
 /* Where no particle is at fault. */
 static void report_bad_energy(const run *r, const bad_state *b) {
   char when[MOMENT_TEXT];
+  const char *fast = stamp_too_far(r);
+  if (fast) {
+    say_error("the stamp `%s` went further than a spacing in step %ld (%s): it would pass through "
+              "particles unseen\n"
+              "  what was computed until then is in the result; a smaller `step_safety` mends it, "
+              "or a slower stamp",
+              fast, b->step, moment(r, b->time, when));
+    return;
+  }
   say_error("%s after %ld steps (%s): kinetic %.3g J, stored %.3g J\n"
             "  no stable step does that: the step is too long for this body, or the law's stored "
             "energy is "

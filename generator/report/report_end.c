@@ -11,7 +11,7 @@
 #include "generator/report/run_cracks.h"
 #include "generator/report/run_series.h"
 
-/* Work of contacts and links on bodies goes out in sum, but for rounding. */
+/* Work of contacts, stamps and links on bodies goes out in sum, but for rounding. */
 static void conclude_energy(const run *r) {
   const double external = unless_nothing(last_value(r, "energy/external"),
                                          sample_of(r, "energy/kinetic", false)),
@@ -67,6 +67,23 @@ static void conclude_contact(const run *r, int number) {
   print_quantity(", ", c.stored, "J stored\n");
 }
 
+/* "stamp      ball: at most 12 particles in touch at a time, 2.3 kN on it, 3.1 mm from where it was
+   drawn". */
+static void conclude_stamp(const run *r, int number) {
+  const stamp_said s = simulation_stamp(r->simulation, number);
+  printf("  stamp      %s: ", r->deck->stamps[number].name);
+  if (s.touching == 0)
+    fputs("nothing touched it", stdout);
+  else
+    printf("at most %ld particle%s in touch at a time", s.touching, s.touching == 1 ? "" : "s");
+  if (s.touching > 0) print_quantity(", ", s.force, "N on it");
+  const double way = pl_hypot(pl_hypot(s.place[0], s.place[1]), s.place[2]);
+  if (way > 0)
+    print_quantity(", ", way, "m from where it was drawn\n");
+  else
+    puts(", where it was drawn");
+}
+
 /* The value that is largest in size, with its sign. */
 static void conclude_monitor(const run *r, int k) {
   const char *unit_name;
@@ -104,6 +121,8 @@ void conclude(const run *r, double seconds, long steps) {
     conclude_monitor(r, k);
   for (int k = 0; k < r->deck->contact_count; k++)
     conclude_contact(r, k);
+  for (int k = 0; k < r->deck->stamp_count; k++)
+    conclude_stamp(r, k);
   conclude_energy(r);
   conclude_cracks(r);
   conclude_deaths(r);

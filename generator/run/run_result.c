@@ -19,6 +19,7 @@
 #include "runtime/continuum/cells.h"
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/geometry/gmsh_mesh.h"
+#include "runtime/geometry/surface.h"
 #include "runtime/lattice/parameter_planes.h"
 #include "runtime/lattice/rows_select.h"
 #include "runtime/lattice/shape_matrix.h"
@@ -392,6 +393,20 @@ static const char *one_line(const run *r, const char *words) {
   return line;
 }
 
+/* Outlines of stamps in the plane. */
+static void stamp_table(run *r, result_header *h) {
+  const deck *k = r->deck;
+  result_stamp *stamps = arena_alloc(r->memory, ((size_t)k->stamp_count + 1) * sizeof *stamps);
+  for (int n = 0; n < k->stamp_count && h->dimensions == 2; n++) {
+    double(*points)[2] = arena_alloc(r->memory, SURFACE_OUTLINE * sizeof *points);
+    surface of;
+    if (!surface_open(&k->stamps[n].shape, &of)) continue;
+    const int count = surface_outline(&of, points);
+    stamps[h->stamp_count++] = (result_stamp){k->stamps[n].name, *points, count};
+  }
+  h->stamps = stamps;
+}
+
 /* Fields of the frames, as the simulation offers them. */
 static void frame_table(run *r, result_header *h) {
   const frame_field *offered;
@@ -453,6 +468,7 @@ result_header describe_result(run *r) {
   particle_table(r, &h);
   bond_table(r, &h);
   mesh_table(r, &h);
+  stamp_table(r, &h);
   return h;
 }
 

@@ -72,6 +72,7 @@ FIND(region, name, true)
 FIND(lattice, name, true)
 FIND(monitor, name, true)
 FIND(crack, name, true)
+FIND(stamp, name, true)
 FIND(material, lattice, !k->materials[i].region && !k->materials[i].between[0])
 
 const deck_material *deck_material_of(const deck *k, int lattice) {

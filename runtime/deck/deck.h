@@ -314,6 +314,24 @@ typedef struct deck_contact {
   double stiffness; /* N/m, of two particles; 0: that of the softer lattice */
 } deck_contact;
 
+/* A rigid body without particles. It moves along `direction` as `motion` says; or, with a mass, as
+   particles push it, at the beginning with the velocity motion.value. */
+typedef struct deck_stamp {
+  deck_item item;
+  const char *name;
+  deck_shape shape;      /* a rectangle, disc, box, cylinder or sphere without a hole */
+  const char **lattices; /* [lattice_count] that it touches; none: all */
+  int lattice_count;
+  double mass;          /* kg; 0: its motion is prescribed */
+  bool guided;          /* with a mass: it moves along `direction` alone */
+  double direction[3];  /* of length 1; 0 where it stands */
+  bool is_displacement; /* the motion is a way, m, else a velocity, m/s */
+  time_function motion;
+  double stiffness; /* N/m, of a particle; 0: that of its lattice */
+  double friction;  /* coefficient */
+  double damping;   /* of the critical one */
+} deck_stamp;
+
 typedef struct deck_tie { /* particles of the lattice that lie in the mesh move with it */
   deck_item item;
   const char *lattice, *mesh;
@@ -369,7 +387,12 @@ typedef enum monitor_kind {
   MONITOR_CONTACT_FORCE, /* N: of all contacts, on the region's or on all particles */
   MONITOR_CRACK_WIDTH,   /* m: of the widest crack across the line from `from` to `to` */
   MONITOR_CRACK,         /* of the tip of a crack in a mesh: tip_values.h */
-  MONITOR_REACTIONS      /* N, `between`: half of the second's reaction less the first's */
+  MONITOR_REACTIONS,     /* N, `between`: half of the second's reaction less the first's */
+  /* Of a stamp: */
+  MONITOR_STAMP_DISPLACEMENT, /* m: from where it is drawn */
+  MONITOR_STAMP_VELOCITY,     /* m/s */
+  MONITOR_STAMP_FORCE,        /* N: of the particles on it */
+  MONITOR_STAMP_MOMENT        /* N m: of these about its middle */
 } monitor_kind;
 
 enum { MONITOR_KINETIC, MONITOR_STORED }; /* components of MONITOR_ENERGY */
@@ -382,6 +405,7 @@ typedef struct deck_monitor {
   const char *lattice; /* NULL: the region's, or the only one; of counts all */
   const char *between[2];
   const char *field;
+  const char *stamp; /* NULL: of particles */
   const char *crack; /* "notch": its tip at the last point; "notch/start": that at the first */
   tip_value value;   /* of that tip */
   /* of the particles' motion; of MONITOR_FORCE, MONITOR_MOMENT -1: along the normal; of
@@ -514,6 +538,7 @@ typedef struct deck_file { /* a table that a load was read from */
   LIST(damping)                                                                                    \
   LIST(gravity)                                                                                    \
   LIST(contact)                                                                                    \
+  LIST(stamp)                                                                                      \
   LIST(initial_velocity)                                                                           \
   LIST(initial_displacement)                                                                       \
   ONE(start)                                                                                       \
@@ -574,6 +599,7 @@ int deck_find_region(const deck *k, const char *name);
 int deck_find_lattice(const deck *k, const char *name);
 int deck_find_monitor(const deck *k, const char *name);
 int deck_find_crack(const deck *k, const char *name);
+int deck_find_stamp(const deck *k, const char *name);
 /* Index of the first &material of a lattice that is of the whole of it, or -1. */
 int deck_find_material(const deck *k, const char *lattice);
 /* That of lattice number `lattice`; NULL without one. */

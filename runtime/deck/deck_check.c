@@ -40,6 +40,7 @@ KNOWN(link, lattice, deck_lattice_is_link(&k->lattices[found]))
 KNOWN(mesh, lattice, deck_lattice_is_mesh(&k->lattices[found]))
 KNOWN(region, region, true)
 KNOWN(monitor, monitor, true)
+KNOWN(stamp, stamp, true)
 
 bool deck_lattice_known(deck_reader *r, const deck_item *item, const char *name) {
   return lattice_is_known(r, deck_where(item, "lattice"), name);
@@ -78,6 +79,10 @@ bool deck_region_known(deck_reader *r, span where, const char *name) {
 
 bool deck_monitor_known(deck_reader *r, span where, const char *name) {
   return monitor_is_known(r, where, name);
+}
+
+bool deck_stamp_known(deck_reader *r, const deck_item *item, const char *name) {
+  return stamp_is_known(r, deck_where(item, "stamp"), name);
 }
 
 bool deck_item_region_known(deck_reader *r, const deck_item *item, const char *name) {

@@ -32,6 +32,7 @@ void deck_refuse_of_file(deck_reader *r, const deck_item *item, const char *mesh
 bool deck_region_known(deck_reader *r, span where, const char *name);
 bool deck_item_region_known(deck_reader *r, const deck_item *item, const char *name);
 bool deck_monitor_known(deck_reader *r, span where, const char *name);
+bool deck_stamp_known(deck_reader *r, const deck_item *item, const char *name);
 /* Particles of that lattice (-1: it is not known) move by themselves: it is no link. */
 bool deck_moves(deck_reader *r, span where, int lattice);
 /* Both of a region's. */

@@ -26,7 +26,7 @@
        .unit = "s",                                                                                \
        .fallback = "= never",                                                                      \
        DECK_NOT_KEPT,                                                                              \
-       .doc = "nothing acts after: a force is 0, a drive lets go"},                                \
+       .doc = "nothing acts after: a force is 0, a drive lets go, a stamp stands"},                \
       {.name = "rise",                                                                             \
        .type = DECK_LATER,                                                                         \
        .unit = "s",                                                                                \

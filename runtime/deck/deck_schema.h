@@ -35,7 +35,7 @@ typedef enum deck_bound {
   BOUND_FRACTION
 } deck_bound;
 
-enum { DECK_NO_FIELD = -1, DECK_MOST_KEYS = 24 };
+enum { DECK_NO_FIELD = -1, DECK_MOST_KEYS = 28 };
 
 typedef struct deck_key_info {
   const char *name;

@@ -5,7 +5,10 @@
 
 #include "dsl/base/elementary.h"
 #include "runtime/deck/deck_check.h"
+#include "runtime/deck/deck_formula.h"
+#include "runtime/deck/deck_load.h"
 #include "runtime/deck/deck_value.h"
+#include "runtime/deck/group_load.h"
 #include "runtime/deck/group_mesh.h"
 #include "runtime/deck/lattice_kind.h"
 
@@ -253,15 +256,21 @@ static void check_numbers(deck_reader *r, const deck_item *item, deck_shape *sha
   if (shape->kind == SHAPE_FACE) check_face(r, item, shape);
 }
 
-static bool shape_is_of(deck_reader *r, const deck_item *item, const deck_shape *shape,
-                        int dimensions) {
+/* Of those that the group may have. */
+static const char *shapes_of(const deck_group_info *info, int dimensions) {
+  if (info == &deck_group_stamp)
+    return dimensions == 2 ? "'rectangle' and 'disc'" : "'box', 'cylinder' and 'sphere'";
+  return dimensions == 2 ? "'point', 'rectangle', 'disc', 'polygon', 'dog_bone' and 'segment'"
+                         : "'point', 'box', 'cylinder', 'sphere', 'extrusion' and 'face'";
+}
+
+static bool shape_is_of(deck_reader *r, const deck_group_info *info, const deck_item *item,
+                        const deck_shape *shape, int dimensions) {
   if (shape->kind == SHAPE_POINT || (shape->kind >= SHAPE_BOX) == (dimensions == 3)) return true;
   diag_report(r->d, DIAG_CONFLICT, deck_where(item, "shape"), "%s is a shape %s, the lattice is %s",
               shape_words[shape->kind], dimensions == 2 ? "in space" : "of the plane",
               dimensions == 2 ? "in the plane" : "in space");
-  diag_hint(r->d, "there are %s",
-            dimensions == 2 ? "'point', 'rectangle', 'disc', 'polygon', 'dog_bone' and 'segment'"
-                            : "'point', 'box', 'cylinder', 'sphere', 'extrusion' and 'face'");
+  diag_hint(r->d, "there are %s", shapes_of(info, dimensions));
   return false;
 }
 
@@ -271,7 +280,7 @@ static void check_shape(deck_reader *r, const namelist_group *from, const deck_g
   const int dimensions = deck_dimensions_of(r, lattice), errors = r->d->errors;
   if (!deck_keys_fit(from, shape_uses, count, (int)shape->kind, shape_words[shape->kind], r->d))
     return;
-  if (dimensions && !shape_is_of(r, item, shape, dimensions)) return;
+  if (dimensions && !shape_is_of(r, info, item, shape, dimensions)) return;
   if (dimensions) deck_check_places(r, from, info, dimensions);
   if (r->d->errors == errors) check_numbers(r, item, shape);
 }
@@ -528,3 +537,247 @@ static void check_point_mass(deck_reader *r, const namelist_group *from, void *i
 DECK_LIST(point_mass, .identity = "region", .check = check_point_mass,
           .doc = "Mass that particles carry beside their own, without stiffness; several add up. "
                  "See [Point masses](#point-masses).");
+
+/* --- stamps ----------------------------------------------------------------------------------- */
+
+static const deck_key_info stamp_keys[] = {
+    {.name = "name",
+     .type = DECK_NAME,
+     .required = true,
+     DECK_AT(stamp, name),
+     .doc = "its name, also of its energies in the history"},
+    {.name = "shape",
+     .type = DECK_CHOICE,
+     .choices = "rectangle|disc|box|cylinder|sphere",
+     .required = true,
+     DECK_AT(stamp, shape.kind),
+     .doc = "decides which of the next seven keys are needed; those from `box` on are of space"},
+    {.name = "corner",
+     .type = DECK_PLACE,
+     .unit = "m",
+     DECK_AT(stamp, shape.corner),
+     .doc = "rectangle, box: the corner of least coordinates"},
+    {.name = "size",
+     .type = DECK_PLACE,
+     .unit = "m",
+     .bound = BOUND_POSITIVE,
+     DECK_AT(stamp, shape.size),
+     .doc = "rectangle, box: extent along x, y, z"},
+    {.name = "rotation",
+     .type = DECK_ANGLE,
+     .fallback = "0",
+     DECK_AT(stamp, shape.rotation),
+     .doc = "rectangle: about its corner; a plain number is in degrees"},
+    {.name = "centre",
+     .type = DECK_PLACE,
+     .unit = "m",
+     DECK_AT(stamp, shape.centre),
+     .doc = "disc, sphere: centre"},
+    {.name = "radius",
+     .type = DECK_REAL,
+     .unit = "m",
+     .bound = BOUND_POSITIVE,
+     DECK_AT(stamp, shape.radius),
+     .doc = "disc, cylinder, sphere: radius"},
+    {.name = "from",
+     .type = DECK_PLACE,
+     .unit = "m",
+     DECK_AT(stamp, shape.from),
+     .doc = "cylinder: one end of its axis"},
+    {.name = "to",
+     .type = DECK_PLACE,
+     .unit = "m",
+     DECK_AT(stamp, shape.to),
+     .doc = "cylinder: the other end"},
+    {.name = "lattices",
+     .type = DECK_NAMES,
+     .fallback = "= all",
+     DECK_AT(stamp, lattices),
+     DECK_COUNT_AT(stamp, lattice_count),
+     .doc = "names of the lattices whose particles it touches. Bars and links touch nothing"},
+    {.name = "mass",
+     .type = DECK_REAL,
+     .unit = "kg",
+     .bound = BOUND_POSITIVE,
+     DECK_AT(stamp, mass),
+     .doc =
+         "with it the stamp moves as the particles push it, and by `&gravity`; it does not turn. "
+         "Without it its motion is prescribed"},
+    {.name = "guided",
+     .type = DECK_LOGICAL,
+     .fallback = ".false.",
+     DECK_AT(stamp, guided),
+     .doc = "with a mass: it moves along `direction` alone"},
+    {.name = "direction",
+     .type = DECK_PLACE,
+     .unit = "1",
+     DECK_AT(stamp, direction),
+     .doc = "of its velocity or displacement, of any length; a stamp of velocity 0 needs none"},
+    {.name = "velocity",
+     .type = DECK_LATER,
+     .unit = "m/s",
+     DECK_NOT_KEPT,
+     .doc = "along `direction`; with a mass at the beginning, else as the run goes on; 0 without a "
+            "mass: it stands"},
+    {.name = "displacement",
+     .type = DECK_LATER,
+     .unit = "m",
+     DECK_NOT_KEPT,
+     .doc = "without a mass: along `direction`, from where it is drawn"},
+    {.name = "stiffness",
+     .type = DECK_REAL,
+     .unit = "N/m",
+     .bound = BOUND_POSITIVE,
+     .fallback = "= E V/s^2 of the lattice",
+     DECK_AT(stamp, stiffness),
+     .doc = "force on a particle over the way that it lies in the stamp"},
+    {.name = "friction",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_NOT_NEGATIVE,
+     .fallback = "0",
+     DECK_AT(stamp, friction),
+     .doc = "coefficient of friction: most that acts along the surface over what acts across"},
+    {.name = "damping",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_NOT_NEGATIVE,
+     .fallback = "0",
+     DECK_AT(stamp, damping),
+     .doc = "of the contact, across the surface: part of the critical damping of a particle on its "
+            "spring. Quasi-static runs leave it out"},
+    DECK_TIME_KEYS,
+};
+
+/* Of a lattice, a contact or a stamp before this one: their energies stand side by side. */
+static const deck_item *part_of_name(const deck_reader *r, const char *name) {
+  const int lattice = deck_find_lattice(r->k, name), stamp = deck_find_stamp(r->k, name);
+  if (lattice >= 0) return &r->k->lattices[lattice].item;
+  for (int k = 0; k < r->k->contact_count; k++)
+    if (deck_same_name(r->k->contacts[k].name, name)) return &r->k->contacts[k].item;
+  return stamp < 0 ? NULL : &r->k->stamps[stamp].item;
+}
+
+static void check_stamp_name(deck_reader *r, const deck_stamp *item) {
+  const span where = deck_where(&item->item, "name");
+  deck_check_name(r, "lattice, contact or stamp", item->name, &item->item,
+                  part_of_name(r, item->name));
+  if (strcmp(item->name, "energy") == 0)
+    diag_report(r->d, DIAG_RESERVED_NAME, where,
+                "a stamp cannot be called `energy`: the result has the sum of all energies there");
+  else if (strchr(item->name, '/'))
+    diag_report(r->d, DIAG_BAD_VALUE, where, "a stamp's name must not hold `/`");
+}
+
+/* Those that it names are lattices of particles. */
+static void check_stamped(deck_reader *r, const deck_stamp *item) {
+  const span where = deck_where(&item->item, "lattices");
+  for (int n = 0; n < item->lattice_count; n++) {
+    const char *name = item->lattices[n];
+    if (!deck_lattice_known_at(r, where, name)) continue;
+    const int lattice = deck_find_lattice(r->k, name);
+    const deck_lattice *of = lattice < 0 ? NULL : &r->k->lattices[lattice];
+    if (of && (deck_lattice_is_bar(of) || deck_lattice_is_link(of)))
+      diag_report(r->d, DIAG_BAD_VALUE, where, "`%s` is a %s: a stamp touches lattices alone",
+                  deck_shown(r->memory, name), deck_lattice_word(of));
+  }
+  bool some = item->lattice_count > 0 || r->k->lattice_count == 0;
+  for (int n = 0; n < r->k->lattice_count; n++)
+    some = some || deck_lattice_is_stamped(&r->k->lattices[n], item);
+  if (!some)
+    diag_report(r->d, DIAG_CONFLICT, item->item.where,
+                "the deck has no lattice that this stamp could touch");
+}
+
+/* Length 1. */
+static bool take_way(deck_reader *r, const namelist_group *from, deck_stamp *item) {
+  double *v = item->direction;
+  const double size = pl_hypot(pl_hypot(v[0], v[1]), v[2]);
+  const bool stands = item->motion.shape == TIME_CONSTANT && item->motion.value == 0;
+  if (!namelist_find(from, "direction") && stands && !item->guided) return true;
+  if (!(size > 0)) {
+    diag_report(r->d, namelist_find(from, "direction") ? DIAG_OUT_OF_BOUNDS : DIAG_MISSING_KEY,
+                deck_where(&item->item, "direction"), "this stamp moves, but has no `direction`");
+    diag_hint(r->d, "e.g. direction = 0, -1 in the plane, downward");
+    return false;
+  }
+  for (int c = 0; c < 3; c++)
+    v[c] /= size;
+  return true;
+}
+
+/* Of a stamp with a mass: a velocity, and no more. */
+static bool take_free(deck_reader *r, const namelist_group *from, deck_stamp *item) {
+  static const char *const prescribed[] = {"displacement", "history", "start", "end",    "rise",
+                                           "times",        "values",  "file",  "formula"};
+  const namelist_key *velocity = namelist_find(from, "velocity");
+  for (size_t k = 0; k < sizeof prescribed / sizeof *prescribed; k++) {
+    const namelist_key *key = namelist_find(from, prescribed[k]);
+    if (!key) continue;
+    diag_report(r->d, DIAG_CONFLICT, key->name_where,
+                "`mass` and `%s` exclude each other: a stamp with a mass moves as it is pushed",
+                prescribed[k]);
+    diag_hint(r->d, "leave `mass` away to prescribe the motion; `velocity` alone is that at the "
+                    "beginning");
+    return false;
+  }
+  if (r->k->relaxation.increments > 0) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "mass"),
+                "a quasi-static run has no inertia that a free stamp could move with");
+    diag_hint(r->d, "prescribe its motion, e.g. direction = 0, -1  displacement = '1 mm'");
+    return false;
+  }
+  item->motion = (time_function){.shape = TIME_CONSTANT};
+  return !velocity || (deck_values_counted(velocity, 1, r->d) &&
+                       deck_real_read(&velocity->values[0], "velocity", "m/s", BOUND_NONE,
+                                      &item->motion.value, r->d));
+}
+
+static bool take_prescribed(deck_reader *r, const namelist_group *from, deck_stamp *item) {
+  static const deck_load_kind kinds[] = {{"velocity", "m/s", false, &deck_formula_of_time},
+                                         {"displacement", "m", false, &deck_formula_of_time}};
+  static const char *const some[] = {"velocity", "displacement", "file", "formula"};
+  bool moves = false;
+  for (size_t k = 0; k < sizeof some / sizeof *some; k++)
+    moves = moves || namelist_find(from, some[k]);
+  if (!moves) {
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "this stamp has neither a mass nor a motion");
+    diag_hint(r->d, "mass = '2 kg' lets it move as it is pushed; `velocity` or `displacement` "
+                    "prescribe how it moves; velocity = 0 holds it where it is");
+    return false;
+  }
+  if (item->guided) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "guided"),
+                "`guided` goes with `mass`: a prescribed motion is along `direction` anyway");
+    return false;
+  }
+  const int kind = deck_load_kind_of(r->memory, from, kinds, 2, r->d);
+  if (kind < 0 || !deck_load_read(r->memory, from, &kinds[kind], &item->motion, r->d)) return false;
+  deck_warn_late(r, &item->item, "start", item->motion.start);
+  item->is_displacement = kind == 1;
+  if (item->is_displacement) deck_spread_displacement(r, from, &item->motion);
+  return true;
+}
+
+/* The lattice that says whether it is in the plane or in space. */
+static const char *lattice_of_stamp(const deck_reader *r, const deck_stamp *item) {
+  if (item->lattice_count > 0) return item->lattices[0];
+  return r->k->lattice_count > 0 ? r->k->lattices[0].name : NULL;
+}
+
+static void check_stamp(deck_reader *r, const namelist_group *from, void *into) {
+  static const shape_kind kinds[] = {SHAPE_RECTANGLE, SHAPE_DISC, SHAPE_BOX, SHAPE_CYLINDER,
+                                     SHAPE_SPHERE};
+  deck_stamp *item = into;
+  item->shape.kind = kinds[item->shape.kind];
+  check_stamp_name(r, item);
+  check_stamped(r, item);
+  check_shape(r, from, &deck_group_stamp, &item->item, &item->shape, lattice_of_stamp(r, item));
+  if (item->mass > 0 ? take_free(r, from, item) : take_prescribed(r, from, item))
+    take_way(r, from, item);
+}
+
+DECK_LIST(stamp, .identity = "name", .check = check_stamp,
+          .doc = "A rigid body without particles that particles cannot enter: an indenter, a "
+                 "projectile, an anvil, see [Stamps](#stamps). Give `mass`, `velocity` or "
+                 "`displacement`.");

@@ -115,6 +115,11 @@ static void warn_of_jump(deck_reader *r, const namelist_group *from, const time_
   diag_hint(r->d, table ? "let the first value be 0" : "give a `rise`, e.g. rise = '1 ms'");
 }
 
+void deck_spread_displacement(deck_reader *r, const namelist_group *from, time_function *f) {
+  spread(r, from, f);
+  warn_of_jump(r, from, f);
+}
+
 /* The velocity that a constant acceleration has given. */
 static bool accelerate(deck_reader *r, const deck_drive *item, time_function *motion) {
   if (motion->shape == TIME_CONSTANT) {
@@ -148,9 +153,7 @@ static void complete_drive(deck_reader *r, const namelist_group *from, deck_driv
   }
   if (kind == 2 && !accelerate(r, item, &item->motion)) return;
   deck_warn_late(r, &item->item, "start", item->motion.start);
-  if (!item->is_displacement) return;
-  spread(r, from, &item->motion);
-  warn_of_jump(r, from, &item->motion);
+  if (item->is_displacement) deck_spread_displacement(r, from, &item->motion);
 }
 
 static void check_drive(deck_reader *r, const namelist_group *from, void *into) {

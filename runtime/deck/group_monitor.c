@@ -28,7 +28,7 @@ static const deck_key_info monitor_keys[] = {
                 "strain|applied|bar_force|slip|contact_force|crack_width|crack",
      .required = true,
      DECK_AT(monitor, kind),
-     .doc = "decides which of the next fourteen keys are needed"},
+     .doc = "decides which of the next fifteen keys are needed"},
     {.name = "region",
      .type = DECK_NAME,
      DECK_AT(monitor, region),
@@ -48,6 +48,11 @@ static const deck_key_info monitor_keys[] = {
             "moment, bar_force, contact_force, crack_width, tip, tip_speed, and what is asked `at` "
             "a place, "
             "need one of the two; energies in sum over all are in `energy/...`"},
+    {.name = "stamp",
+     .type = DECK_NAME,
+     DECK_AT(monitor, stamp),
+     .doc = "in place of `region`: displacement, velocity: of a stamp; contact_force: that of the "
+            "particles on it; moment: that of their forces about its middle"},
     {.name = "between",
      .type = DECK_NAMES,
      DECK_AT(monitor, between),
@@ -175,27 +180,46 @@ enum {
   /* of a lattice without a region */
   OF_WHOLE = OF_PLACE | OF_PART | OF_SECTION | OF_TIP | OF_BAR | OF_LINK | OF_WIDTH,
   OF_LATTICE = OF_WHOLE | OF_DAMAGE,
+  OF_STAMP_WAY =
+      1 << MONITOR_STAMP_DISPLACEMENT | 1 << MONITOR_STAMP_VELOCITY | 1 << MONITOR_STAMP_FORCE,
+  OF_STAMP = OF_STAMP_WAY | 1 << MONITOR_STAMP_MOMENT,
   OF_MOVING = OF_MOTION | OF_PAIR | OF_PLACE | OF_TURNS | 1 << MONITOR_MOMENTUM,
-  ALONG_AXIS = OF_MOTION | OF_PAIR | 1 << MONITOR_ACCELERATION | OF_SUMS
+  ALONG_AXIS = OF_MOTION | OF_PAIR | 1 << MONITOR_ACCELERATION | OF_SUMS | OF_STAMP_WAY
 };
-static const char *const monitor_words[] = {
-    "a reaction monitor",      "a displacement monitor",
-    "a velocity monitor",      "an opening monitor",
-    "a damaged monitor",       "a broken monitor",
-    "a field monitor",         "an acceleration monitor",
-    "a momentum monitor",      "an angular_momentum monitor",
-    "an energy monitor",       "a force monitor",
-    "a moment monitor",        "a tip monitor",
-    "a tip_speed monitor",     "a stress monitor",
-    "a strain monitor",        "an applied monitor",
-    "a bar_force monitor",     "a slip monitor",
-    "a contact_force monitor", "a crack_width monitor",
-    "a crack monitor",         "a reaction monitor with `between`"};
+static const char *const monitor_words[] = {"a reaction monitor",
+                                            "a displacement monitor",
+                                            "a velocity monitor",
+                                            "an opening monitor",
+                                            "a damaged monitor",
+                                            "a broken monitor",
+                                            "a field monitor",
+                                            "an acceleration monitor",
+                                            "a momentum monitor",
+                                            "an angular_momentum monitor",
+                                            "an energy monitor",
+                                            "a force monitor",
+                                            "a moment monitor",
+                                            "a tip monitor",
+                                            "a tip_speed monitor",
+                                            "a stress monitor",
+                                            "a strain monitor",
+                                            "an applied monitor",
+                                            "a bar_force monitor",
+                                            "a slip monitor",
+                                            "a contact_force monitor",
+                                            "a crack_width monitor",
+                                            "a crack monitor",
+                                            "a reaction monitor with `between`",
+                                            "a displacement monitor of a stamp",
+                                            "a velocity monitor of a stamp",
+                                            "a contact_force monitor of a stamp",
+                                            "a moment monitor of a stamp"};
 static const deck_key_use monitor_uses[] = {
     {"region", OF_MOTION | OF_FIELD | OF_PLACE | OF_PART | OF_SECTION | OF_TIP | OF_BAR, false},
     {"lattice", OF_LATTICE, false},
+    {"stamp", OF_STAMP, true},
     {"between", OF_PAIR, true},
-    {"component", ALONG_AXIS | OF_ENERGY | OF_TENSOR | OF_TURNS | OF_SECTION, false},
+    {"component", ALONG_AXIS | OF_ENERGY | OF_TENSOR | OF_TURNS | OF_SECTION | OF_STAMP, false},
     {"field", OF_FIELD, true},
     {"crack", OF_CRACK, true},
     {"value", OF_CRACK, true},
@@ -314,6 +338,8 @@ static const char *watched_region(const deck_monitor *item) {
 
 static int dimensions_of(const deck_reader *r, const deck_monitor *item) {
   const char *region = watched_region(item);
+  const int stamp = item->stamp ? deck_find_stamp(r->k, item->stamp) : -1;
+  if (item->stamp) return stamp < 0 ? 0 : r->k->stamps[stamp].shape.kind >= SHAPE_BOX ? 3 : 2;
   return region ? deck_dimensions_of_region(r, region) : deck_dimensions_of(r, item->lattice);
 }
 
@@ -367,7 +393,9 @@ static const deck_lattice *watched_lattice(const deck_reader *r, const deck_moni
 static bool some_contact_touches(const deck *k, const deck_lattice *l) {
   for (int n = 0; n < k->contact_count; n++)
     if (deck_lattice_touches(l, &k->contacts[n])) return true;
-  return deck_lacks(k, "contact");
+  for (int n = 0; n < k->stamp_count; n++)
+    if (deck_lattice_is_stamped(l, &k->stamps[n])) return true;
+  return deck_lacks(k, "contact") || deck_lacks(k, "stamp");
 }
 
 /* Some kinds are of bars, of links or of what touches alone. */
@@ -397,8 +425,8 @@ static bool check_sort(deck_reader *r, const deck_monitor *item) {
                 "`%s` is a %s: cracks are measured in the lattice around", name,
                 deck_lattice_is_link(l) ? "link" : "row of particles");
   } else if (is_kind(item, OF_CONTACT) && !some_contact_touches(r->k, l)) {
-    diag_report(r->d, DIAG_CONFLICT, where, "this is always 0: by no `&contact` does `%s` touch",
-                name);
+    diag_report(r->d, DIAG_CONFLICT, where,
+                "this is always 0: by no `&contact` or `&stamp` does `%s` touch", name);
   } else
     return true;
   return false;
@@ -458,7 +486,7 @@ static bool take_axis(deck_reader *r, const namelist_group *from, const namelist
   if (key &&
       (item->component > DECK_WRITTEN_Z || (dimensions == 2 && item->component < DECK_WRITTEN_Z)))
     return refuse_component(r, key, item, dimensions == 2 ? "'z'" : "'x', 'y' and 'z'");
-  const bool needed = dimensions == 3 && item->kind == MONITOR_ANGULAR_MOMENTUM;
+  const bool needed = dimensions == 3 && item->kind != MONITOR_MOMENT;
   if (!key && needed)
     diag_report(r->d, DIAG_MISSING_KEY, from->where, "%s needs `component` in space",
                 monitor_words[item->kind]);
@@ -468,7 +496,7 @@ static bool take_axis(deck_reader *r, const namelist_group *from, const namelist
 
 static bool take_direction(deck_reader *r, const namelist_key *key, deck_monitor *item) {
   const bool turns = item->component >= DECK_WRITTEN_ROTATION,
-             in_sum = is_kind(item, OF_SECTION | OF_SUMS);
+             in_sum = is_kind(item, OF_SECTION | OF_SUMS | OF_STAMP);
   if (item->component >= DECK_WRITTEN_COUNT || (turns && in_sum))
     return refuse_component(r, key, item,
                             in_sum ? "'x', 'y' and, in space, 'z'"
@@ -483,7 +511,7 @@ static bool take_direction(deck_reader *r, const namelist_key *key, deck_monitor
 static bool take_component(deck_reader *r, const namelist_group *from, deck_monitor *item) {
   const namelist_key *key = namelist_find(from, "component");
   const int dimensions = dimensions_of(r, item);
-  if (is_kind(item, OF_TURNS | 1 << MONITOR_MOMENT))
+  if (is_kind(item, OF_TURNS | 1 << MONITOR_MOMENT | 1 << MONITOR_STAMP_MOMENT))
     return take_axis(r, from, key, item, dimensions);
   if (!key) {
     item->component = is_kind(item, OF_SECTION) ? -1 : 0;
@@ -494,12 +522,26 @@ static bool take_component(deck_reader *r, const namelist_group *from, deck_moni
   return take_direction(r, key, item);
 }
 
+/* What is watched of a stamp in place of particles. */
+static void take_stamp(deck_monitor *item) {
+  static const monitor_kind of_stamp[][2] = {{MONITOR_DISPLACEMENT, MONITOR_STAMP_DISPLACEMENT},
+                                             {MONITOR_VELOCITY, MONITOR_STAMP_VELOCITY},
+                                             {MONITOR_CONTACT_FORCE, MONITOR_STAMP_FORCE},
+                                             {MONITOR_MOMENT, MONITOR_STAMP_MOMENT}};
+  for (size_t k = 0; k < sizeof of_stamp / sizeof *of_stamp; k++)
+    if (item->kind == of_stamp[k][0]) {
+      item->kind = of_stamp[k][1];
+      return;
+    }
+}
+
 static void check_monitor(deck_reader *r, const namelist_group *from, void *into) {
   enum { USES = sizeof monitor_uses / sizeof *monitor_uses };
   deck_monitor *item = into;
   const namelist_key *between = namelist_find(from, "between");
   check_monitor_name(r, item);
   if (item->kind == MONITOR_REACTION && between) item->kind = MONITOR_REACTIONS;
+  if (item->stamp) take_stamp(item);
   item->placed = namelist_find(from, "at") != NULL;
   const bool whole = has_needs(r, from, item);
   if (!deck_keys_fit(from, monitor_uses, USES, (int)item->kind, monitor_words[item->kind], r->d) ||
@@ -510,6 +552,7 @@ static void check_monitor(deck_reader *r, const namelist_group *from, void *into
   if (item->kind == MONITOR_BROKEN) check_broken(r, from, item);
   deck_warn_late(r, &item->item, "zero_at", item->zero_at);
   if (item->region) deck_item_region_known(r, &item->item, item->region);
+  if (item->stamp && !deck_stamp_known(r, &item->item, item->stamp)) return;
   for (int i = 0; between && i < 2; i++)
     deck_region_known(r, between->values[i].where, item->between[i]);
   const int dimensions = dimensions_of(r, item);
@@ -533,21 +576,25 @@ const char *deck_monitor_unit(const deck_monitor *m, bool rotates) {
   case MONITOR_FORCE:
   case MONITOR_BAR_FORCE:
   case MONITOR_CONTACT_FORCE:
+  case MONITOR_STAMP_FORCE:
     return rotates ? "N*m" : "N";
   case MONITOR_DISPLACEMENT:
   case MONITOR_OPENING:
   case MONITOR_TIP:
   case MONITOR_SLIP:
   case MONITOR_CRACK_WIDTH:
+  case MONITOR_STAMP_DISPLACEMENT:
     return rotates ? "rad" : "m";
   case MONITOR_VELOCITY:
   case MONITOR_TIP_SPEED:
+  case MONITOR_STAMP_VELOCITY:
     return rotates ? "rad/s" : "m/s";
   case MONITOR_ACCELERATION:
     return rotates ? "rad/s^2" : "m/s^2";
   case MONITOR_MOMENTUM:
     return "N*s";
   case MONITOR_MOMENT:
+  case MONITOR_STAMP_MOMENT:
     return "N*m";
   case MONITOR_ANGULAR_MOMENTUM:
     return "N*m*s";

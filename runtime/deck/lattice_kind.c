@@ -37,11 +37,20 @@ bool deck_lattice_is_mesh(const deck_lattice *l) {
   return l->kind && strcmp(l->kind, lattice_kinds[LATTICE_KIND_mesh].name) == 0;
 }
 
-bool deck_lattice_touches(const deck_lattice *l, const deck_contact *by) {
-  bool named = by->lattice_count == 0 && !deck_lattice_is_bar(l) && !deck_lattice_is_link(l);
-  for (int n = 0; n < by->lattice_count; n++)
-    named = named || strcmp(by->lattices[n], l->name) == 0;
+/* None named are all but bars and links. */
+static bool is_one_of(const deck_lattice *l, const char *const *lattices, int count) {
+  bool named = count == 0 && !deck_lattice_is_bar(l) && !deck_lattice_is_link(l);
+  for (int n = 0; n < count; n++)
+    named = named || strcmp(lattices[n], l->name) == 0;
   return named;
+}
+
+bool deck_lattice_touches(const deck_lattice *l, const deck_contact *by) {
+  return is_one_of(l, by->lattices, by->lattice_count);
+}
+
+bool deck_lattice_is_stamped(const deck_lattice *l, const deck_stamp *by) {
+  return is_one_of(l, by->lattices, by->lattice_count);
 }
 
 const char *deck_lattice_word(const deck_lattice *l) {

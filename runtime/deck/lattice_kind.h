@@ -86,6 +86,8 @@ bool deck_lattice_is_link(const deck_lattice *l);
 bool deck_lattice_is_mesh(const deck_lattice *l);
 /* By the contact its particles touch: its own, or those of others, or both. */
 bool deck_lattice_touches(const deck_lattice *l, const deck_contact *by);
+/* Its particles are pushed by the stamp. */
+bool deck_lattice_is_stamped(const deck_lattice *l, const deck_stamp *by);
 /* What messages call it: "bar", "link", "mesh", or "lattice". */
 const char *deck_lattice_word(const deck_lattice *l);
 /* And what it consists of: "node" of a mesh, else "particle". */

@@ -150,6 +150,7 @@ static bool mesh_can_have(const pl_law *law, const deck_material *of, span where
   const deck_mesh *m = &k->lattices[lattice];
   const deck_item *item = NULL;
   const char *why = NULL;
+  bool stamped = false;
   if (!law->linear && !cracks_fit(law, k, m, d)) return false;
   if (!law->linear && k->relaxation.solved) {
     diag_report(d, DIAG_NOT_SUPPORTED, where,
@@ -182,9 +183,16 @@ static bool mesh_can_have(const pl_law *law, const deck_material *of, span where
       item = &k->contacts[n].item;
       why = "contact";
     }
+  for (int n = 0; n < k->stamp_count && !item; n++)
+    if (deck_lattice_is_stamped(m, &k->stamps[n])) {
+      item = &k->stamps[n].item;
+      why = "stamps that touch it";
+      stamped = true;
+    }
   if (!item) return true;
   diag_report(d, DIAG_NOT_SUPPORTED, item->where, "the mesh `%s` cannot have %s as yet", m->name,
               why);
+  if (stamped) diag_hint(d, "name the lattices of particles that the stamp touches in `lattices`");
   return false;
 }
 

@@ -94,6 +94,17 @@ void ledger_sample_contact(ledger *g, double stored, double work, double terms[L
   terms[LEDGER_IMBALANCE] = work - (stored - g->initial);
 }
 
+void ledger_sample_stamp(ledger *g, const stamp_energies *e, double terms[LEDGER_COUNT]) {
+  const double held = e->kinetic + e->stored;
+  if (!g->begun) *g = (ledger){.begun = 1, .initial = held};
+  memset(terms, 0, LEDGER_COUNT * sizeof *terms);
+  terms[LEDGER_KINETIC] = e->kinetic;
+  terms[LEDGER_STORED] = e->stored;
+  terms[LEDGER_EXTERNAL] = e->work;
+  terms[LEDGER_DISSIPATED_DAMPING] = e->dissipated;
+  terms[LEDGER_IMBALANCE] = e->work - (held - g->initial) - e->dissipated;
+}
+
 bool ledger_sample(ledger *g, const ledger_laws *of, const body *state, const loads *l,
                    const load_look *look, double omega, double terms[LEDGER_COUNT]) {
   const body_totals t = body_sum(state);

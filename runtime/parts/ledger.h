@@ -92,6 +92,12 @@ bool ledger_sample(ledger *g, const ledger_laws *of, const body *state, const lo
 /* The same of a contact: it stores that much (J), and `work` is done on it by the ways of its
    particles. */
 void ledger_sample_contact(ledger *g, double stored, double work, double terms[LEDGER_COUNT]);
+/* The same of a stamp: of its motion and its contact (J), what it has taken by damping and
+   friction, and the work done on it by bodies and by what moves it. */
+typedef struct stamp_energies {
+  double kinetic, stored, dissipated, work;
+} stamp_energies;
+void ledger_sample_stamp(ledger *g, const stamp_energies *e, double terms[LEDGER_COUNT]);
 /* Of one of several laws at work on a body, in the state observed last: J stored in its bonds;
    taken by its states and damage since the start. NaN where the law does not say it, or it was not
    kept. */

@@ -76,24 +76,25 @@ static rates sum_of_links(const run_body *bodies, int count) {
   return sum;
 }
 
-static bool *joined_bodies(const run_body *bodies, int count, const double *touching) {
+static bool *joined_bodies(const run_body *bodies, int count, const touch_rates *touching) {
   bool *joined = must_calloc((size_t)count + 1, sizeof *joined);
   for (int b = 0; b < count; b++) {
     const rows *g = bodies[b].lattice_rows;
-    joined[b] = joined[b] || touching[b] > 0;
+    joined[b] = joined[b] || touching[b].square > 0;
     for (long p = 0; g->copies && p < g->particle_count; p++)
       joined[g->copies[p].lattice] = true;
   }
   return joined;
 }
 
-void link_limit(const run_body *bodies, int count, const double *touching, step_limit *limit,
+void link_limit(const run_body *bodies, int count, const touch_rates *touching, step_limit *limit,
                 int *ruling) {
   bool *joined = joined_bodies(bodies, count, touching);
-  double contact = 0;
+  touch_rates contact = {0, 0};
   int fastest = -1;
   for (int b = 0; b < count; b++) {
-    contact = pl_fmax(contact, touching[b]);
+    contact.square = pl_fmax(contact.square, touching[b].square);
+    contact.damping = pl_fmax(contact.damping, touching[b].damping);
     if (joined[b] &&
         (fastest < 0 || is_faster(rates_of(&bodies[b].limit), rates_of(&bodies[fastest].limit))))
       fastest = b;
@@ -101,7 +102,8 @@ void link_limit(const run_body *bodies, int count, const double *touching, step_
   free(joined);
   if (fastest < 0) return;
   const rates alone = rates_of(&bodies[fastest].limit), links = sum_of_links(bodies, count);
-  const rates all = {alone.square + links.square + contact, alone.damping + links.damping};
+  const rates all = {alone.square + links.square + contact.square,
+                     alone.damping + links.damping + contact.damping};
   const double together = stability_rounded(2 / fastest_of(all));
   if (!(together < limit->limit)) return;
   *ruling = fastest;

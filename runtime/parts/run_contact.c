@@ -45,8 +45,7 @@ static double modulus_of(const run_body *b, const run_law *l, const deck *k) {
   return implied_elastic(l->law, l->parameters, g, &e) ? e.E[0] : NAN;
 }
 
-/* Of the softest of its laws. */
-static double stiffness_of(const run_body *b, const deck *k) {
+double run_contact_stiffness(const run_body *b, const deck *k) {
   const rows *g = b->lattice_rows;
   double least = INFINITY;
   for (int n = 0; n < b->law_count; n++) {
@@ -60,7 +59,7 @@ static double stiffness_of(const run_body *b, const deck *k) {
 static bool find_stiffness(run_contact *c, const deck *k, const run_body *bodies, diagnostics *d) {
   for (int n = 0; n < c->count; n++) {
     const run_body *b = &bodies[c->of[n]];
-    c->stiffness[n] = c->from->stiffness > 0 ? c->from->stiffness : stiffness_of(b, k);
+    c->stiffness[n] = c->from->stiffness > 0 ? c->from->stiffness : run_contact_stiffness(b, k);
     if (c->stiffness[n] > 0) continue;
     diag_report(d, DIAG_STIFFNESS, c->from->item.where,
                 "the lattice `%s` has no Young's modulus that the stiffness of its contact could "
@@ -72,23 +71,23 @@ static bool find_stiffness(run_contact *c, const deck *k, const run_body *bodies
   return true;
 }
 
-static double lightest_of(const rows *g) {
+double run_contact_lightest(const rows *g) {
   double least = g->mass;
   for (long p = 0; g->site_mass && p < g->particle_count; p++)
     least = pl_fmin(least, g->site_mass[g->particle_site[p]]);
   return least;
 }
 
-static void add_rates(const run_contact *c, const run_body *bodies, double *touching) {
+static void add_rates(const run_contact *c, const run_body *bodies, touch_rates *touching) {
   for (int n = 0; n < c->count; n++) {
     const rows *g = bodies[c->of[n]].lattice_rows;
     const double around = g->dimensions == 2 ? 3 : 4;
-    touching[c->of[n]] += 2 * around * c->stiffness[n] / lightest_of(g);
+    touching[c->of[n]].square += 2 * around * c->stiffness[n] / run_contact_lightest(g);
   }
 }
 
 bool run_contacts_open(run_contacts *c, const deck *k, run_body *bodies, int body_count,
-                       double *touching, diagnostics *d) {
+                       touch_rates *touching, diagnostics *d) {
   *c = (run_contacts){.bodies = bodies, .step = -1};
   c->items = must_calloc((size_t)k->contact_count + 1, sizeof *c->items);
   c->power = must_calloc((size_t)body_count + 1, sizeof *c->power);

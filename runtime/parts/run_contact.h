@@ -17,6 +17,7 @@
 #define PERILAT_RUNTIME_RUN_CONTACT_H
 
 #include "runtime/interaction/contact.h"
+#include "runtime/parts/link_limit.h"
 #include "runtime/parts/run_body.h"
 
 typedef struct contact_peaks { /* of all states so far */
@@ -44,13 +45,18 @@ typedef struct run_contacts {
 } run_contacts;
 
 /* Which bodies, and how stiff; their masses are known. touching[body_count]: what contact adds to
-   the square of the largest frequency of each, 1/s^2. False with diagnostics where a stiffness
+   the square of the largest frequency of each. False with diagnostics where a stiffness
    cannot be told. */
 bool run_contacts_open(run_contacts *c, const deck *k, run_body *bodies, int body_count,
-                       double *touching, diagnostics *d);
+                       touch_rates *touching, diagnostics *d);
 /* When the bodies have begun. */
 void run_contacts_begin(run_contacts *c);
 void run_contacts_free(run_contacts *c);
+
+/* N/m: k = E V/s^2 by the softest law of a lattice; NaN where one has no Young's modulus. */
+double run_contact_stiffness(const run_body *b, const deck *k);
+/* kg: of its lightest particle. */
+double run_contact_lightest(const rows *g);
 
 /* Forces at the present places, after `step` steps. */
 void run_contacts_find(run_contacts *c, int64_t step);

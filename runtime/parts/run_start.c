@@ -105,8 +105,33 @@ static state_law take_law(const run_law *l, int body_number, const run_contacts 
   return taken;
 }
 
+/* [particles][dimensions], of the body of that number of the stamp's. */
+static state_field take_dragged(const run_stamp *of, int number, const run_body *b) {
+  const long count = b->lattice_rows->particle_count;
+  const int columns = b->body->dimensions;
+  const double *dragged = stamp_dragged_of(of->found, number);
+  state_field f = {.name = must_copy(b->name), .unit = "m", .count = count, .columns = columns};
+  f.values = must_calloc((size_t)(count * columns) + 1, sizeof *f.values);
+  for (long p = 0; p < count; p++)
+    for (int c = 0; c < columns; c++)
+      f.values[p * columns + c] = dragged[c * count + p];
+  return f;
+}
+
+static state_stamp take_stamp(const run_stamp *of, const run_body *bodies, bool at_rest) {
+  state_stamp s = {.name = must_copy(of->from->name)};
+  s.dragged = must_calloc((size_t)of->count + 1, sizeof *s.dragged);
+  for (int c = 0; c < 3; c++) {
+    s.place[c] = of->state.at.place[c];
+    s.velocity[c] = at_rest ? 0 : of->state.at.velocity[c];
+  }
+  for (int n = 0; n < of->count && stamp_dragged_of(of->found, n); n++)
+    s.dragged[s.dragged_count++] = take_dragged(of, n, &bodies[of->of[n]]);
+  return s;
+}
+
 result_state *run_state_take(const run_body *bodies, int count, const run_contacts *contacts,
-                             const deck *k, double step) {
+                             const run_stamps *stamps, const deck *k, double step) {
   result_state *s = must_calloc(1, sizeof *s);
   s->step = step;
   s->dimensions = bodies[0].body->dimensions;
@@ -117,6 +142,9 @@ result_state *run_state_take(const run_body *bodies, int count, const run_contac
     for (int n = 0; n < bodies[b].law_count; n++)
       s->laws[s->law_count++] = take_law(&bodies[b].laws[n], b, contacts);
   }
+  s->stamps = must_calloc((size_t)stamps->count + 1, sizeof *s->stamps);
+  for (int n = 0; n < stamps->count; n++)
+    s->stamps[s->stamp_count++] = take_stamp(&stamps->items[n], bodies, step == 0);
   return s;
 }
 
@@ -127,6 +155,7 @@ typedef struct starting {
   run_body *bodies;
   int count;
   const run_contacts *contacts;
+  run_stamps *stamps;
   const deck *deck;
   const result_state *from;
   int32_t *former; /* [particles of the run] that of the result, or -1 */
@@ -454,6 +483,53 @@ static bool motion_is_free(const starting *s, const deck_initial *items, int cou
   return true;
 }
 
+/* --- stamps ----------------------------------------------------------------------------------- */
+
+static void start_dragged(const starting *s, run_stamp *of, const state_stamp *from) {
+  for (int n = 0; n < of->count; n++) {
+    const run_body *b = &s->bodies[of->of[n]];
+    const long count = b->lattice_rows->particle_count;
+    double *dragged = stamp_dragged_of(of->found, n);
+    const state_field *was = named(from->dragged, from->dragged_count, b->name);
+    const state_body *there = body_named(s, b->name);
+    for (long p = 0; p < count && dragged && was && there; p++) {
+      const long former = s->former[b->first_particle + p] - there->first;
+      for (int c = 0; c < was->columns && former >= 0; c++)
+        dragged[c * count + p] = was->values[former * was->columns + c];
+    }
+  }
+}
+
+static void start_stamp(const starting *s, run_stamp *of) {
+  const state_stamp *from = NULL;
+  for (int n = 0; n < s->from->stamp_count; n++)
+    if (strcmp(s->from->stamps[n].name, of->from->name) == 0) from = &s->from->stamps[n];
+  if (!from) return;
+  of->goes_on = true;
+  of->former_step = s->from->step;
+  for (int c = 0; c < 3; c++) {
+    of->start[c] = of->state.at.place[c] = from->place[c];
+    of->state.at.velocity[c] = from->velocity[c];
+  }
+  start_dragged(s, of, from);
+}
+
+/* A stamp that goes on has the velocity that it has there. */
+static bool stamps_go_on(const starting *s) {
+  bool good = true;
+  for (int n = 0; n < s->stamps->count; n++) {
+    run_stamp *of = &s->stamps->items[n];
+    start_stamp(s, of);
+    if (!of->goes_on || of->from->mass == 0 || of->from->motion.value == 0) continue;
+    diag_report(s->d, DIAG_CONFLICT, deck_where(&of->from->item, "velocity"),
+                "the stamp `%s` goes on from `%s` with the velocity that it has there",
+                of->from->name, name_of(s));
+    diag_hint(s->d, "leave `velocity` away, or give the stamp another name");
+    good = false;
+  }
+  return good;
+}
+
 static bool start_all(const starting *s) {
   bool good = has_namesakes(s) && lattices_fit(s) && laws_fit_state(s);
   for (int b = 0; b < s->count && good; b++)
@@ -462,7 +538,8 @@ static bool start_all(const starting *s) {
   for (int b = 0; b < s->count; b++)
     start_laws(s, &s->bodies[b]);
   const deck *k = s->deck;
-  return motion_is_free(s, k->initial_velocitys, k->initial_velocity_count, "velocity") &&
+  return stamps_go_on(s) &&
+         motion_is_free(s, k->initial_velocitys, k->initial_velocity_count, "velocity") &&
          motion_is_free(s, k->initial_displacements, k->initial_displacement_count, "displacement");
 }
 
@@ -482,6 +559,11 @@ static uint64_t hash_of(const result_state *s) {
   for (int n = 0; n < s->law_count; n++) {
     sum = hash_fields(sum, s->laws[n].fields, s->laws[n].field_count);
     sum = hash_fields(sum, s->laws[n].lost, s->laws[n].lost_count);
+  }
+  for (int n = 0; n < s->stamp_count; n++) {
+    sum = hash_more(sum, s->stamps[n].place, sizeof s->stamps[n].place);
+    sum = hash_more(sum, s->stamps[n].velocity, sizeof s->stamps[n].velocity);
+    sum = hash_fields(sum, s->stamps[n].dragged, s->stamps[n].dragged_count);
   }
   return sum;
 }
@@ -507,8 +589,8 @@ static result_state *read_state(const char *path, span where, diagnostics *d) {
   return NULL;
 }
 
-bool run_start(run_body *bodies, int count, const run_contacts *contacts, const deck *k,
-               uint64_t *fingerprint, diagnostics *d) {
+bool run_start(run_body *bodies, int count, const run_contacts *contacts, run_stamps *stamps,
+               const deck *k, uint64_t *fingerprint, diagnostics *d) {
   if (!k->start.result) return true;
   const span where = deck_where(&k->start.item, "result");
   result_state *from = read_state(k->start.result, where, d);
@@ -519,6 +601,7 @@ bool run_start(run_body *bodies, int count, const run_contacts *contacts, const 
   starting s = {.bodies = bodies,
                 .count = count,
                 .contacts = contacts,
+                .stamps = stamps,
                 .deck = k,
                 .from = from,
                 .where = where,

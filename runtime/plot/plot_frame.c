@@ -31,6 +31,7 @@ void plot_frame_free(plot_frame *m) {
   free(m->nodes);
   free(m->of_cells);
   plot_meshes_free(&m->meshes);
+  plot_stamps_free(&m->stamps);
 }
 
 static double bond_length(const plot_frame *m, long b) {
@@ -714,6 +715,10 @@ bool plot_frame_take(plot_frame *m, result_file *f, const char *path, const plot
                      char *error, size_t size) {
   *m = (plot_frame){.factor = 1, .damage_of = "damage of bonds:"};
   bool good = read_frame(f, path, m, o, error, size);
+  if (good && m->dimensions == 2 && !plot_stamps_read(&m->stamps, f, o->frame)) {
+    snprintf(error, size, "`%s` is damaged: its stamps cannot be read", path);
+    good = false;
+  }
   if (result_trouble(f)) {
     snprintf(error, size, "%s", result_trouble(f));
     good = false;

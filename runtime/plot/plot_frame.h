@@ -7,6 +7,7 @@
 
 #include "runtime/plot/plot_map.h"
 #include "runtime/plot/plot_mesh.h"
+#include "runtime/plot/plot_stamps.h"
 
 typedef struct plot_frame {
   int dimensions; /* of the result; from plot_frame_read on, places have two coordinates */
@@ -33,7 +34,8 @@ typedef struct plot_frame {
   char view[80];         /* of a body in space: what is shown, for the picture's head */
   double axes[3][2];     /* of a body in space: unit vectors along x, y, z in the picture, m a m */
   char extents[128]; /* of a body in space: "x 0 to 100 mm, ...", where it stood in the beginning */
-  plot_meshes meshes;   /* their nodes are particles, too */
+  plot_meshes meshes; /* their nodes are particles, too */
+  plot_stamps stamps;
   unsigned char *nodes; /* [particles] 1: a node of a mesh; NULL without meshes */
   char shown[256];      /* what the values are, "stress_yy" */
   double time, factor, spacing;

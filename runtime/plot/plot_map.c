@@ -62,6 +62,22 @@ typedef struct sheet {
 
 /* --- drawing ---------------------------------------------------------------------------------- */
 
+/* Beside the bodies no more than a fifth of them. */
+static void add_stamps(sheet *s) {
+  const double most = 0.2 * pl_fmax(s->high[0] - s->low[0], s->high[1] - s->low[1]);
+  double low[2], high[2];
+  for (int c = 0; c < 2; c++) {
+    low[c] = s->low[c];
+    high[c] = s->high[c];
+  }
+  for (int k = 0; k < s->count; k++)
+    plot_stamps_reach(&s->panels[k].frame.stamps, s->panels[k].frame.factor, low, high);
+  for (int c = 0; c < 2; c++) {
+    s->low[c] = pl_fmax(low[c], s->low[c] - most);
+    s->high[c] = pl_fmin(high[c], s->high[c] + most);
+  }
+}
+
 static void add_extent(const plot_frame *f, sheet *s) {
   for (long p = 0; p < f->particles; p++)
     for (int c = 0; c < 2; c++) {
@@ -114,6 +130,7 @@ static bool fit_picture(sheet *s, char *error, size_t size) {
   }
   for (int k = 0; k < s->count; k++)
     add_extent(&s->panels[k].frame, s);
+  add_stamps(s);
   if (!(s->high[0] - s->low[0] < 1e12) || !(s->high[1] - s->low[1] < 1e12) ||
       !(s->high[0] > s->low[0])) {
     snprintf(error, size, "the frame's displacements are not finite or too large to draw");
@@ -576,6 +593,8 @@ static bool draw_sheet(sheet *s, const plot_map_options *o, char *error, size_t 
   draw_scale_bar(&c, s);
   draw_axes(&c, s);
   for (int k = 0; k < s->count; k++) {
+    const plot_frame *f = &s->panels[k].frame;
+    plot_stamps_draw(&c, &f->stamps, f->factor, &s->panels[k].at, s->low, s->high);
     if (measured)
       draw_field(&c, &s->panels[k], o, s);
     else

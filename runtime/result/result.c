@@ -252,7 +252,7 @@ static int shape_of(const frame_sets *s, const result_field *f, hsize_t shape[3]
   shape[0] = (hsize_t)s->count;
   shape[1] = (hsize_t)(p ? p->most : f->count);
   shape[2] = (hsize_t)f->components;
-  return f->interaction || result_field_of_cells(f) ? 2 : 3;
+  return f->interaction || result_field_of_cells(f) || result_field_of_stamp(f) ? 2 : 3;
 }
 
 /* "/cracks/notch" of "notch/points". */
@@ -263,7 +263,28 @@ static bool make_group_of_path(hid_t file, const result_field *f) {
 }
 
 static const char *group_of(const result_field *f) {
-  return result_field_of_cracks(f) ? "/cracks" : result_field_of_cells(f) ? "/cells" : "/frames";
+  return result_field_of_cracks(f)  ? "/cracks"
+         : result_field_of_cells(f) ? "/cells"
+         : result_field_of_stamp(f) ? "/stamps"
+                                    : "/frames";
+}
+
+/* "/stamps/hammer" */
+static bool make_group_of_stamp(hid_t file, const char *stamp, char *name, size_t size) {
+  snprintf(name, size, "/stamps/%s", stamp);
+  return h5_make_group(file, "/stamps") && h5_make_group(file, name);
+}
+
+static bool write_outlines(hid_t file, const result_header *h) {
+  char group[256], name[512];
+  bool good = true;
+  for (int k = 0; k < h->stamp_count && good; k++) {
+    const hsize_t shape[2] = {(hsize_t)h->stamps[k].count, 2};
+    good = make_group_of_stamp(file, h->stamps[k].name, group, sizeof group);
+    snprintf(name, sizeof name, "%s/outline", group);
+    good = good && h5_write_doubles(file, name, h->stamps[k].outline, 2, shape, "m");
+  }
+  return good;
 }
 
 static hid_t make_field(hid_t file, const frame_sets *s, const result_field *f) {
@@ -275,6 +296,11 @@ static hid_t make_field(hid_t file, const frame_sets *s, const result_field *f) 
   if (f->interaction) {
     if (!h5_make_group(file, name)) return -1;
     snprintf(name, sizeof name, "/frames/%s/%s", f->interaction, f->name);
+  }
+  if (result_field_of_stamp(f)) {
+    char group[256];
+    if (!make_group_of_stamp(file, f->name, group, sizeof group)) return -1;
+    snprintf(name, sizeof name, "%s/place", group);
   }
   const int rank = shape_of(s, f, shape);
   const hid_t set = h5_make_frames(file, name, rank, shape, f->unit);
@@ -359,8 +385,8 @@ static bool write_hdf5(const result *r, const result_ending *e, frame_sets *fram
       write_attributes(file, &r->header, e) && write_input(file, &r->header) &&
       (e->said_count == 0 || write_texts(file, "/said", e->said, e->said_count)) &&
       write_particles(file, &r->header) && mesh_views_write_meshes(file, &r->header) &&
-      write_history(file, &r->header, e) && write_frames(file, r, frames, error, size) &&
-      (!e->state || state_write(file, e->state)) &&
+      write_outlines(file, &r->header) && write_history(file, &r->header, e) &&
+      write_frames(file, r, frames, error, size) && (!e->state || state_write(file, e->state)) &&
       views_write(file, &r->header, &frames->meshes, frames->count);
   if (good) return sealed_file_close(file, path);
   H5Fclose(file);

@@ -31,6 +31,8 @@
      /cracks/<crack>/points [F, P, 2] m: the points of a mesh's crack from its first to its last,
                             with what has grown at either end, NaN beyond; P as many as it has had;
                             attribute mesh
+     /stamps/<stamp>/       place [F, dimensions] m, from where it is drawn; in the plane outline
+                            [P, 2] m, its corners there, counter-clockwise; only with stamps
      /meshes/<mesh>/        nodes [N, 2] m, cells [C, 4] their nodes counter-clockwise, method [C]
                             of cells (1 a finite element, 2 blended, 3 element-free); of a file
                             node_numbers [N], cell_numbers [C] there; attributes
@@ -67,7 +69,7 @@ typedef struct result_field { /* of a frame */
   long count;              /* particles, bonds, cells or, at most, cracks */
   /* "state", "damage", "output" of the law; "cells": one value for each cell of the meshes, in
      their order; "cracks" across the line of the monitor of that name;
-     "path" of a crack of a mesh; else "other" */
+     "path" of a crack of a mesh; "stamp": its way along each axis, `count` of them; else "other" */
   const char *kind;
   const char *long_name; /* in words; NULL: nobody has said */
 } result_field;
@@ -79,7 +81,10 @@ static inline bool result_field_is_path(const result_field *f) {
 static inline bool result_field_of_cells(const result_field *f) {
   return strcmp(f->kind, "cells") == 0;
 }
-/* Neither of particles nor of bonds nor of cells. */
+static inline bool result_field_of_stamp(const result_field *f) {
+  return strcmp(f->kind, "stamp") == 0;
+}
+/* Neither of particles nor of bonds nor of cells nor of a stamp. */
 static inline bool result_field_of_cracks(const result_field *f) {
   return strcmp(f->kind, "cracks") == 0 || result_field_is_path(f);
 }
@@ -117,6 +122,12 @@ typedef struct result_crack { /* whose points are a path */
   const char *field, *mesh;   /* "notch/points", "beam" */
 } result_crack;
 
+typedef struct result_stamp { /* in the plane, where it is drawn */
+  const char *name;
+  const double *outline; /* [count][2] m */
+  int count;
+} result_stamp;
+
 typedef struct result_header {
   const char *path;        /* of the final file */
   const char *fingerprint; /* says which run the frames belong to */
@@ -143,6 +154,8 @@ typedef struct result_header {
   int mesh_count;
   const result_crack *cracks; /* [crack_count] all paths */
   int crack_count;
+  const result_stamp *stamps; /* [stamp_count] */
+  int stamp_count;
   const result_field *fields;
   int field_count;
 } result_header;

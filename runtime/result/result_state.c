@@ -102,19 +102,72 @@ static bool read_law(result_file *f, const char *interaction, state_law *l) {
   return good;
 }
 
+static bool read_three(result_file *f, const char *path, double value[3]) {
+  long count = 0;
+  int columns;
+  double *values = result_read_table(f, path, false, 1, 1, &count, &columns);
+  bool good = count == 3;
+  for (int c = 0; c < 3 && good; c++) {
+    value[c] = values[c];
+    good = isfinite(value[c]);
+  }
+  free(values);
+  return good;
+}
+
+static const state_body *body_of(const result_state *s, const char *lattice) {
+  for (int b = 0; b < s->body_count; b++)
+    if (strcmp(s->bodies[b].lattice, lattice) == 0) return &s->bodies[b];
+  return NULL;
+}
+
+static bool read_dragged(result_file *f, const char *group, const result_state *s,
+                         state_stamp *into) {
+  char path[2 * NAME];
+  result_names names = result_list(f, group);
+  bool good = true;
+  into->dragged = must_calloc((size_t)names.count + 1, sizeof *into->dragged);
+  for (int k = 0; good && k < names.count; k++) {
+    state_field *field = &into->dragged[into->dragged_count++];
+    const state_body *of = body_of(s, names.items[k]);
+    snprintf(path, sizeof path, "%s/%.200s", group, names.items[k]);
+    field->name = must_copy(names.items[k]);
+    field->values = result_read_table(f, path, false, 1, 3, &field->count, &field->columns);
+    good = field->values && of && field->count == of->count && field->columns == s->dimensions;
+  }
+  result_names_free(&names);
+  return good;
+}
+
+static bool read_stamp(result_file *f, const char *name, const result_state *s, state_stamp *into) {
+  char path[NAME];
+  into->name = must_copy(name);
+  snprintf(path, sizeof path, RESULT_STATE "/stamps/%.200s/place", name);
+  bool good = read_three(f, path, into->place);
+  snprintf(path, sizeof path, RESULT_STATE "/stamps/%.200s/velocity", name);
+  good = good && read_three(f, path, into->velocity);
+  snprintf(path, sizeof path, RESULT_STATE "/stamps/%.200s/dragged", name);
+  return good && read_dragged(f, path, s, into);
+}
+
 static bool read_all(result_file *f, result_state *s) {
   result_names bodies = result_list(f, RESULT_STATE "/bodies"),
-               laws = result_list(f, RESULT_STATE "/laws");
+               laws = result_list(f, RESULT_STATE "/laws"),
+               stamps = result_list(f, RESULT_STATE "/stamps");
   s->reference = result_read_reference(f, &s->particle_count, &s->dimensions);
   s->bodies = must_calloc((size_t)bodies.count + 1, sizeof *s->bodies);
   s->laws = must_calloc((size_t)laws.count + 1, sizeof *s->laws);
+  s->stamps = must_calloc((size_t)stamps.count + 1, sizeof *s->stamps);
   bool good = s->reference && read_number(f, RESULT_STATE "/step", &s->step) && s->step >= 0;
   for (int b = 0; good && b < bodies.count; b++)
     good = read_body(f, bodies.items[b], s->particle_count, &s->bodies[s->body_count++]);
   for (int n = 0; good && n < laws.count; n++)
     good = read_law(f, laws.items[n], &s->laws[s->law_count++]);
+  for (int n = 0; good && n < stamps.count; n++)
+    good = read_stamp(f, stamps.items[n], s, &s->stamps[s->stamp_count++]);
   result_names_free(&bodies);
   result_names_free(&laws);
+  result_names_free(&stamps);
   return good && s->body_count > 0;
 }
 
@@ -155,8 +208,13 @@ void result_state_free(result_state *s) {
     free(s->laws[n].law);
     free(s->laws[n].pairs);
   }
+  for (int n = 0; n < s->stamp_count; n++) {
+    free_fields(s->stamps[n].dragged, s->stamps[n].dragged_count);
+    free(s->stamps[n].name);
+  }
   free(s->bodies);
   free(s->laws);
+  free(s->stamps);
   free(s->reference);
   free(s);
 }

@@ -8,7 +8,9 @@
      /state/laws/<interaction>/      law (text), fields/<name>: [n, 1] of particles, [M, 1] of
                                      bonds, [M, 2] at both ends of bonds, in the order of /bonds; SI;
                                      lost/<contact> [M, 1] m: distance at which a bond was lost, 0:
-                                     it was not */
+                                     it was not
+     /state/stamps/<stamp>/          place [3] m, from where it is drawn; velocity [3] m/s;
+                                     dragged/<lattice> [n, dimensions] m: of particles, along it */
 #ifndef PERILAT_RUNTIME_RESULT_STATE_H
 #define PERILAT_RUNTIME_RESULT_STATE_H
 
@@ -49,12 +51,21 @@ typedef struct state_law {
   long bond_count;
 } state_law;
 
+typedef struct state_stamp {
+  char *name;
+  double place[3], velocity[3];
+  state_field *dragged; /* [dragged_count] named as the lattices; [particles][dimensions] */
+  int dragged_count;
+} state_stamp;
+
 typedef struct result_state { /* of a run */
   double step;                /* s */
   state_body *bodies;
   int body_count;
   state_law *laws;
   int law_count;
+  state_stamp *stamps;
+  int stamp_count;
   int dimensions;
   double *reference; /* [particle_count][dimensions] m; where it was read */
   long particle_count;

@@ -56,6 +56,20 @@ static bool write_law(hid_t file, const state_law *l) {
          (l->lost_count == 0 || write_fields(file, l, "lost", l->lost, l->lost_count));
 }
 
+static bool write_stamp(hid_t file, const state_stamp *s) {
+  char group[NAME / 2], path[NAME];
+  const hsize_t three[] = {3};
+  snprintf(group, sizeof group, RESULT_STATE "/stamps/%s", s->name);
+  bool good = h5_make_group(file, group) &&
+              h5_write_doubles(file, in(group, "place", path), s->place, 1, three, "m") &&
+              h5_write_doubles(file, in(group, "velocity", path), s->velocity, 1, three, "m/s");
+  snprintf(group, sizeof group, RESULT_STATE "/stamps/%s/dragged", s->name);
+  good = good && (s->dragged_count == 0 || h5_make_group(file, group));
+  for (int f = 0; good && f < s->dragged_count; f++)
+    good = write_field(file, group, &s->dragged[f]);
+  return good;
+}
+
 bool state_write(hid_t file, const result_state *s) {
   bool good = h5_make_group(file, RESULT_STATE) && h5_make_group(file, RESULT_STATE "/bodies") &&
               h5_make_group(file, RESULT_STATE "/laws") &&
@@ -64,5 +78,8 @@ bool state_write(hid_t file, const result_state *s) {
     good = write_body(file, &s->bodies[b], s->dimensions);
   for (int n = 0; good && n < s->law_count; n++)
     good = write_law(file, &s->laws[n]);
+  good = good && (s->stamp_count == 0 || h5_make_group(file, RESULT_STATE "/stamps"));
+  for (int n = 0; good && n < s->stamp_count; n++)
+    good = write_stamp(file, &s->stamps[n]);
   return good;
 }

@@ -31,7 +31,7 @@ int views_arrays(const result_header *h, views_array *arrays, arena *texts) {
   int count = 0;
   for (int k = 0; k < h->field_count; k++) {
     const result_field *f = &h->fields[k];
-    bool shown = result_field_of_cracks(f) || result_field_of_cells(f);
+    bool shown = result_field_of_cracks(f) || result_field_of_cells(f) || result_field_of_stamp(f);
     for (int n = 0; n < count; n++)
       shown = shown || is_same(arrays[n].field, f);
     if (shown) continue;

@@ -11,7 +11,7 @@ static bool is_named_once(const deck *k, const frame_field *f, int count, int fi
   if (f[field].on_bonds || f[field].on_cells) return true;
   bool once = strcmp(name, "time") != 0;
   for (int n = 0; n < count; n++)
-    if (n != field && !f[n].of_cracks && !f[n].on_cells)
+    if (n != field && !f[n].of_cracks && !f[n].of_stamp && !f[n].on_cells)
       once = once &&
              strcmp(f[n].on_bonds ? k->interactions[f[n].interaction].name : f[n].name, name) != 0;
   return once;
@@ -19,7 +19,7 @@ static bool is_named_once(const deck *k, const frame_field *f, int count, int fi
 
 /* What any law has is not what a law is told to name otherwise. */
 static bool is_own_field(const frame_field *f) {
-  return f->of_cracks || (strcmp(f->kind, "other") == 0 && !f->of_law);
+  return f->of_cracks || f->of_stamp || (strcmp(f->kind, "other") == 0 && !f->of_law);
 }
 
 bool fields_fit_result(const deck *k, const run_body *bodies, const frame_field *fields, int count,

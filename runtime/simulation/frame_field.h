@@ -15,7 +15,9 @@ typedef struct frame_field {
                             monitor's name, and is NaN beyond the last crack; or places (m) of the
                             points of a crack of a mesh, "notch/points", NaN beyond the last */
   const char *mesh; /* of such a crack; else NULL */
-  const char *kind; /* "state", "damage", "output" of the law; "cracks"; "path"; else "other" */
+  bool of_stamp;    /* how far it has gone from where it is drawn; `count` is along how many axes */
+  const char *kind; /* "state", "damage", "output" of the law; "cracks"; "path"; "stamp"; else
+                       "other" */
   const char *long_name; /* in words: the law's, where it is of the law */
 } frame_field;
 

@@ -69,6 +69,7 @@ struct frame_set {
   frame_tensor *tensors; /* [TENSORS][body_count] */
   frame_path *paths;     /* [path_count] those of the last fields */
   int path_count;
+  int first_stamp; /* field */
   frame_field *fields;
   frame_source *sources; /* [count][law_count]; of bonds only that of their law */
   int count;
@@ -669,6 +670,19 @@ static void add_path(frame_set *f, const run_body *of, const deck_crack *c) {
                                  "grown at either end"};
 }
 
+static void add_stamps(frame_set *f) {
+  const run_stamps *all = f->watched->stamps;
+  f->first_stamp = f->count;
+  for (int n = 0; n < all->count; n++)
+    f->fields[f->count++] = (frame_field){.name = all->items[n].from->name,
+                                          .unit = "m",
+                                          .of_stamp = true,
+                                          .components = 1,
+                                          .count = f->bodies[0].body->dimensions,
+                                          .kind = "stamp",
+                                          .long_name = "way of the stamp from where it is drawn"};
+}
+
 static void add_paths(frame_set *f, const deck *k) {
   f->paths = must_calloc((size_t)k->crack_count + 1, sizeof *f->paths);
   for (int n = 0; n < k->crack_count; n++)
@@ -680,7 +694,8 @@ static void add_paths(frame_set *f, const deck *k) {
 frame_set *frames_new(const deck_output *asked, const run_body *bodies, int count,
                       const monitors *watched, const run_clock *clock) {
   const size_t most =
-      most_fields(bodies, count) + (size_t)(watched->count + watched->deck->crack_count);
+      most_fields(bodies, count) +
+      (size_t)(watched->count + watched->stamps->count + watched->deck->crack_count);
   frame_set *f = must_calloc(1, sizeof *f);
   *f = (frame_set){.asked = asked,
                    .bodies = bodies,
@@ -703,6 +718,7 @@ frame_set *frames_new(const deck_output *asked, const run_body *bodies, int coun
     add_of_law(f, n);
   for (int m = 0; m < watched->count; m++)
     add_cracks(f, &watched->items[m]);
+  add_stamps(f);
   add_paths(f, watched->deck);
   return f;
 }
@@ -810,6 +826,11 @@ void frames_values(const frame_set *f, int field, double *values) {
   }
   if (of->of_cracks) {
     values_of_cracks(f, of, values);
+    return;
+  }
+  if (of->of_stamp) {
+    memcpy(values, f->watched->stamps->items[field - f->first_stamp].state.at.place,
+           (size_t)of->count * sizeof *values);
     return;
   }
   if (of->on_cells) {

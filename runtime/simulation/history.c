@@ -15,16 +15,17 @@ static const char *const increment_words[] = {
     "steps of the increment",
     "unbalanced force at the end of the increment over reactions or loads"};
 
-/* Bodies and contacts of which energies are kept one by one. */
+/* Bodies, contacts and stamps of which energies are kept one by one. */
 static int parts_apart(const history *h) {
-  const int parts = h->monitors->body_count + h->contacts->count;
+  const int parts = h->monitors->body_count + h->contacts->count + h->stamps->count;
   return parts > 1 ? parts : 0;
 }
 
 static const char *part_name(const history *h, int number) {
-  const int bodies = h->monitors->body_count;
-  return number < bodies ? h->monitors->bodies[number].name
-                         : h->contacts->items[number - bodies].from->name;
+  const int beyond = number - h->monitors->body_count, of_stamps = beyond - h->contacts->count;
+  if (beyond < 0) return h->monitors->bodies[number].name;
+  return of_stamps < 0 ? h->contacts->items[beyond].from->name
+                       : h->stamps->items[of_stamps].from->name;
 }
 
 static const ledger_term law_terms[HISTORY_LAW_TERMS] = {LEDGER_STORED, LEDGER_DISSIPATED_DAMAGE};
@@ -45,7 +46,7 @@ static const char *law_name(const history *h, int number) {
   }
 }
 
-/* Terms of the sum, of bodies and contacts; those of laws stand behind them. */
+/* Terms of the sum, of bodies, contacts and stamps; those of laws stand behind them. */
 static int whole_terms(const history *h) {
   return (1 + parts_apart(h)) * LEDGER_COUNT;
 }
@@ -114,9 +115,9 @@ static void sample_cracks(history *h) {
   }
 }
 
-history history_new(const monitors *m, const run_contacts *c, const relaxation *r, bool energies,
-                    int64_t capacity) {
-  history h = {.monitors = m, .contacts = c, .relaxation = r, .capacity = capacity};
+history history_new(const monitors *m, const run_contacts *c, const run_stamps *s,
+                    const relaxation *r, bool energies, int64_t capacity) {
+  history h = {.monitors = m, .contacts = c, .stamps = s, .relaxation = r, .capacity = capacity};
   h.energies = energies ? whole_terms(&h) + laws_beside(&h) * HISTORY_LAW_TERMS : 0;
   h.cracks = crack_series(&h);
   h.series_count = m->count + h.energies + h.cracks + (r ? INCREMENT_SERIES : 0);

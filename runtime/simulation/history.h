@@ -5,15 +5,17 @@
 
 #include "runtime/parts/ledger.h"
 #include "runtime/parts/run_contact.h"
+#include "runtime/parts/run_stamp.h"
 #include "runtime/simulation/monitor.h"
 #include "runtime/simulation/relaxation.h"
 
-/* Series: the deck's monitors; the energy terms, in sum, then, of several bodies, those of each,
-   and of each contact, and of laws beside the first one of a body what they store and take; what an
-   increment took. */
+/* Series: the deck's monitors; the energy terms, in sum, then, of several bodies, those of each, of
+   each contact and of each stamp, and of laws beside the first one of a body what they store and
+   take; what an increment took. */
 typedef struct history {
   const monitors *monitors;
   const run_contacts *contacts;
+  const run_stamps *stamps;
   const relaxation *relaxation; /* NULL: a dynamic run */
   int energies;                 /* series of energies, or 0 */
   int cracks;                   /* series of the tips of cracks, behind these */
@@ -24,11 +26,11 @@ typedef struct history {
   double *sampled;       /* [series] at the sample being taken */
 } history;
 
-history history_new(const monitors *m, const run_contacts *c, const relaxation *r, bool energies,
-                    int64_t capacity);
+history history_new(const monitors *m, const run_contacts *c, const run_stamps *s,
+                    const relaxation *r, bool energies, int64_t capacity);
 void history_free(history *h);
 /* Where the energies of a sample are to be put: those of all bodies, [LEDGER_COUNT], or of one;
-   contacts are counted on behind the bodies. NULL without. */
+   contacts and then stamps are counted on behind the bodies. NULL without. */
 double *history_energies(const history *h);
 double *history_energies_of(const history *h, int body);
 /* The same of a law beside the first one of its body, all of them counted through: what is stored

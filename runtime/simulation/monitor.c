@@ -46,7 +46,8 @@ static double reduced(const monitors *all, const monitor *m, long most, const do
 /* Its window holds what steps made of velocities, not states. */
 static bool is_over_steps(const monitor *m) {
   return m->known == KNOWN_AFTER_STEP &&
-         (m->deck->kind == MONITOR_VELOCITY || m->deck->kind == MONITOR_ACCELERATION);
+         (m->deck->kind == MONITOR_VELOCITY || m->deck->kind == MONITOR_STAMP_VELOCITY ||
+          m->deck->kind == MONITOR_ACCELERATION);
 }
 
 static double averaged(const monitors *all, const monitor *m, long step) {

@@ -19,6 +19,7 @@
 #include "runtime/loads/mesh_gauge.h"
 #include "runtime/parts/run_body.h"
 #include "runtime/parts/run_link.h"
+#include "runtime/parts/run_stamp.h"
 
 typedef struct monitor_state { /* what a later step depends on */
   double zero;                 /* value subtracted */
@@ -45,6 +46,7 @@ typedef struct monitor {
   const run_law *law;   /* of a field monitor: that whose field it is */
   int field;            /* of a field monitor: the law's field, or field_count + output */
   const run_link *link; /* of a slip monitor */
+  int stamp;            /* of those of stamps: which */
   mesh_gauge *gauge[2]; /* of fields of a mesh, of both regions; NULL of other bodies and kinds */
   const tips *tips;     /* of a crack monitor: those of the mesh, */
   int tip;              /* and which */
@@ -64,6 +66,7 @@ typedef struct monitors {
   int body_count;
   const run_link *links; /* [link_count] */
   int link_count;
+  const run_stamps *stamps;
   double *values;       /* of the largest body: an output while it is looked at */
   bond_forces **forces; /* [body_count] NULL unless some monitor asks for them */
   double *ring_memory;  /* all rings in one */

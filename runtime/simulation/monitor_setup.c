@@ -324,6 +324,12 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
     else
       monitor_check_share(m, d);
     break;
+  case MONITOR_STAMP_DISPLACEMENT:
+  case MONITOR_STAMP_VELOCITY:
+  case MONITOR_STAMP_FORCE:
+  case MONITOR_STAMP_MOMENT:
+    m->stamp = deck_find_stamp(all->deck, m->deck->stamp);
+    break;
   case MONITOR_DAMAGED:
   case MONITOR_BROKEN:
     break;
@@ -343,7 +349,7 @@ static size_t largest_size(const run_body *bodies, int count) {
 }
 
 monitors *monitors_new(const deck *k, const run_body *bodies, int count, const run_link *links,
-                       int link_count, double interval, diagnostics *d) {
+                       int link_count, const run_stamps *stamps, double interval, diagnostics *d) {
   const int before = d->errors;
   monitors *m = must_calloc(1, sizeof *m);
   *m = (monitors){.interval = interval,
@@ -352,7 +358,8 @@ monitors *monitors_new(const deck *k, const run_body *bodies, int count, const r
                   .bodies = bodies,
                   .body_count = count,
                   .links = links,
-                  .link_count = link_count};
+                  .link_count = link_count,
+                  .stamps = stamps};
   m->items = must_calloc((size_t)m->count + 1, sizeof *m->items);
   m->forces = must_calloc((size_t)count, sizeof *m->forces);
   for (int i = 0; i < m->count; i++) {

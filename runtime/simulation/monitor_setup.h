@@ -10,7 +10,7 @@ bool monitors_check(const deck *k, const run_body *bodies, int count, diagnostic
 /* Of a deck that was checked; bodies and links must stay. NULL with a diagnostic when a mean does
    not fit into memory. */
 monitors *monitors_new(const deck *k, const run_body *bodies, int count, const run_link *links,
-                       int link_count, double interval, diagnostics *d);
+                       int link_count, const run_stamps *stamps, double interval, diagnostics *d);
 void monitors_free(monitors *m);
 
 #endif

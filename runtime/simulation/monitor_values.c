@@ -127,6 +127,21 @@ static double watched_now(const monitors *all, const monitor *m, long step, bool
   return watched_value(m->own, &at);
 }
 
+static double stamp_now(const monitors *all, const monitor *m, long step) {
+  const run_stamp *of = &all->stamps->items[m->stamp];
+  const int c = m->deck->component;
+  switch (m->deck->kind) {
+  case MONITOR_STAMP_DISPLACEMENT:
+    return of->state.at.place[c];
+  case MONITOR_STAMP_VELOCITY:
+    return run_stamp_velocity(all->stamps, m->stamp, c, step);
+  case MONITOR_STAMP_MOMENT:
+    return of->load.moment[c];
+  default:
+    return of->load.force[c];
+  }
+}
+
 /* A value at the instant of the state observed. */
 double monitor_value_now(const monitors *all, const monitor *m, long step) {
   if (m->gauge[1]) return mesh_gauge_value(m->gauge[1], step) - mesh_gauge_value(m->gauge[0], step);
@@ -150,6 +165,11 @@ double monitor_value_now(const monitors *all, const monitor *m, long step) {
     return tip_value_now(m->tips, &m->tips->items[m->tip], m->deck->value);
   case MONITOR_CONTACT_FORCE:
     return contact_sum(m);
+  case MONITOR_STAMP_DISPLACEMENT:
+  case MONITOR_STAMP_VELOCITY:
+  case MONITOR_STAMP_FORCE:
+  case MONITOR_STAMP_MOMENT:
+    return stamp_now(all, m, step);
   case MONITOR_FIELD:
     return monitor_field_mean(all, m, false);
   case MONITOR_DAMAGED:
@@ -168,6 +188,8 @@ double monitor_value_of_step(const monitors *all, const monitor *m, long step) {
   if (m->deck->kind == MONITOR_VELOCITY)
     return monitor_mean_at(m->of[0]->body->velocity[m->deck->component], m->indices[0],
                            m->index_count[0]);
+  if (m->deck->kind == MONITOR_STAMP_VELOCITY)
+    return all->stamps->items[m->stamp].state.at.velocity[m->deck->component];
   if (m->deck->kind == MONITOR_FIELD) return monitor_field_mean(all, m, true);
   if (m->deck->kind == MONITOR_ACCELERATION) return watched_velocity(m->own);
   if (m->own) return watched_now(all, m, step, true);

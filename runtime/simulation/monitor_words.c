@@ -57,6 +57,10 @@ static char *slip_words(const monitors *all, const monitor *m, arena *a) {
                       rows_place_text(all->bodies[0].body->dimensions, here, text));
 }
 
+static char *stamp_words(const monitors *all, const monitor *m, const char *quantity, arena *a) {
+  return arena_printf(a, "%s of `%s`", component_words(all, m, quantity, a), m->deck->stamp);
+}
+
 /* "stress xx at (3, 4) mm" */
 static char *gauge_words(const monitors *all, const monitor *m, arena *a) {
   char text[ROWS_PLACE_TEXT];
@@ -99,6 +103,15 @@ static char *quantity_words(const monitors *all, const monitor *m, arena *a) {
     return arena_printf(a, "%s of `%s`",
                         component_words(all, m, "force of contact on particles", a),
                         m->deck->region ? m->deck->region : m->of[0]->name);
+  case MONITOR_STAMP_DISPLACEMENT:
+    return stamp_words(all, m, "displacement", a);
+  case MONITOR_STAMP_VELOCITY:
+    return stamp_words(all, m, "velocity", a);
+  case MONITOR_STAMP_FORCE:
+    return stamp_words(all, m, "force of particles on the stamp", a);
+  case MONITOR_STAMP_MOMENT:
+    return arena_printf(a, "moment about %c on the stamp `%s`, about its middle",
+                        "xyz"[m->deck->component], m -> deck -> stamp);
   case MONITOR_FIELD:
     return field_words(m, a);
   case MONITOR_DAMAGED:

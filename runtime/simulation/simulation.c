@@ -78,9 +78,10 @@ static bool choose_step(simulation *s, diagnostics *d) {
   for (int b = 1; b < s->body_count; b++)
     if (s->bodies[b].limit.limit < s->bodies[s->ruling].limit.limit) s->ruling = b;
   s->limit = s->bodies[s->ruling].limit;
-  double *touching = must_calloc((size_t)s->body_count + 1, sizeof *touching);
+  touch_rates *touching = must_calloc((size_t)s->body_count + 1, sizeof *touching);
   const bool known =
-      run_contacts_open(&s->contacts, s->deck, s->bodies, s->body_count, touching, d);
+      run_contacts_open(&s->contacts, s->deck, s->bodies, s->body_count, touching, d) &&
+      run_stamps_open(&s->stamps, s->deck, s->bodies, s->body_count, touching, d);
   link_limit(s->bodies, s->body_count, touching, &s->limit, &s->ruling);
   free(touching);
   if (!known) return false;
@@ -163,6 +164,7 @@ static bool open_bodies(simulation *s, diagnostics *d) {
     open_ties(s);
   }
   run_contacts_begin(&s->contacts);
+  run_stamps_begin(&s->stamps, &s->contacts);
   return good;
 }
 
@@ -245,10 +247,10 @@ static bool can_stand(const simulation *s, diagnostics *d) {
 
 static bool open_monitors(simulation *s, diagnostics *d) {
   const deck *k = s->deck;
-  s->monitors = monitors_new(k, s->bodies, s->body_count, s->links, s->link_count,
+  s->monitors = monitors_new(k, s->bodies, s->body_count, s->links, s->link_count, &s->stamps,
                              s->relaxation ? s->relaxation->interval : s->limit.step, d);
   if (!s->monitors) return false;
-  s->history = history_new(s->monitors, &s->contacts, s->relaxation, k->output.energy,
+  s->history = history_new(s->monitors, &s->contacts, &s->stamps, s->relaxation, k->output.energy,
                            s->plan.history_capacity);
   return true;
 }
@@ -266,8 +268,9 @@ static bool set_up(simulation *s, rows *const *lattices, diagnostics *d) {
   if (!choose_step(s, d) || !open_bodies(s, d) || !take_frequencies(s, d)) return false;
   if (!step_fits(s->deck, &s->limit, d) || !step_plan_make(s->deck, &s->limit, &s->plan, d))
     return false;
-  if (!run_start(s->bodies, s->body_count, &s->contacts, s->deck, &s->started_from, d))
+  if (!run_start(s->bodies, s->body_count, &s->contacts, &s->stamps, s->deck, &s->started_from, d))
     return false;
+  if (!run_stamps_fit(&s->stamps, s->limit.step, d)) return false;
   open_clock(s);
   if (!can_stand(s, d)) return false;
   if (!open_monitors(s, d) || !open_frames(s, d)) return false;
@@ -334,6 +337,7 @@ void simulation_free(simulation *s) {
     tie_steps_close(&s->ties[n]);
   free(s->ties);
   run_contacts_free(&s->contacts);
+  run_stamps_free(&s->stamps);
   for (int b = 0; b < s->body_count; b++)
     run_body_free(&s->bodies[b]);
   team_free(s->team);
@@ -404,7 +408,7 @@ long simulation_step_done(const simulation *s) {
 }
 result_state *simulation_take_state(const simulation *s) {
   if (s->clock.at.status == STEP_BAD) return NULL;
-  return run_state_take(s->bodies, s->body_count, &s->contacts, s->deck,
+  return run_state_take(s->bodies, s->body_count, &s->contacts, &s->stamps, s->deck,
                         s->relaxation ? 0 : s->limit.step);
 }
 run_going simulation_going(const simulation *s, int number) {
@@ -438,7 +442,7 @@ double simulation_memory(const simulation *s) {
   double sum =
       (double)sizeof(double) * ((double)s->history.capacity * (s->history.series_count + 1) +
                                 (double)s->monitors->ring_size);
-  sum += run_contacts_memory(&s->contacts);
+  sum += run_contacts_memory(&s->contacts) + run_stamps_memory(&s->stamps);
   for (int b = 0; b < s->body_count; b++) {
     const run_body *of = &s->bodies[b];
     const double looks = s->relaxation ? (double)sizeof(double) * (2 * of->body->dof + 1) : 0;
@@ -508,6 +512,16 @@ contact_said simulation_contact(const simulation *s, int number) {
   return (contact_said){(long)p->pairs, p->force, p->stored};
 }
 
+stamp_said simulation_stamp(const simulation *s, int number) {
+  const run_stamp *of = &s->stamps.items[number];
+  const stamp_state *st = &of->state;
+  stamp_said said = {
+      .touching = (long)st->peaks.touching, .force = st->peaks.force, .too_far = of->too_far};
+  for (int c = 0; c < 3; c++)
+    said.place[c] = st->at.place[c];
+  return said;
+}
+
 long simulation_history(const simulation *s, const double **time) {
   if (time) *time = s->history.time;
   return (long)s->clock.at.samples;
@@ -544,7 +558,7 @@ bool simulation_judges(const simulation *s, int series, const char **unchecked) 
     if (series == history_imbalance(&s->history, b)) return true;
   }
   *unchecked = NULL;
-  for (int k = 0; k < s->contacts.count; k++)
+  for (int k = 0; k < s->contacts.count + s->stamps.count; k++)
     if (series == history_imbalance(&s->history, s->body_count + k)) return true;
   return false;
 }

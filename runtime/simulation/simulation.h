@@ -143,6 +143,15 @@ typedef struct contact_said {
 } contact_said;
 contact_said simulation_contact(const simulation *s, int contact);
 
+/* Of a stamp of the deck. */
+typedef struct stamp_said {
+  long touching;   /* particles at a time, at most of all states so far */
+  double force;    /* N: the largest on it */
+  double place[3]; /* m: where it is now, from where it is drawn */
+  bool too_far;    /* the run has ended, as it went further than a spacing in a step */
+} stamp_said;
+stamp_said simulation_stamp(const simulation *s, int stamp);
+
 /* History so far. Series 0.. are the deck's monitors, then the energy terms, in sum and, of several
    bodies, of each; of quasi-static runs
    then the steps that the increment took and the unbalanced force at its end (relaxation.h). */

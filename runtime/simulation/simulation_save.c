@@ -104,6 +104,13 @@ static void add_contact(part_list *l, run_contact *c) {
   }
 }
 
+static void add_stamp(part_list *l, run_stamp *s) {
+  size_t count;
+  double *dragged = stamp_dragged(s->found, &count);
+  add_part(l, "stamp", &s->state, sizeof s->state);
+  if (dragged) add_part(l, "dragged along a stamp", dragged, count * sizeof *dragged);
+}
+
 /* One list serves saving and restoring; `head` comes first. */
 static part_list parts_of(const simulation *s, run_progress *head) {
   part_list l = {NULL, 0};
@@ -123,6 +130,8 @@ static part_list parts_of(const simulation *s, run_progress *head) {
   }
   for (int k = 0; k < s->contacts.count; k++)
     add_contact(&l, &s->contacts.items[k]);
+  for (int k = 0; k < s->stamps.count; k++)
+    add_stamp(&l, &s->stamps.items[k]);
   if (s->relaxation) add_relaxation(&l, s->relaxation);
   for (int m = 0; m < s->monitors->count; m++)
     add_part(&l, s->deck->monitors[m].name, &s->monitors->items[m].state, sizeof(monitor_state));

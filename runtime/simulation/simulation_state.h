@@ -7,6 +7,7 @@
 #include "runtime/parts/run_body.h"
 #include "runtime/parts/run_contact.h"
 #include "runtime/parts/run_link.h"
+#include "runtime/parts/run_stamp.h"
 #include "runtime/parts/step_choice.h"
 #include "runtime/simulation/frame_times.h"
 #include "runtime/simulation/frames.h"
@@ -29,6 +30,7 @@ struct simulation {
   tie_steps *ties; /* [tie_count] of lattices to meshes */
   int tie_count;
   run_contacts contacts;
+  run_stamps stamps;
   tip_law *cracks; /* [cracks of the deck] */
   run_law *laws;   /* [law_count] the deck's interactions, those of one body after the other */
   int law_count;

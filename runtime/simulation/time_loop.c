@@ -35,7 +35,7 @@ static void end_badly(simulation *s, const char *what) {
 
 static void add_up(const simulation *s) {
   double *sum = history_energies(&s->history);
-  const int parts = s->body_count + s->contacts.count;
+  const int parts = s->body_count + s->contacts.count + s->stamps.count;
   if (parts == 1) return;
   for (int term = 0; term < LEDGER_COUNT; term++) {
     sum[term] = 0;
@@ -73,6 +73,11 @@ static void sample_energies(simulation *s) {
     run_contact *of = &s->contacts.items[k];
     ledger_sample_contact(&of->ledger, contact_stored(of->found), of->work,
                           history_energies_of(&s->history, s->body_count + k));
+  }
+  for (int k = 0; k < s->stamps.count; k++) {
+    const stamp_energies e = run_stamp_energies(&s->stamps, k, s->clock.at.step);
+    ledger_sample_stamp(&s->stamps.items[k].state.ledger, &e,
+                        history_energies_of(&s->history, s->body_count + s->contacts.count + k));
   }
   for (int b = 0; b < s->body_count; b++) {
     run_body *of = &s->bodies[b];
@@ -129,6 +134,8 @@ static void set_time(simulation *s) {
 
 static void find_contacts(simulation *s) {
   if (s->contacts.count > 0) run_contacts_find(&s->contacts, s->clock.at.step);
+  if (s->stamps.count > 0 && !run_stamps_find(&s->stamps, s->clock.at.step))
+    end_badly(s, "a stamp that went too far");
 }
 
 /* --- ties ------------------------------------------------------------------------------------- */
@@ -189,7 +196,8 @@ static void after_moving(simulation *s) {
 /* And when the forces of links are known, too. */
 static void after_step(simulation *s) {
   find_contacts(s);
-  s->go_on = s->clock.at.step < s->until && !(s->interrupted && *s->interrupted);
+  s->go_on = s->clock.at.step < s->until && s->clock.at.status == STEP_OK &&
+             !(s->interrupted && *s->interrupted);
   if (s->relaxation) {
     s->observe = relaxation_due(s->relaxation, s->clock.at.step);
     return;
@@ -353,6 +361,7 @@ static void begin(simulation *s) {
   see_ties(s);
   for (int b = 0; b < s->body_count; b++)
     load_steps_set_back(s->bodies[b].loads, s->bodies[b].body);
+  run_stamps_set_back(&s->stamps);
   follow_ties(s);
   monitors_step(s->monitors, 0);
 }

@@ -51,6 +51,12 @@ static void check_deck(const deck *k) {
       (void)(time_function_at(&k->drives[m].motion, 0.3 * t * k->simulation.end_time) +
              time_function_integral(&k->drives[m].motion, 0.3 * t * k->simulation.end_time));
   }
+  for (int m = 0; m < k->stamp_count; m++) {
+    const deck_stamp *of = &k->stamps[m];
+    const double *v = of->direction, size = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    MUST(deck_find_stamp(k, of->name) == m && of->mass >= 0 && isfinite(of->mass));
+    MUST(fabs(size - 1) < 1e-9 || of->motion.value == 0);
+  }
   for (int m = 0; m < k->stop_count; m++)
     MUST(deck_find_monitor(k, k->stops[m].monitor) >= 0);
   for (int m = 0; m < k->frame_count; m++)

@@ -94,6 +94,16 @@ static inline double same_ends(const workplace *w, const char *one, const char *
       assert_memory_equal(x->values, y->values, (size_t)count * sizeof(double));
       most = fmax(most, largest(x->values, count));
     }
+  assert_int_equal(a->stamp_count, b->stamp_count);
+  for (int n = 0; n < a->stamp_count; n++) {
+    const state_stamp *x = &a->stamps[n], *y = &b->stamps[n];
+    assert_memory_equal(x->place, y->place, sizeof x->place);
+    assert_memory_equal(x->velocity, y->velocity, sizeof x->velocity);
+    for (int f = 0; f < x->dragged_count; f++)
+      assert_memory_equal(x->dragged[f].values, y->dragged[f].values,
+                          (size_t)x->dragged[f].count * (size_t)x->dragged[f].columns *
+                              sizeof(double));
+  }
   result_state_free(a);
   result_state_free(b);
   return most;

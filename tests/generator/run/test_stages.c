@@ -79,6 +79,31 @@ static void contact_goes_on(void **state) {
                            "history = 'constant'  /\n" STEADY) == 1);
 }
 
+/* A beam that bends down onto an anvil and a loose block: where they are, how fast, and how far its
+   particles have been dragged along them. */
+static void stamps_go_on(void **state) {
+  workplace *w = *state;
+  check_stages(w, BLOCK(HEXAGON, "model = 'mplm_bilinear'", BEAM),
+               STEADY "&stamp  name = 'loose'  shape = 'rectangle'  corner = '24 mm', '-7.5 mm'  "
+                      "size = '12 mm', '5 mm'  mass = '20 g'  friction = 0.3  damping = 0.1  /\n"
+                      "&stamp  name = 'anvil'  shape = 'disc'  centre = '50 mm', '-12.5 mm'  "
+                      "radius = '10 mm'  velocity = 0  friction = 0.5  /\n");
+  result_state *s = state_of(w, "second");
+  assert_int_equal(s->stamp_count, 2);
+  const state_stamp *anvil = &s->stamps[0], *loose = &s->stamps[1];
+  assert_true(strcmp(anvil->name, "anvil") == 0 && strcmp(loose->name, "loose") == 0);
+  assert_true(loose->velocity[1] < 0 && loose->place[1] < 0 && anvil->place[1] == 0);
+  const state_field *f = &anvil->dragged[0];
+  print_message("dragged by up to %.2g m\n", largest(f->values, f->count * f->columns));
+  assert_true(anvil->dragged_count == 1 && largest(f->values, f->count * f->columns) > 0);
+  result_state_free(s);
+  write_stage(w, "second", BLOCK(HEXAGON, "model = 'mplm_bilinear'", BEAM), "0.35 ms",
+              "&start  result = 'first.h5'  /\n&stamp  name = 'loose'  shape = 'rectangle'  corner "
+              "= '24 mm', '-7.5 mm'  size = '12 mm', '5 mm'  mass = '20 g'  direction = 0, 1  "
+              "velocity = 1  /\n");
+  expect(w, "check second.nml", 1, "goes on from `first.h5` with the velocity that it has there");
+}
+
 /* Of two blocks that are not joined one is cut out: the other one moves as if it had always been
    alone. */
 static void what_is_cut_out_takes_nothing_along(void **state) {
@@ -121,6 +146,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(rotations_in_space_go_on, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(contact_goes_on, set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(stamps_go_on, set_up_workplace, tear_down_workplace),
       cmocka_unit_test_setup_teardown(what_is_cut_out_takes_nothing_along, set_up_workplace,
                                       tear_down_workplace),
   };

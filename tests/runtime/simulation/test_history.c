@@ -20,6 +20,7 @@ static monitor watched[MONITORS] = {{.deck = &asked[0], .unit = "N"},
                                     {.deck = &asked[1], .unit = "m"}};
 static const monitors both = {.items = watched, .count = MONITORS, .deck = &of_deck};
 static const run_contacts none;
+static const run_stamps no_stamps;
 
 static void check_series(const history *h, int k, const char *name, const char *symbol) {
   const char *found;
@@ -30,7 +31,7 @@ static void check_series(const history *h, int k, const char *name, const char *
 static void monitors_come_first_then_energies_then_increments(void **state) {
   (void)state;
   const relaxation r = {.interval = 1};
-  history h = history_new(&both, &none, &r, true, SAMPLES);
+  history h = history_new(&both, &none, &no_stamps, &r, true, SAMPLES);
   arena *memory = arena_new();
   assert_int_equal(h.series_count, MONITORS + LEDGER_COUNT + 2);
   check_series(&h, 0, "load", "N");
@@ -51,8 +52,8 @@ static void monitors_come_first_then_energies_then_increments(void **state) {
 static void without_energies_nothing_judges(void **state) {
   (void)state;
   const relaxation r = {.interval = 1};
-  history dynamic = history_new(&both, &none, NULL, false, SAMPLES),
-          quasi_static = history_new(&both, &none, &r, false, SAMPLES);
+  history dynamic = history_new(&both, &none, &no_stamps, NULL, false, SAMPLES),
+          quasi_static = history_new(&both, &none, &no_stamps, &r, false, SAMPLES);
   assert_int_equal(dynamic.series_count, MONITORS);
   assert_null(history_energies(&dynamic));
   assert_int_equal(history_imbalance(&dynamic, -1), -1);
@@ -68,7 +69,7 @@ static void without_energies_nothing_judges(void **state) {
 static void samples_stand_where_they_were_put(void **state) {
   (void)state;
   relaxation r = {.interval = 1};
-  history h = history_new(&both, &none, &r, true, SAMPLES);
+  history h = history_new(&both, &none, &no_stamps, &r, true, SAMPLES);
   const int monitored = h.series_count - 2;
   for (int n = 0; n < SAMPLES; n++) {
     for (int k = 0; k < monitored; k++)

@@ -164,7 +164,7 @@ static void watch(watched *w) {
   w->of.loads = loads_new(w->run.deck, 0, w->lattice, "m", 2, &w->run.said);
   w->of.state = simulation_state(w->run.simulation, 0);
   w->of.body = w->of.state->body;
-  w->monitors = monitors_new(w->run.deck, &w->of, 1, NULL, 0, 1e-7, &w->run.said);
+  w->monitors = monitors_new(w->run.deck, &w->of, 1, NULL, 0, NULL, 1e-7, &w->run.said);
   assert_non_null(w->monitors);
 }
 

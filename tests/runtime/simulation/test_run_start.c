@@ -85,7 +85,8 @@ static void the_state_is_that_of_the_arrays(void **state) {
   const simulation *s = first.simulation;
   const run_law *l = &s->laws[0];
   const rows *g = s->bodies[0].lattice_rows;
-  result_state *left = run_state_take(s->bodies, 1, &s->contacts, s->deck, s->limit.step);
+  result_state *left =
+      run_state_take(s->bodies, 1, &s->contacts, &s->stamps, s->deck, s->limit.step);
   assert_true(left->step == 1e-7 && left->body_count == 1 && left->law_count == 1);
   const state_body *b = &left->bodies[0];
   const state_field *f = &left->laws[0].fields[0];
@@ -104,8 +105,9 @@ static void the_state_is_that_of_the_arrays(void **state) {
   assert_true(most > 0.1);
   leave(s, left);
   open_run(&second, SECOND);
-  result_state *found = run_state_take(second.simulation->bodies, 1, &second.simulation->contacts,
-                                       second.simulation->deck, left->step);
+  result_state *found =
+      run_state_take(second.simulation->bodies, 1, &second.simulation->contacts,
+                     &second.simulation->stamps, second.simulation->deck, left->step);
   const size_t bytes = 3 * (size_t)b->count * sizeof(double);
   assert_memory_equal(found->bodies[0].displacement, b->displacement, bytes);
   assert_memory_equal(found->bodies[0].velocity, b->velocity, bytes);
@@ -137,7 +139,7 @@ static void both_ends_keep_their_values(void **state) {
     for (int k = 0; k < 2 * g->directions; k++)
       if (rows_has_neighbour(g, q, k)) w->field[1][k * g->size + q] = (double)(10 * p + k);
   }
-  result_state *left = run_state_take(s->bodies, 1, &s->contacts, s->deck, 1e-7);
+  result_state *left = run_state_take(s->bodies, 1, &s->contacts, &s->stamps, s->deck, 1e-7);
   leave(s, left);
   result_state_free(left);
   small_open(&second, &family_hexagon, SECOND);
@@ -173,7 +175,7 @@ static void a_made_up_state_is_refused(void **state) {
   small_run first;
   open_run(&first, FIRST);
   const simulation *s = first.simulation;
-  result_state *left = run_state_take(s->bodies, 1, &s->contacts, s->deck, 1e-7);
+  result_state *left = run_state_take(s->bodies, 1, &s->contacts, &s->stamps, s->deck, 1e-7);
   state_body *b = &left->bodies[0];
   state_law *l = &left->laws[0];
   b->first = 1; /* its last particle is none */
