@@ -1,6 +1,7 @@
 #include "generator/report/report_bad.h"
 
 #include <stdio.h>
+#include <string.h>
 
 #include "generator/drive/explain_bad.h"
 #include "generator/drive/explain_point.h"
@@ -115,12 +116,26 @@ static const char *const MENDS[] = {
     [POINT_FAULT_FOLD] = "no smaller step finds one: a law whose stress along z rises with the "
                          "strain there mends it, or plane strain"};
 
+/* Of a run whose steps may shrink. */
+static void report_too_stiff(const run *r, const bad_state *b) {
+  char when[MOMENT_TEXT];
+  say_error("%s: from %s on `%s` is so stiff that the step would be less than 1/%d of the first "
+            "one\n"
+            "  what was computed until then is in the result; does its law have an end to its "
+            "stiffness, or are\n  particles about to lie on each other?",
+            b->what, moment(r, b->time, when), r->deck->lattices[b->body].name,
+            1 << RUN_MOST_HALVINGS);
+}
+
 void report_bad(const run *r) {
   bad_state b = simulation_bad(r->simulation);
   char place_text[ROWS_PLACE_TEXT], when[MOMENT_TEXT];
   point_fault fault = POINT_FAULT_OTHER;
   if (b.particle < 0) {
-    report_bad_energy(r, &b);
+    if (strcmp(b.what, BAD_TOO_STIFF) == 0)
+      report_too_stiff(r, &b);
+    else
+      report_bad_energy(r, &b);
     return;
   }
   say_error(

@@ -128,6 +128,19 @@ static void announce_step(const run *r) {
   puts(" rules)");
 }
 
+/* "looked at every 100 steps, halved where bodies stiffen; once they touch the stable step is 0.12
+   us" */
+static void announce_shrinking(const run *r) {
+  const int every = r->deck->simulation.shrink_every;
+  if (every == 0) return;
+  printf("  shrinks    looked at every %d step%s, halved where bodies stiffen", every,
+         every == 1 ? "" : "s");
+  if (r->deck->contact_count > 0)
+    printf("; near to touching the stable step is %.4g us",
+           1e6 * simulation_touching_limit(r->simulation));
+  putchar('\n');
+}
+
 void announce(const run *r) {
   const deck_simulation *s = &simulation_deck(r->simulation)->simulation;
   printf("%s\n", s->title ? s->title : r->options->deck_path);
@@ -152,6 +165,7 @@ void announce(const run *r) {
     printf("  time       %.6g ms in %ld steps of ", 1e3 * s->end_time,
            simulation_step_count(r->simulation));
   if (!r->deck->relaxation.solved) announce_step(r);
+  announce_shrinking(r);
   announce_frequencies(r);
   printf("  machine    %d thread%s, %.1f MiB\n", simulation_threads(r->simulation),
          simulation_threads(r->simulation) == 1 ? "" : "s",

@@ -54,6 +54,26 @@ static void conclude_increments(const run *r) {
            (long)r->deck->relaxation.most_steps);
 }
 
+static const char *const causes[] = {[STEP_STIFFER] = "had become stiffer",
+                                     [STEP_CRACKED] = "was cut by cracks",
+                                     [STEP_TOUCHED] = "particles came near to touch"};
+
+/* "step       halved to 0.02417 us at t = 0.0001 ms, as particles came near to touch" */
+static void conclude_changes(const run *r) {
+  int count;
+  const step_change *all = simulation_step_changes(r->simulation, &count);
+  const double planned = simulation_step_limit(r->simulation)->step;
+  if (r->deck->simulation.shrink_every > 0 && count == 0) puts("  shrinks    it did not have to");
+  for (int k = 0; k < count; k++) {
+    char text[MOMENT_TEXT];
+    printf("  shrinks    to %.4g us, 1/%d of the first, at %s: ",
+           1e6 * planned / (double)(INT64_C(1) << all[k].halvings), 1 << all[k].halvings,
+           moment(r, planned * (double)all[k].step, text));
+    if (all[k].cause != STEP_TOUCHED) printf("%s ", r->deck->lattices[all[k].body].name);
+    puts(causes[all[k].cause]);
+  }
+}
+
 /* "contact    blow: at most 34 pairs of particles in touch at a time, 1.2 kN between two, ..." */
 static void conclude_contact(const run *r, int number) {
   const contact_said c = simulation_contact(r->simulation, number);
@@ -117,6 +137,7 @@ static void conclude_speed(const run *r, double seconds, long steps) {
 void conclude(const run *r, double seconds, long steps) {
   conclude_speed(r, seconds, steps);
   conclude_increments(r);
+  conclude_changes(r);
   for (int k = 0; k < r->deck->monitor_count; k++)
     conclude_monitor(r, k);
   for (int k = 0; k < r->deck->contact_count; k++)

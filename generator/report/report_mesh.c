@@ -143,7 +143,7 @@ static void announce_crack(const run *r, const tips *t, const deck_crack *k) {
   }
   printf("; its tip%s looked at every %.4g us, a sample every %.4g us\n",
          count == 1 ? " is" : "s are",
-         1e6 * simulation_step_limit(r->simulation)->step * (double)t->check_steps,
+         1e6 * simulation_step_limit(r->simulation)->step * (double)t->planned[0],
          1e6 * simulation_sample_interval(r->simulation));
 }
 

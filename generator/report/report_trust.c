@@ -25,6 +25,13 @@ static void tell_stiffness(const run *r, bool failed) {
           "  from %s on a point of `%s` was more than %.3g times as stiff as at rest, and steps "
           "of %.3g of the\n  limit at rest too long for it: take a smaller `step_safety`\n",
           when, name, 1 / (part * part), part);
+    else if (r->deck->simulation.shrink_every > 0)
+      fprintf(
+          stderr,
+          "perilat: warning: from %s on steps were longer than is safe, until the next look: a "
+          "point of `%s` had\n  become stiffer. Look more often, with a smaller `shrink_every`, "
+          "or begin with a smaller `step_safety`\n",
+          when, name);
     else
       fprintf(
           stderr,
@@ -38,7 +45,7 @@ static void tell_stiffness(const run *r, bool failed) {
 
 /* As a crack cuts nodes off, the rest of the body can become stiffer for its mass. */
 static void tell_growth(const run *r, bool failed) {
-  const double step = simulation_step_limit(r->simulation)->step;
+  const double step = simulation_step_now(r->simulation);
   for (int b = 0; b < simulation_bodies(r->simulation) && cracks_have_grown(r); b++) {
     const double now = simulation_limit_now(r->simulation, b);
     if (step <= now) continue;

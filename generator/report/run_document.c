@@ -82,7 +82,7 @@ void put_run(json *w, const run *r) {
   const double *time;
   const long samples = simulation_history(r->simulation, &time);
   const step_limit *limit = simulation_step_limit(r->simulation);
-  json_put_integer(w, "steps", simulation_step_done(r->simulation));
+  json_put_integer(w, "steps", simulation_steps_taken(r->simulation));
   json_put_number(w, "step", limit->step);
   json_put_number(w, "stable_step", limit->limit);
   json_put_number(w, "time", simulation_time(r->simulation));

@@ -296,7 +296,7 @@ static const char *name_of_ending(int status, step_status last, bool interrupted
 static int execute(run *r) {
   stopping signals;
   stopping_catch(&signals);
-  long first = simulation_step_done(r->simulation);
+  const long first = simulation_steps_taken(r->simulation);
   double begun = monotonic_seconds();
   bool written;
   if (r->options->profile) simulation_measure(r->simulation, &r->profile);
@@ -308,7 +308,7 @@ static int execute(run *r) {
   const run_end end = {status, exit_status(status, saved), seconds};
   terminal_record said;
   terminal_record_begin(&said);
-  conclude(r, seconds, simulation_step_done(r->simulation) - first);
+  conclude(r, seconds, simulation_steps_taken(r->simulation) - first);
   terminal_record_end(&said);
   written = written && finish_result(r, &end, &said);
   if (!written) give_up_writing(r, status);
@@ -323,7 +323,7 @@ static int execute(run *r) {
   tell_result(r);
   if (!stopped_by_user) print_frames(r);
   if (status == STEP_STOPPED) print_stop(r);
-  if (r->options->profile) print_profile(r, seconds, simulation_step_done(r->simulation) - first);
+  if (r->options->profile) print_profile(r, seconds, simulation_steps_taken(r->simulation) - first);
   if (stopped_by_user) print_stopped(r, saved);
   r->signal = stopped_by_user ? stopping_signal : 0;
   r->ending = name_of_ending(end.exit_status, status, stopped_by_user);

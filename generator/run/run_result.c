@@ -612,7 +612,7 @@ bool finish_result(run *r, const run_end *end, const terminal_record *said) {
                      .status = end->exit_status,
                      .seconds = end->seconds,
                      .dt = simulation_step_limit(r->simulation)->step,
-                     .steps = simulation_step_done(r->simulation),
+                     .steps = simulation_steps_taken(r->simulation),
                      .series = series,
                      .series_count = count};
   e.said = texts;

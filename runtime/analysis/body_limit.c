@@ -21,7 +21,7 @@ static const double tiny = 1e-7;         /* spacings */
 static const double tiny_rate = 1e-3;    /* spacings a second */
 static const double nominal_step = 1e-9; /* s; what a step is to a law at rest */
 static const double accuracy = BODY_ACCURACY;
-enum { BONDS_A_THREAD = 50000, MOST_STEPS = 240, LOOK_EVERY = 8, MOST_ROUNDS = 6 };
+enum { BONDS_A_THREAD = 50000, MOST_STEPS = 240, STEPS_NOW = 16, LOOK_EVERY = 8, MOST_ROUNDS = 6 };
 
 /* --- forces ----------------------------------------------------------------------------------- */
 
@@ -32,6 +32,7 @@ typedef struct stiffness {
   long size, length; /* of an array over sites; of a vector: dof of these */
   double *scale;     /* [length] 1/sqrt(mass), 0 at absent sites */
   double *probe;     /* [length] */
+  double *base;      /* [length] displacements that it is about; NULL: at rest */
   double stiffer;    /* one side of a kink at rest than the mean of both; 1 without a kink */
 } stiffness;
 
@@ -55,7 +56,8 @@ static stiffness stiffness_new(sweep *of) {
   b.probe = vector_of(&b);
   for (int d = 0; d < b.body->dof; d++)
     for (long q = 0; q < w->size; q++)
-      if (w->present[q]) b.scale[d * w->size + q] = 1 / sqrt(body_mass(b.body, d, q));
+      if (w->present[q] && body_mass(b.body, d, q) > 0)
+        b.scale[d * w->size + q] = 1 / sqrt(body_mass(b.body, d, q));
   return b;
 }
 
@@ -76,8 +78,10 @@ static double longest_way(const stiffness *b) {
 
 static void move(const stiffness *b, double *const *moving, double factor) {
   for (int d = 0; d < b->body->dof; d++)
-    for (long q = 0; q < b->size; q++)
-      moving[d][q] = factor * b->probe[d * b->size + q];
+    for (long q = 0; q < b->size; q++) {
+      const long k = d * b->size + q;
+      moving[d][q] = b->base ? b->base[k] + factor * b->probe[k] : factor * b->probe[k];
+    }
 }
 
 static void add_forces(const stiffness *b, double factor, double *result) {
@@ -135,7 +139,7 @@ typedef struct lanczos {
   double *now, *before, *next;
   double diagonal[MOST_STEPS], beside[MOST_STEPS];
   double part[MOST_STEPS]; /* of the vectors so far in the eigenvector */
-  int steps;
+  int steps, most;     /* done; at most, as many as there are between looks or several times that */
   double value, error; /* largest eigenvalue, and how far from it there surely is one */
   double least;        /* smallest eigenvalue, or a little more than that */
 } lanczos;
@@ -216,7 +220,7 @@ static double size_of(const lanczos *l) {
 /* False when forces are not finite. */
 static bool find_largest(lanczos *l) {
   begin(l);
-  for (l->steps = 0; l->steps < MOST_STEPS;) {
+  for (l->steps = 0; l->steps < l->most;) {
     extend(l, l->steps);
     const bool last = !(l->beside[l->steps] > 1e-12 * fabs(l->diagonal[0]));
     if (!isfinite(l->diagonal[l->steps]) || !isfinite(l->beside[l->steps])) return false;
@@ -309,17 +313,49 @@ static bool find_limit(lanczos *l, step_limit *out) {
   return !is_damped(l->matrix, out->omega_max) || find_damped(l, out->omega_max, known, out);
 }
 
+static lanczos lanczos_new(stiffness *b, int most) {
+  return (lanczos){
+      .matrix = b, .now = vector_of(b), .before = vector_of(b), .next = vector_of(b), .most = most};
+}
+
+static void lanczos_free(lanczos *l) {
+  free(l->now);
+  free(l->before);
+  free(l->next);
+}
+
 static void limit_of(sweep *of, step_limit *out) {
   stiffness b = stiffness_new(of);
-  lanczos l = {.matrix = &b, .now = vector_of(&b), .before = vector_of(&b), .next = vector_of(&b)};
+  lanczos l = lanczos_new(&b, MOST_STEPS);
   out->omega_max = NAN;
   out->damping_ratio = out->least = 0;
   out->mode = "translation";
   if (!find_limit(&l, out)) out->limit = 0;
-  free(l.now);
-  free(l.before);
-  free(l.next);
+  lanczos_free(&l);
   stiffness_free(&b);
+}
+
+/* Of all displacements; to and fro. */
+static void copy_places(const stiffness *b, bool back) {
+  for (int d = 0; d < b->body->dof; d++) {
+    double *here = b->body->displacement[d], *kept = b->base + d * b->size;
+    memcpy(back ? here : kept, back ? kept : here, (size_t)b->size * sizeof *kept);
+  }
+}
+
+double body_stiffness_now(sweep *of) {
+  stiffness b = stiffness_new(of);
+  lanczos l = lanczos_new(&b, STEPS_NOW);
+  b.base = vector_of(&b);
+  copy_places(&b, false);
+  for (int k = 0; k < b.body->block_count; k++)
+    b.body->blocks[k].aside = true;
+  const double found = find_largest(&l) ? l.value : NAN;
+  copy_places(&b, true);
+  free(b.base);
+  lanczos_free(&l);
+  stiffness_free(&b);
+  return found;
 }
 
 void body_limit(const pl_law *law, const double *parameters, double *const *varying, const rows *w,

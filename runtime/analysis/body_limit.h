@@ -21,6 +21,12 @@
    threads the result is the same. A law that gives no finite forces has limit 0. */
 void body_limit(const pl_law *law, const double *parameters, double *const *varying, const rows *w,
                 step_limit *out);
+struct sweep;
+/* 1/s^2: the largest eigenvalue of M^-1 K in the present state of a body at work, supports left
+   out, its masses as they are; found from below, by few vectors: near where some mode is faster
+   than the others. Places are as before, forces on particles are not. NaN where some are no
+   number. */
+double body_stiffness_now(struct sweep *of);
 struct interaction_law;
 /* The same of several laws at work on the particles. */
 void body_limit_joint(const struct interaction_law *laws, int count, const rows *w,

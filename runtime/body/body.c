@@ -36,11 +36,16 @@ static void find_spans(body *w) {
   }
 }
 
+void body_take_step(body *w, double time_step) {
+  w->time_step = time_step;
+  for (int d = 0; d < w->dof; d++)
+    w->limit[d] = (d < w->dimensions ? w->lattice->spacing : M_PI) / time_step;
+}
+
 static void new_motion(body *w) {
   const rows *g = w->lattice;
   for (int d = 0; d < w->dof; d++) {
     w->mass[d] = d < w->dimensions ? g->mass : g->inertia;
-    w->limit[d] = (d < w->dimensions ? g->spacing : M_PI) / w->time_step;
     w->displacement[d] = body_doubles(w, g->size);
     w->velocity[d] = body_doubles(w, g->size);
     w->force[d] = body_doubles(w, g->size);
@@ -127,7 +132,7 @@ body *body_new(const rows *lattice, int dof, double time_step, int threads, body
   w->lattice = lattice;
   w->dimensions = lattice->dimensions;
   w->dof = dof;
-  w->time_step = time_step;
+  body_take_step(w, time_step);
   w->decay = 1;
   find_spans(w);
   if (lattice->site_mass) new_masses(w);

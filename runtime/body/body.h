@@ -106,6 +106,8 @@ typedef enum body_share { BODY_SHARE_ROWS, BODY_SHARE_SITES } body_share;
 /* At rest. `threads` at most, each with a block. */
 body *body_new(const rows *lattice, int dof, double time_step, int threads, body_share share);
 void body_free(body *w);
+/* s: from now on; velocities stay as they are. */
+void body_take_step(body *w, double time_step);
 /* A particle carries a mass beside its own (kg), and what turns with it (kg m^2). */
 void body_add_mass(body *w, long site, double mass, double inertia);
 /* Others say where the particle goes, and have its mass: from now on it has neither mass nor

@@ -11,7 +11,7 @@ static const mesh_tip *tip_at(const tips *t, const deck_crack *c, bool start) {
 
 /* A look begins a leg at most, and the first leg may go on along the crack. */
 int crack_path_most(const tips *t, const deck_crack *c, int64_t steps) {
-  const int64_t looks = steps / t->check_steps + 1;
+  const int64_t looks = steps / t->planned[0] + 1;
   const int legs = looks < TIPS_MOST_PIECES ? (int)looks : TIPS_MOST_PIECES;
   int most = c->point_count;
   for (int start = 0; start < 2; start++) {

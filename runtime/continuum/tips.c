@@ -360,8 +360,17 @@ void tips_take(tips *t, const deck *k, const plane_stiffness *law, double densit
   t->first_step = (int64_t)ceil(o->from / time_step - 1e-6);
   t->update_steps = t->check_steps / o->updates;
   if (t->update_steps < 1) t->update_steps = 1;
+  t->planned[0] = t->check_steps;
+  t->planned[1] = t->update_steps;
+  t->planned[2] = t->first_step;
   for (int n = 0; n < t->count; n++)
     give_law(&t->items[n], &cracks[t->items[n].of - k->cracks]);
+}
+
+void tips_shrink(tips *t, int64_t times) {
+  t->check_steps = times * t->planned[0];
+  t->update_steps = times * t->planned[1];
+  t->first_step = times * t->planned[2];
 }
 
 /* --- a look ----------------------------------------------------------------------------------- */

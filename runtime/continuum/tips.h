@@ -97,6 +97,7 @@ typedef struct tips {
   double half_size;                        /* m */
   int64_t check_steps, update_steps, step; /* between looks and advances; done */
   int64_t first_step;                      /* no look before */
+  int64_t planned[3];                      /* check_steps, update_steps, first_step as planned */
   double beta_1;                           /* of Newmark's method */
   double segment;                          /* m: least length of a leg */
   double lower[2], upper[2];               /* m: where cracks grow */
@@ -120,6 +121,9 @@ tip_box tips_box(const tips *t, const mesh_tip *p);
 /* The law around the tips, once it is known, those of the deck's cracks, and the step. */
 void tips_take(tips *t, const deck *k, const plane_stiffness *law, double density,
                const tip_law *cracks, double time_step);
+
+/* Steps are 1/`times` of those that it was told of: looks and advances come at the same times. */
+void tips_shrink(tips *t, int64_t times);
 
 /* Before a step moves the nodes: what a look will need. */
 void tips_before(tips *t, const body *w, const node_stencil *k);

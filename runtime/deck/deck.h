@@ -467,6 +467,7 @@ typedef struct deck_simulation {
   double periods;     /* of the lowest mode; 0: the time is given */
   double step;        /* s; 0: auto */
   double step_safety; /* default 0.25; of quasi-static runs 0.9 */
+  int shrink_every;   /* steps between two looks at how long one may be; 0: it stays */
   int threads;        /* 0: as the machine offers */
 } deck_simulation;
 

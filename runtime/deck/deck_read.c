@@ -334,9 +334,28 @@ static void check_quasi_static(deck_reader *r) {
   if (k->simulation.periods > 0)
     diag_report(r->d, DIAG_CONFLICT, deck_where(&k->simulation.item, "end_time"),
                 "the time of a quasi-static run is only an order: it has no periods");
+  if (k->simulation.shrink_every > 0) {
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&k->simulation.item, "shrink_every"),
+                "steps that may shrink are steps in time, which a run with `&%s` does not have",
+                group);
+    diag_hint(r->d, "leave `shrink_every` away");
+  }
   if (k->initial_velocity_count > 0)
     diag_report(r->d, DIAG_CONFLICT, k->initial_velocitys[0].item.where,
                 "a quasi-static run begins at rest: no `&initial_velocity` with `&%s`", group);
+}
+
+/* What ties and stamps carry over from step to step is of steps of one length. */
+static void check_shrinking(deck_reader *r) {
+  const deck *k = r->k;
+  if (k->simulation.shrink_every == 0 || (k->tie_count == 0 && k->stamp_count == 0)) return;
+  const bool tied = k->tie_count > 0;
+  diag_report(r->d, DIAG_NOT_SUPPORTED, deck_where(&k->simulation.item, "shrink_every"),
+              tied ? "steps do not shrink where a lattice is tied to a mesh"
+                   : "steps do not shrink in a run with stamps");
+  diag_note(r->d, tied ? k->ties[0].item.where : k->stamps[0].item.where,
+            tied ? "it is tied here" : "a stamp");
+  diag_hint(r->d, "leave `shrink_every` away, and give a smaller `step_safety`");
 }
 
 /* Only a static solution needs no time. */
@@ -556,6 +575,7 @@ static void check_whole(deck_reader *r) {
                 "the deck has no body: neither `&lattice` nor `&mesh`");
   check_end(r);
   check_quasi_static(r);
+  check_shrinking(r);
   check_meshless(r);
   check_regional_materials(r);
   take_middles(r);

@@ -262,7 +262,8 @@ static bool is_identifier(const char *name) {
 }
 
 bool deck_is_history_name(const char *name) {
-  static const char *const taken[] = {"time", "energy", "relaxation_steps", "relaxation_unbalance"};
+  static const char *const taken[] = {"time", "energy", "relaxation_steps", "relaxation_unbalance",
+                                      "time_step"};
   return deck_is_one_of(name, taken, (int)(sizeof taken / sizeof *taken));
 }
 

@@ -34,6 +34,13 @@ static const deck_key_info simulation_keys[] = {
      .fallback = "= 0.25; with &relaxation 0.9",
      DECK_AT(simulation, step_safety),
      .doc = "part of the largest stable step"},
+    {.name = "shrink_every",
+     .type = DECK_COUNT,
+     .fallback = "0",
+     .most = 1000000000,
+     DECK_AT(simulation, shrink_every),
+     .doc = "every so many steps the run looks whether the body has become so stiff that the step "
+            "must be shorter, and halves it; 0: the step stays"},
     {.name = "threads",
      .type = DECK_COUNT,
      .fallback = "0",

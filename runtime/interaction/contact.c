@@ -39,6 +39,8 @@ struct contact {
   bool selves;
   bool late;          /* bonds were lost nobody knows where */
   double skin, reach; /* m: reach of the list for the largest spacing */
+  double ahead;       /* m */
+  bool near;          /* in the state found last */
   /* Of each particle, all bodies counted through: */
   long particles;
   int32_t *side, *site;
@@ -128,6 +130,10 @@ void contact_free(contact *c) {
   free(c);
 }
 
+void contact_look_ahead(contact *c, double part) {
+  c->ahead = part / skin_part * c->skin;
+}
+
 static void make_room(void **items, long *room, long count, size_t each) {
   if (count <= *room) return;
   *room = 2 * count + 64;
@@ -195,9 +201,9 @@ static int by_particles(const void *a, const void *b) {
   return (p->j > q->j) - (p->j < q->j);
 }
 
-/* Half of the skin has been used up by some particle. */
+/* Half of the skin that is not looked ahead has been used up by some particle. */
 static bool has_moved_far(const contact *c) {
-  const double most = 0.25 * c->skin * c->skin;
+  const double skin = c->skin - c->ahead, most = 0.25 * skin * skin;
   for (int b = 0; b < c->count; b++) {
     const contact_side *s = &c->sides[b];
     const body *w = s->from.of;
@@ -370,6 +376,7 @@ static void merge_fresh(contact *c) {
 static void push_apart(contact *c, const near_pair *pair) {
   double chord[3] = {0, 0, 0}, back[3] = {0, 0, 0};
   const double r = chord_of(c, pair->i, pair->j, chord), over = pair->d - r;
+  if (over > -c->ahead) c->near = true;
   if (!(over > 0)) return;
   c->stored += 0.5 * pair->k * over * over;
   c->largest = pl_fmax(c->largest, pair->k * over);
@@ -393,6 +400,7 @@ void contact_find(contact *c) {
   make_room((void **)&c->touching, &c->touch_room, c->pair_count, sizeof *c->touching);
   c->touch_count = 0;
   c->stored = c->largest = 0;
+  c->near = false;
   for (long n = 0; n < c->pair_count; n++)
     push_apart(c, &c->pairs[n]);
 }
@@ -404,6 +412,10 @@ double contact_stored(const contact *c) {
 long contact_touching(const contact *c, double *largest) {
   *largest = c->largest;
   return c->touch_count;
+}
+
+bool contact_near(const contact *c) {
+  return c->near;
 }
 
 double contact_power(const contact *c, double *power) {

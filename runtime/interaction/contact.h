@@ -34,6 +34,10 @@ typedef struct contact contact;
    bodies have outer forces (body_add_outer). Places are those at rest. */
 contact *contact_new(const contact_body *bodies, int count, bool selves);
 void contact_free(contact *c);
+/* From now on contact_near also knows of pairs that are that much further apart than d, as a part
+   of the smallest spacing: less than CONTACT_MOST_AHEAD. */
+#define CONTACT_MOST_AHEAD 0.2
+void contact_look_ahead(contact *c, double part);
 
 /* Bonds lost since the last time are taken note of, then the forces at the present places are added
    to the bodies' outer ones. */
@@ -41,6 +45,8 @@ void contact_find(contact *c);
 /* Of the forces found last: J stored; pairs that touch, and the largest force between two, N. */
 double contact_stored(const contact *c);
 long contact_touching(const contact *c, double *largest);
+/* Some pair touches, or is near to (contact_look_ahead). */
+bool contact_near(const contact *c);
 /* W: what these do with the present velocities; of each body is added to power[count]. Returns the
    sum. */
 double contact_power(const contact *c, double *power);

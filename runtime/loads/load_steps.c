@@ -1,7 +1,9 @@
 #include "runtime/loads/load_steps.h"
 
 #include <math.h>
+#include <stdlib.h>
 
+#include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "runtime/body/motion.h"
 #include "runtime/body/rotation_vector.h"
@@ -850,6 +852,93 @@ velocity_instant load_steps_velocities(const loads *l, const body *w, int compon
     if (!turn.count) after = prescribed_velocity(l, w, c, step);
   }
   return (velocity_instant){before, 0.5 * (before + impulse + after), after};
+}
+
+/* --- another step ----------------------------------------------------------------------------- */
+
+static bool is_beside(const body *w, double instant, double t) {
+  return t > 0 && fabs(instant - t) <= 0.5 * w->time_step + hardly(w);
+}
+
+static bool jumps(const body *w, const time_function *f, double t) {
+  return is_beside(w, f->start, t) || is_beside(w, time_function_end(f), t);
+}
+
+bool load_steps_jump(const loads *l, const body *w, long step) {
+  const deck *k = l->deck;
+  const double t = load_clock_time(&l->clock, w, step);
+  bool some = false;
+  for (int i = 0; i < k->force_count + k->end_moment_count; i++)
+    some = some || jumps(w, cause_of(l, i), t);
+  for (int i = 0; i < k->drive_count; i++)
+    some = some || jumps(w, &k->drives[i].motion, t);
+  for (int i = 0; i < k->gravity_count; i++)
+    some = some || jumps(w, &k->gravitys[i].factor, t);
+  for (int i = 0; i < k->damping_count; i++)
+    some = some || is_beside(w, k->dampings[i].from, t) || is_beside(w, k->dampings[i].until, t);
+  return some;
+}
+
+/* With v- = 2/(1 + decay) v - dt/2 a (motion.h), dt/2 a being that of the present step. */
+static double set_back_by(const body *w, velocity_instant v, double time_step, double decay) {
+  const double pushed = (v.after - w->decay * v.before) / (1 + w->decay);
+  return 2 * v.now / (1 + decay) - time_step / w->time_step * pushed;
+}
+
+/* A particle that a motion takes up in the coming step has been free. */
+static velocity_instant unheld_velocities(const loads *l, const body *w, const constraint *c) {
+  const double before = w->velocity[c->component][c->site],
+               after = loaded_velocity(l, w, c->component, c->site);
+  return (velocity_instant){before, 0.5 * (before + after), after};
+}
+
+/* Of the step that begins after `steps` so long ones. */
+static double decay_with_step(const loads *l, const body *w, long steps, double time_step) {
+  body as = *w;
+  as.time_step = time_step;
+  return decay_of(l, &as, steps);
+}
+
+/* [dof][particles] Velocities half of the new step before. */
+static double *velocities_before(const loads *l, const body *w, long step, double time_step,
+                                 double decay) {
+  const long particles = l->lattice->particle_count;
+  double *v = must_calloc((size_t)(particles * w->dof) + 1, sizeof *v);
+  for (int d = 0; d < w->dof; d++)
+    for (long p = 0; p < particles; p++) {
+      const velocity_instant at =
+          load_steps_velocities(l, w, d, l->lattice->particle_site[p], step);
+      v[d * particles + p] = set_back_by(w, at, time_step, decay);
+    }
+  for (long i = 0; i < l->constraint_count; i++) {
+    const constraint *c = &l->constraints[i];
+    if (c->impulse != 0)
+      v[c->component * particles + l->lattice->site_particle[c->site]] =
+          set_back_by(w, unheld_velocities(l, w, c), time_step, decay);
+  }
+  return v;
+}
+
+void load_steps_change(loads *l, body *w, long step, double time_step, long steps) {
+  const long particles = l->lattice->particle_count;
+  double *v = velocities_before(l, w, step, time_step, decay_with_step(l, w, steps, time_step));
+  for (int d = 0; d < w->dof; d++)
+    for (long p = 0; p < particles; p++)
+      w->velocity[d][l->lattice->particle_site[p]] = v[d * particles + p];
+  free(v);
+  body_take_step(w, time_step);
+  load_steps_turn(l, w, steps - 1);
+  keep_all_turning(l, w);
+  for (long i = 0; i < l->constraint_count; i++) {
+    constraint *c = &l->constraints[i];
+    c->velocity = w->velocity[c->component][c->site];
+    if (c->impulse != 0) c->impulse = impulse_of(l, w, c, steps);
+  }
+  for (long i = 0; i < l->force_count; i++) {
+    applied *f = &l->forces[i];
+    f->velocity = w->velocity[f->component][f->site];
+    if (!f->link) f->now = f->share * factor_at(l, w, f, steps);
+  }
 }
 
 double load_steps_velocity(const loads *l, const body *w, int component, int64_t site, long step) {

@@ -58,6 +58,14 @@ void load_steps_set_back(loads *l, body *w);
 /* When step n -> n+1 has moved the rows of a block: applied forces, prescribed motions, reactions,
    work. What has not moved, as its row has a bad velocity, is left alone. */
 void load_steps_apply(loads *l, body *w, int block, long step);
+/* Some load begins or ends within half a step of the instant after `step` steps: only a part of it
+   counts there (load_clock_part_after), and the step is not to change. */
+bool load_steps_jump(const loads *l, const body *w, long step);
+/* The state after `step` steps was observed: from it on steps take `time_step` (s), of which `steps`
+   would have led there. Each particle keeps its velocity at this instant, the mean of those half a
+   step before and after, and what pushes it: so it is kicked over half of the former step and half
+   of the new one, and the change is of the second order. */
+void load_steps_change(loads *l, body *w, long step, double time_step, long steps);
 /* When all blocks have, alone: gravity and damping of the coming step (with a clock of its own that
    stays as it is). */
 void load_steps_turn(const loads *l, body *w, long step);

@@ -70,6 +70,22 @@ double ledger_taken_by(const sweep *law) {
   return sum;
 }
 
+static const ledger_term summed[] = {LEDGER_EXTERNAL, LEDGER_DISSIPATED_DAMAGE,
+                                     LEDGER_DISSIPATED_DAMPING};
+enum { SUMMED = sizeof summed / sizeof *summed };
+
+static void add_carried(const ledger *g, double terms[LEDGER_COUNT]) {
+  for (int k = 0; k < SUMMED; k++)
+    if (g->carried[summed[k]] != 0) terms[summed[k]] += g->carried[summed[k]];
+}
+
+void ledger_carry(ledger *g, const double before[LEDGER_COUNT], const double after[LEDGER_COUNT]) {
+  g->initial += after[LEDGER_KINETIC] + after[LEDGER_STORED] -
+                (before[LEDGER_KINETIC] + before[LEDGER_STORED]);
+  for (int k = 0; k < SUMMED; k++)
+    g->carried[summed[k]] += before[summed[k]] - after[summed[k]];
+}
+
 void ledger_sample_link(ledger *g, const ledger_laws *of, const body *state, double work,
                         double terms[LEDGER_COUNT]) {
   const body_totals t = body_sum(state);
@@ -83,6 +99,7 @@ void ledger_sample_link(ledger *g, const ledger_laws *of, const body *state, dou
   terms[LEDGER_EXTERNAL] = work;
   terms[LEDGER_DISSIPATED_DAMPING] = t.dissipated_rate - g->pending;
   terms[LEDGER_DISSIPATED_DAMAGE] = taken(g, of, &t, lost);
+  add_carried(g, terms);
   terms[LEDGER_IMBALANCE] = imbalance(g, of, terms);
 }
 
@@ -122,6 +139,7 @@ bool ledger_sample(ledger *g, const ledger_laws *of, const body *state, const lo
   terms[LEDGER_EXTERNAL] = s.work + look->work + t.gravity + t.outer;
   terms[LEDGER_DISSIPATED_DAMPING] = damping - g->pending;
   terms[LEDGER_DISSIPATED_DAMAGE] = taken(g, of, &t, lost);
+  add_carried(g, terms);
   terms[LEDGER_IMBALANCE] = imbalance(g, of, terms);
   g->largest = pl_fmax(pl_fmax(g->largest, fabs(kinetic)),
                        pl_fmax(fabs(stored), fabs(terms[LEDGER_EXTERNAL])));

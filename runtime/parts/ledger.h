@@ -64,6 +64,7 @@ typedef struct ledger {
   double pending; /* J: damping of the half step before the first sample, which is before the run */
   double largest; /* J: of kinetic, stored and external energy, in size, so far */
   int64_t begun;
+  double carried[LEDGER_COUNT]; /* J: what a change of the step has left out, so that terms go on */
 } ledger;
 
 /* Why the imbalance of a run with this law says nothing, as the end of a sentence; NULL where it
@@ -89,6 +90,10 @@ void ledger_add_law(ledger_laws *of, const pl_law *law, bool kept);
    Where the stored energy is not known nothing is said. */
 bool ledger_sample(ledger *g, const ledger_laws *of, const body *state, const loads *l,
                    const load_look *look, double omega, double terms[LEDGER_COUNT]);
+/* The step has changed: the same state was `before` and is `after`, as it is now. Kinetic energies
+   half m v- v+ of one state differ by (dt^2 - dt'^2) f^2/(8 m), which is of the second order; from
+   now on all is counted from what the new one finds. The works of half a step go on as they were. */
+void ledger_carry(ledger *g, const double before[LEDGER_COUNT], const double after[LEDGER_COUNT]);
 /* The same of a contact: it stores that much (J), and `work` is done on it by the ways of its
    particles. */
 void ledger_sample_contact(ledger *g, double stored, double work, double terms[LEDGER_COUNT]);

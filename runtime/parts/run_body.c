@@ -8,6 +8,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/analysis/body_limit.h"
 #include "runtime/analysis/material.h"
 #include "runtime/analysis/stability.h"
 #include "runtime/continuum/cell_sizes.h"
@@ -638,6 +639,7 @@ static void mark_loaded(run_body *b) {
 
 bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d) {
   b->limit.step = step;
+  b->stiffened = 1;
   for (int n = 0; n < b->law_count; n++) {
     b->laws[n].bonds = rows_bonds(b->laws[n].rows);
     ledger_add_law(&b->energies, b->laws[n].law, k->output.losses);
@@ -665,6 +667,37 @@ double run_body_limit_now(const run_body *b) {
   cells_step_limit(b->cells, held, &now);
   free(held);
   return now.limit;
+}
+
+/* Where only the virgin body is known, that of this. */
+double run_body_highest_frequency(const run_body *b) {
+  return b->limit.omega_max * sqrt(b->cells ? pl_fmax(1, b->cells->stiffened.now) : b->stiffened);
+}
+
+static double limit_of_cracks(run_body *b) {
+  const tips *t = b->cells->tips;
+  const int64_t pieces = t ? t->pieces.count : 0;
+  if (pieces == 0) return b->limit.limit;
+  if (b->cracked_pieces != pieces) b->cracked_limit = run_body_limit_now(b);
+  b->cracked_pieces = pieces;
+  return b->cracked_limit;
+}
+
+double run_body_limit_here(run_body *b, bool *cracked) {
+  const double rest = b->limit.omega_max * b->limit.omega_max;
+  b->stiffened = 1;
+  *cracked = false;
+  if (run_body_is_link(b)) return b->limit.limit;
+  if (b->cells) {
+    const double cut = limit_of_cracks(b);
+    *cracked = cut < b->limit.limit;
+    b->stiffened = pl_fmax(1, b->cells->stiffened.now);
+    return cut / sqrt(b->stiffened);
+  }
+  const double now = body_stiffness_now(b->state);
+  if (!(rest > 0)) return now > 0 ? 2 / sqrt(now) : b->limit.limit;
+  b->stiffened = now > rest ? now / rest : 1;
+  return b->limit.limit / sqrt(b->stiffened);
 }
 
 void run_body_free(run_body *b) {

@@ -56,7 +56,11 @@ typedef struct run_body {
   mesh_tie *ties;        /* [tie_count] of a lattice to meshes */
   int tie_count;
   bool tied;        /* a tie is between this one and another body */
-  step_limit limit; /* of this body alone; `step` is that of the run */
+  step_limit limit; /* of this body alone at rest; `step` is the present one of the run */
+  /* Where the step may shrink: the square of the largest frequency over that at rest, at least 1;
+     of a mesh its limit with as many pieces of cracks (s, 0: not known) */
+  double stiffened, cracked_limit;
+  int64_t cracked_pieces;
   ledger ledger;
   ledger_laws energies;
   load_look look;         /* of the state observed last */
@@ -92,6 +96,12 @@ bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d);
 damage_law *run_body_damages(const run_body *b);
 /* s: the longest stable step as cracks are now; of other bodies that of the start. */
 double run_body_limit_now(const run_body *b);
+/* s: the same in the present state. Of a mesh that was observed: what its points are like counts,
+   too; *cracked: it is its cracks that have shortened it. A lattice is looked at, and is to be
+   observed again. */
+double run_body_limit_here(run_body *b, bool *cracked);
+/* rad/s: above which it has none in the state observed, as far as this is known. */
+double run_body_highest_frequency(const run_body *b);
 void run_body_free(run_body *b);
 double run_body_memory(const run_body *b); /* bytes */
 

@@ -215,7 +215,7 @@ static contact_law *laws_of(const run_body *b, int *count) {
 
 /* --- at work ---------------------------------------------------------------------------------- */
 
-void run_contacts_begin(run_contacts *c) {
+void run_contacts_begin(run_contacts *c, double ahead) {
   for (int n = 0; n < c->count; n++) {
     run_contact *item = &c->items[n];
     contact_body *of = must_calloc((size_t)item->count + 1, sizeof *of);
@@ -226,6 +226,7 @@ void run_contacts_begin(run_contacts *c) {
       body_add_outer(from->body);
     }
     item->found = contact_new(of, item->count, item->from->lattice_count == 0);
+    contact_look_ahead(item->found, ahead);
     free(of);
   }
 }
@@ -267,8 +268,10 @@ void run_contacts_find(run_contacts *c, int64_t step) {
   for (int n = 0; n < c->count; n++)
     for (int b = 0; b < c->items[n].count; b++)
       body_clear_outer(c->bodies[c->items[n].of[b]].body);
+  c->near = false;
   for (int n = 0; n < c->count; n++) {
     contact_find(c->items[n].found);
+    c->near = c->near || contact_near(c->items[n].found);
     note_peaks(&c->items[n]);
   }
   if (known) add_work(c);

@@ -41,6 +41,7 @@ typedef struct run_contacts {
   int count;
   run_body *bodies;
   int64_t step; /* whose forces are known; -1: of none */
+  bool near;    /* some particles touch then, or are near to */
   double *power;
 } run_contacts;
 
@@ -49,8 +50,9 @@ typedef struct run_contacts {
    cannot be told. */
 bool run_contacts_open(run_contacts *c, const deck *k, run_body *bodies, int body_count,
                        touch_rates *touching, diagnostics *d);
-/* When the bodies have begun. */
-void run_contacts_begin(run_contacts *c);
+/* When the bodies have begun. `near` comes as early as that part of the smallest spacing before
+   particles touch. */
+void run_contacts_begin(run_contacts *c, double ahead);
 void run_contacts_free(run_contacts *c);
 
 /* N/m: k = E V/s^2 by the softest law of a lattice; NaN where one has no Young's modulus. */

@@ -233,6 +233,11 @@ void bad_search_energy(bad_search *s, const char *what) {
                          .what = what};
 }
 
+void bad_search_step(bad_search *s, int number) {
+  bad_search_energy(s, BAD_TOO_STIFF);
+  s->found.body = number;
+}
+
 const bad_state *bad_search_found(const bad_search *s) {
   return &s->found;
 }

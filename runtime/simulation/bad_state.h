@@ -39,8 +39,12 @@ typedef struct bad_state {
   int family_count;
   const double *own_fields;        /* [law's fields] those on particles: of the particle */
   const struct point_state *point; /* of a mesh; else NULL; the values are the simulation's */
-  const char *what;                /* "not a number", "runaway velocity", "energy from nothing" */
+  const char *what;                /* "not a number", "runaway velocity", "energy from nothing",
+                                      "too stiff" */
 } bad_state;
+
+#define BAD_ENERGY    "energy from nothing"
+#define BAD_TOO_STIFF "too stiff"
 
 typedef struct bad_search bad_search;
 
@@ -49,6 +53,8 @@ bad_search *bad_search_new(const struct run_body *bodies, int count, const struc
 void bad_search_free(bad_search *s);
 /* After a step in which some body had a velocity beyond its limit. */
 void bad_search_velocity(bad_search *s);
+/* A body of that number has become so stiff that steps would be too short. */
+void bad_search_step(bad_search *s, int number);
 /* The energies just sampled are none that a stable step allows. */
 void bad_search_energy(bad_search *s, const char *what);
 const bad_state *bad_search_found(const bad_search *s);

@@ -753,7 +753,7 @@ static void fill_without(const frame_field *field, long count, double *values) {
 static void values_of_law(const frame_set *f, int field, const run_body *of, const run_law *law,
                           double *values) {
   const frame_source *from = &f->sources[field * f->law_count + (law - f->laws)];
-  const frames_of here = {of, law, (long)f->clock->at.step};
+  const frames_of here = {of, law, (long)run_clock_parts(f->clock)};
   if (from->values) from->values(&here, from, values);
 }
 

@@ -15,6 +15,13 @@ static const char *const increment_words[] = {
     "steps of the increment",
     "unbalanced force at the end of the increment over reactions or loads"};
 
+static const char step_name[] = "time_step", step_words[] = "time step, which may shrink";
+
+/* Series of increments, or of the step. */
+static int own_series(const history *h) {
+  return h->relaxation ? INCREMENT_SERIES : h->shrinking ? 1 : 0;
+}
+
 /* Bodies, contacts and stamps of which energies are kept one by one. */
 static int parts_apart(const history *h) {
   const int parts = h->monitors->body_count + h->contacts->count + h->stamps->count;
@@ -116,11 +123,17 @@ static void sample_cracks(history *h) {
 }
 
 history history_new(const monitors *m, const run_contacts *c, const run_stamps *s,
-                    const relaxation *r, bool energies, int64_t capacity) {
-  history h = {.monitors = m, .contacts = c, .stamps = s, .relaxation = r, .capacity = capacity};
+                    const relaxation *r, const run_clock *shrinking, bool energies,
+                    int64_t capacity) {
+  history h = {.monitors = m,
+               .contacts = c,
+               .stamps = s,
+               .relaxation = r,
+               .shrinking = shrinking,
+               .capacity = capacity};
   h.energies = energies ? whole_terms(&h) + laws_beside(&h) * HISTORY_LAW_TERMS : 0;
   h.cracks = crack_series(&h);
-  h.series_count = m->count + h.energies + h.cracks + (r ? INCREMENT_SERIES : 0);
+  h.series_count = m->count + h.energies + h.cracks + own_series(&h);
   h.time = must_calloc((size_t)capacity, sizeof *h.time);
   h.values = must_calloc((size_t)capacity * (size_t)h.series_count + 1, sizeof *h.values);
   h.sampled = must_calloc((size_t)h.series_count + 1, sizeof *h.sampled);
@@ -160,6 +173,7 @@ void history_add(history *h, int64_t sample, double time) {
     own[INCREMENT_STEPS] = (double)h->relaxation->state.steps;
     own[INCREMENT_UNBALANCE] = h->relaxation->state.unbalance;
   }
+  if (h->shrinking) h->sampled[h->series_count - 1] = run_clock_step(h->shrinking);
   sample_cracks(h);
   h->time[sample] = time;
   for (int k = 0; k < h->series_count; k++)
@@ -174,9 +188,11 @@ const char *history_series(const history *h, int k, const char **symbol, const d
     *symbol = energy < 0     ? h->monitors->items[k].unit
               : of_crack < 0 ? "J"
               : own < 0      ? tip_value_units[of_crack % TIP_VALUE_COUNT]
+              : h->shrinking ? "s"
                              : "1";
   if (energy < 0) return h->monitors->deck->monitors[k].name;
-  return own < 0 ? h->names[energy] : increment_names[own];
+  if (own < 0) return h->names[energy];
+  return h->shrinking ? step_name : increment_names[own];
 }
 
 char *history_words(const history *h, int k, arena *a) {
@@ -185,7 +201,7 @@ char *history_words(const history *h, int k, arena *a) {
   if (energy < 0) return monitor_words(h->monitors, k, a);
   if (of_crack >= 0 && own < 0)
     return arena_printf(a, "%s", tip_value_words[of_crack % TIP_VALUE_COUNT]);
-  if (own >= 0) return arena_printf(a, "%s", increment_words[own]);
+  if (own >= 0) return arena_printf(a, "%s", h->shrinking ? step_words : increment_words[own]);
   const char *words = ledger_words[term_of(h, energy)], *owner = owner_of(h, energy);
   return owner ? arena_printf(a, "%s, of `%s`", words, owner) : arena_printf(a, "%s", words);
 }

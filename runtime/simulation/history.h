@@ -8,15 +8,17 @@
 #include "runtime/parts/run_stamp.h"
 #include "runtime/simulation/monitor.h"
 #include "runtime/simulation/relaxation.h"
+#include "runtime/simulation/run_clock.h"
 
 /* Series: the deck's monitors; the energy terms, in sum, then, of several bodies, those of each, of
    each contact and of each stamp, and of laws beside the first one of a body what they store and
-   take; what an increment took. */
+   take; what an increment took, or the step where it may shrink. */
 typedef struct history {
   const monitors *monitors;
   const run_contacts *contacts;
   const run_stamps *stamps;
   const relaxation *relaxation; /* NULL: a dynamic run */
+  const run_clock *shrinking;   /* NULL: its step stays */
   int energies;                 /* series of energies, or 0 */
   int cracks;                   /* series of the tips of cracks, behind these */
   char **names;                 /* [energies + cracks] */
@@ -27,7 +29,8 @@ typedef struct history {
 } history;
 
 history history_new(const monitors *m, const run_contacts *c, const run_stamps *s,
-                    const relaxation *r, bool energies, int64_t capacity);
+                    const relaxation *r, const run_clock *shrinking, bool energies,
+                    int64_t capacity);
 void history_free(history *h);
 /* Where the energies of a sample are to be put: those of all bodies, [LEDGER_COUNT], or of one;
    contacts and then stamps are counted on behind the bodies. NULL without. */

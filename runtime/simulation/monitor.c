@@ -61,19 +61,40 @@ static double averaged(const monitors *all, const monitor *m, long step) {
   return m->window > 1 && late ? reduced(all, m, m->window - 1, &now) : now;
 }
 
-void monitors_step(monitors *all, long step) {
+static bool is_late(const monitor *m) {
+  return m->window > 1 && m->known == KNOWN_ONE_LATE;
+}
+
+void monitors_part(monitors *all, long step, bool first) {
   for (int i = 0; i < all->count; i++) {
     monitor *m = &all->items[i];
-    if (m->window > 1 && m->known != KNOWN_WHEN_OBSERVED &&
-        (step > 0 || (m->known == KNOWN_AFTER_STEP && !is_over_steps(m))))
-      push(m, monitor_value_of_step(all, m, step));
+    if (m->window > 1 && is_over_steps(m)) m->state.parts += monitor_value_of_step(all, m, step);
+    if (first && is_late(m)) push(m, monitor_value_of_step(all, m, step));
   }
 }
 
-bool monitors_due(const monitors *all, long step) {
+/* The mean over the parts of the step. */
+static double over_parts(monitor *m, double last, long parts) {
+  if (parts == 1 || !is_over_steps(m)) return last;
+  const double sum = m->state.parts + last;
+  m->state.parts = 0;
+  return sum / (double)parts;
+}
+
+void monitors_step(monitors *all, long step, long parts) {
+  for (int i = 0; i < all->count; i++) {
+    monitor *m = &all->items[i];
+    const bool pushed = parts > 1 && is_late(m);
+    if (m->window > 1 && m->known != KNOWN_WHEN_OBSERVED && !pushed &&
+        (step > 0 || (m->known == KNOWN_AFTER_STEP && !is_over_steps(m))))
+      push(m, over_parts(m, monitor_value_of_step(all, m, step), parts));
+  }
+}
+
+bool monitors_due(const monitors *all, long position) {
   for (int i = 0; i < all->count; i++) {
     const monitor *m = &all->items[i];
-    if (step == m->zero_step || (m->window > 1 && m->known == KNOWN_WHEN_OBSERVED)) return true;
+    if (position == m->zero_step || (m->window > 1 && m->known == KNOWN_WHEN_OBSERVED)) return true;
   }
   return false;
 }

@@ -25,6 +25,7 @@ typedef struct monitor_state { /* what a later step depends on */
   double zero;                 /* value subtracted */
   double peak, peak_time;      /* largest absolute value sampled, its sign kept, and when */
   int64_t filled;              /* values pushed since the start */
+  double parts;                /* sum over those of the present step */
 } monitor_state;
 
 /* When a value for the window is known. */
@@ -78,10 +79,14 @@ static inline bool monitor_watches(const monitors *all, const monitor *m, int b)
   return !m->of[0] || m->of[0] == &all->bodies[b];
 }
 
-/* In dynamic runs once at the start and after every step: into the windows what is known. */
-void monitors_step(monitors *m, long step);
-/* The state after that step is to be observed for a window or a zero. */
-bool monitors_due(const monitors *m, long step);
+/* In dynamic runs once at the start and after every step: into the windows what is known; velocities
+   are means over the `parts` that the step was done in (run_clock.h). `step` counts parts here and
+   where values are asked for. monitors_part: after each part that does not end a step; after the
+   `first` what is known late of the state that the step began with. */
+void monitors_part(monitors *m, long step, bool first);
+void monitors_step(monitors *m, long step, long parts);
+/* The state at that position is to be observed for a window or a zero. */
+bool monitors_due(const monitors *m, long position);
 /* The state after `step` steps was observed: windows and zeros. `position` counts steps, in
    quasi-static runs increments. */
 void monitors_look(monitors *m, long step, long position);

@@ -16,6 +16,7 @@
 #include "runtime/simulation/modes.h"
 #include "runtime/simulation/monitor_setup.h"
 #include "runtime/simulation/simulation_state.h"
+#include "runtime/simulation/step_shrink.h"
 #include "runtime/simulation/time_loop.h"
 
 /* --- set-up ----------------------------------------------------------------------------------- */
@@ -73,6 +74,16 @@ static void shorten_by_ties(simulation *s) {
   }
 }
 
+/* The run begins as if nothing touched. */
+static void look_at_touching(simulation *s, touch_rates *touching) {
+  step_limit together = s->limit;
+  int ruling = s->ruling;
+  link_limit(s->bodies, s->body_count, touching, &together, &ruling);
+  s->touching = together.limit;
+  for (int b = 0; b < s->body_count; b++)
+    touching[b] = (touch_rates){0, 0};
+}
+
 /* The shortest of the bodies' steps is that of the run. */
 static bool choose_step(simulation *s, diagnostics *d) {
   for (int b = 1; b < s->body_count; b++)
@@ -82,6 +93,7 @@ static bool choose_step(simulation *s, diagnostics *d) {
   const bool known =
       run_contacts_open(&s->contacts, s->deck, s->bodies, s->body_count, touching, d) &&
       run_stamps_open(&s->stamps, s->deck, s->bodies, s->body_count, touching, d);
+  if (s->deck->simulation.shrink_every > 0) look_at_touching(s, touching);
   link_limit(s->bodies, s->body_count, touching, &s->limit, &s->ruling);
   free(touching);
   if (!known) return false;
@@ -163,7 +175,7 @@ static bool open_bodies(simulation *s, diagnostics *d) {
     warn_of_moduli(s, d);
     open_ties(s);
   }
-  run_contacts_begin(&s->contacts);
+  run_contacts_begin(&s->contacts, s->deck->simulation.shrink_every > 0 ? STEP_LOOKS_AHEAD : 0);
   run_stamps_begin(&s->stamps, &s->contacts);
   return good;
 }
@@ -229,7 +241,7 @@ static void open_clock(simulation *s) {
         relaxation_new(s->deck, s->bodies, s->body_count, s->limit.step / s->limit.limit);
   s->clock = (run_clock){
       .time_step = s->limit.step, .step_count = s->plan.step_count, .relaxation = s->relaxation};
-  s->clock.at.last_frame_step = s->clock.at.stop = s->observed_step = -1;
+  s->clock.at.last_frame_step = s->clock.at.stop = s->clock.at.looked = s->observed_step = -1;
 }
 
 /* Everything that a static run is to solve has a solution. */
@@ -250,7 +262,8 @@ static bool open_monitors(simulation *s, diagnostics *d) {
   s->monitors = monitors_new(k, s->bodies, s->body_count, s->links, s->link_count, &s->stamps,
                              s->relaxation ? s->relaxation->interval : s->limit.step, d);
   if (!s->monitors) return false;
-  s->history = history_new(s->monitors, &s->contacts, &s->stamps, s->relaxation, k->output.energy,
+  s->history = history_new(s->monitors, &s->contacts, &s->stamps, s->relaxation,
+                           k->simulation.shrink_every > 0 ? &s->clock : NULL, k->output.energy,
                            s->plan.history_capacity);
   return true;
 }
@@ -406,10 +419,23 @@ long simulation_step_count(const simulation *s) {
 long simulation_step_done(const simulation *s) {
   return (long)s->clock.at.step;
 }
+long simulation_steps_taken(const simulation *s) {
+  return (long)(s->clock.at.step + s->clock.at.more);
+}
+double simulation_touching_limit(const simulation *s) {
+  return s->touching;
+}
+double simulation_step_now(const simulation *s) {
+  return run_clock_step(&s->clock);
+}
+const step_change *simulation_step_changes(const simulation *s, int *count) {
+  *count = (int)s->clock.at.change_count;
+  return s->clock.at.changes;
+}
 result_state *simulation_take_state(const simulation *s) {
   if (s->clock.at.status == STEP_BAD) return NULL;
   return run_state_take(s->bodies, s->body_count, &s->contacts, &s->stamps, s->deck,
-                        s->relaxation ? 0 : s->limit.step);
+                        s->relaxation ? 0 : run_clock_step(&s->clock));
 }
 run_going simulation_going(const simulation *s, int number) {
   return s->bodies[number].going;

@@ -85,6 +85,13 @@ int simulation_ruling_body(const simulation *s);
 long simulation_step_count(
     const simulation *s); /* planned; without meaning for quasi-static runs */
 long simulation_step_done(const simulation *s);
+/* s: the longest stable step at rest once bodies touch, where steps may shrink. */
+double simulation_touching_limit(const simulation *s);
+/* Steps done, with the parts of steps that have shrunk; s: the present step; when and why it became
+   what it is, *count times. */
+long simulation_steps_taken(const simulation *s);
+double simulation_step_now(const simulation *s);
+const step_change *simulation_step_changes(const simulation *s, int *count);
 /* What a &start of another deck needs (to be freed by result_state_free); NULL of a run that has
    gone bad. */
 struct result_state *simulation_take_state(const simulation *s);

@@ -8,6 +8,7 @@
 #include "runtime/continuum/cells_engine.h"
 #include "runtime/result/checkpoint.h"
 #include "runtime/simulation/simulation_state.h"
+#include "runtime/simulation/step_shrink.h"
 
 typedef struct part_list {
   checkpoint_part *items;
@@ -120,6 +121,7 @@ static part_list parts_of(const simulation *s, run_progress *head) {
     add_state(&l, &s->bodies[b]);
     add_loads(&l, s->bodies[b].loads);
     add_part(&l, "ledger", &s->bodies[b].ledger, sizeof s->bodies[b].ledger);
+    add_part(&l, "stiffened", &s->bodies[b].stiffened, sizeof s->bodies[b].stiffened);
   }
   for (int k = 0; k < s->link_count; k++)
     add_part(&l, "work of a link", &s->links[k].work, sizeof s->links[k].work);
@@ -162,6 +164,10 @@ static bool is_reachable(const simulation *s, const run_progress *at) {
   if (at->stop < -1 || at->stop >= s->deck->stop_count) return false;
   if (at->event != 0 && at->event != 1) return false;
   if (at->step < 0 || at->step > s->clock.step_count || (!at->begun && at->step > 0)) return false;
+  if (at->halvings < 0 || at->halvings > RUN_MOST_HALVINGS) return false;
+  if (at->part < 0 || at->part >= INT64_C(1) << at->halvings) return false;
+  if (at->change_count < 0 || at->change_count > at->halvings) return false;
+  if (at->halvings > 0 && s->deck->simulation.shrink_every == 0) return false;
   if (at->next_sample < 0 || at->next_sample > s->history.capacity) return false;
   if (at->samples < (at->step > 0) || at->samples > at->next_sample + 1) return false;
   if (at->samples > s->history.capacity - (at->step < s->clock.step_count)) return false;
@@ -239,6 +245,7 @@ bool simulation_restore(simulation *s, const char *path, const char *fingerprint
   const bool good = checkpoint_read(path, fingerprint, l.items, l.count, error, size);
   free(l.items);
   if (good) s->clock.at = head;
+  if (good) step_shrink_restored(s);
   for (int k = 0; k < s->link_count; k++)
     s->links[k].known = false;
   for (int b = 0; b < s->body_count; b++) {

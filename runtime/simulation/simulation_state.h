@@ -38,7 +38,8 @@ struct simulation {
   int blocks; /* of a round of the team; each has a block of some bodies */
   monitors *monitors;
   relaxation *relaxation; /* NULL: a dynamic run */
-  step_limit limit;       /* the shortest of the bodies', */
+  step_limit limit;       /* at rest the shortest of the bodies', */
+  double touching;        /* s: the longest stable step once bodies touch, where steps may shrink */
   int ruling;             /* which is this one's */
   step_plan plan;
   run_clock clock;

@@ -7,6 +7,7 @@
 #include "runtime/base/subnormals.h"
 #include "runtime/continuum/cells_engine.h"
 #include "runtime/loads/load_steps.h"
+#include "runtime/simulation/step_shrink.h"
 
 /* --- samples ---------------------------------------------------------------------------------- */
 
@@ -28,6 +29,11 @@ static int64_t next_sample(const simulation *s) {
   return k;
 }
 
+/* As what moves the bodies counts steps. */
+static long parts_done(const simulation *s) {
+  return (long)run_clock_parts(&s->clock);
+}
+
 static void end_badly(simulation *s, const char *what) {
   bad_search_energy(s->bad, what);
   s->clock.at.status = STEP_BAD;
@@ -44,6 +50,14 @@ static void add_up(const simulation *s) {
   }
 }
 
+/* Energies that no stable step leads to. Where steps may shrink, a look tells. */
+static void doubt(simulation *s) {
+  if (s->deck->simulation.shrink_every > 0)
+    s->clock.at.doubted = 1;
+  else
+    end_badly(s, BAD_ENERGY);
+}
+
 /* Of laws beside the first one of a body. */
 static void sample_laws(simulation *s) {
   int number = 0;
@@ -53,12 +67,6 @@ static void sample_laws(simulation *s) {
       terms[HISTORY_LAW_STORED] = ledger_stored_by(s->bodies[b].laws[n].state);
       terms[HISTORY_LAW_TAKES] = ledger_taken_by(s->bodies[b].laws[n].state);
     }
-}
-
-/* Above which a body of the state observed has no frequency; where only the virgin one is known,
-   that of this. */
-static double highest_frequency(const run_body *of) {
-  return of->limit.omega_max * (of->cells ? sqrt(pl_fmax(1, of->cells->stiffened.now)) : 1);
 }
 
 /* Energies of the state observed; they tell of a run that has gone wrong. */
@@ -83,8 +91,8 @@ static void sample_energies(simulation *s) {
     run_body *of = &s->bodies[b];
     if (!run_body_is_link(of) &&
         !ledger_sample(&of->ledger, &of->energies, of->body, of->loads, &of->look,
-                       highest_frequency(of), history_energies_of(&s->history, b)))
-      end_badly(s, "energy from nothing");
+                       run_body_highest_frequency(of), history_energies_of(&s->history, b)))
+      doubt(s);
   }
   add_up(s);
   sample_laws(s);
@@ -98,7 +106,7 @@ static void sample_energies(simulation *s) {
 static void take_sample(simulation *s) {
   run_progress *at = &s->clock.at;
   const double time = run_clock_time(&s->clock);
-  monitors_sample(s->monitors, (long)at->step, time, s->history.sampled);
+  monitors_sample(s->monitors, parts_done(s), time, s->history.sampled);
   at->stop = monitors_stop(s->monitors, time, s->history.sampled);
   if (at->stop >= 0) at->status = STEP_STOPPED;
   if (s->deck->output.energy) sample_energies(s);
@@ -128,13 +136,13 @@ static bool some_body_is_bad(const simulation *s) {
 static void set_time(simulation *s) {
   for (int b = 0; b < s->body_count; b++) {
     body *of = s->bodies[b].body;
-    of->time = load_clock_time(&s->bodies[b].loads->clock, of, (long)s->clock.at.step);
+    of->time = load_clock_time(&s->bodies[b].loads->clock, of, parts_done(s));
   }
 }
 
 static void find_contacts(simulation *s) {
-  if (s->contacts.count > 0) run_contacts_find(&s->contacts, s->clock.at.step);
-  if (s->stamps.count > 0 && !run_stamps_find(&s->stamps, s->clock.at.step))
+  if (s->contacts.count > 0) run_contacts_find(&s->contacts, run_clock_parts(&s->clock));
+  if (s->stamps.count > 0 && !run_stamps_find(&s->stamps, run_clock_parts(&s->clock)))
     end_badly(s, "a stamp that went too far");
 }
 
@@ -143,7 +151,7 @@ static void find_contacts(simulation *s) {
 /* Lattices tell what acts on their tied particles, then all loads of tied bodies act, and tied
    particles follow. */
 static void tie_bodies(simulation *s) {
-  const long step = (long)s->clock.at.step;
+  const long step = parts_done(s);
   for (int n = 0; n < s->tie_count; n++)
     tie_steps_give(&s->ties[n]);
   for (int b = 0; b < s->body_count; b++) {
@@ -164,14 +172,14 @@ static void follow_ties(simulation *s) {
 
 static void see_ties(simulation *s) {
   for (int n = 0; n < s->tie_count; n++)
-    tie_steps_see(&s->ties[n], (long)s->clock.at.step);
+    tie_steps_see(&s->ties[n], parts_done(s));
 }
 
 static void look_at_ties(simulation *s) {
   int n = 0;
   for (int b = 0; b < s->body_count; b++)
     for (int k = 0; k < s->bodies[b].tie_count; k++)
-      tie_steps_look(&s->ties[n++], &s->bodies[b].look, (long)s->clock.at.step);
+      tie_steps_look(&s->ties[n++], &s->bodies[b].look, parts_done(s));
 }
 
 /* --- steps ------------------------------------------------------------------------------------ */
@@ -187,29 +195,37 @@ static void after_moving(simulation *s) {
   }
   for (int b = 0; b < s->body_count; b++) {
     sweep_turn(s->bodies[b].state);
-    load_steps_turn(s->bodies[b].loads, s->bodies[b].body, (long)s->clock.at.step);
+    load_steps_turn(s->bodies[b].loads, s->bodies[b].body, parts_done(s));
   }
-  s->clock.at.step++;
+  run_clock_go_on(&s->clock);
   set_time(s);
+}
+
+static bool goes_on(const simulation *s) {
+  return s->clock.at.step < s->until && !step_shrink_due(s) && !(s->interrupted && *s->interrupted);
 }
 
 /* And when the forces of links are known, too. */
 static void after_step(simulation *s) {
+  const bool whole = s->clock.at.part == 0;
   find_contacts(s);
-  s->go_on = s->clock.at.step < s->until && s->clock.at.status == STEP_OK &&
-             !(s->interrupted && *s->interrupted);
+  s->go_on = (!whole || goes_on(s)) && s->clock.at.status == STEP_OK;
   if (s->relaxation) {
     s->observe = relaxation_due(s->relaxation, s->clock.at.step);
     return;
   }
-  monitors_step(s->monitors, (long)s->clock.at.step);
+  if (!whole) {
+    monitors_part(s->monitors, parts_done(s), s->clock.at.part == 1);
+    return;
+  }
+  monitors_step(s->monitors, parts_done(s), 1L << s->clock.at.halvings);
   s->observe = sample_due(s) || monitors_due(s->monitors, (long)s->clock.at.step);
 }
 
 /* Quasi-static runs observe to see whether the body has come to rest. */
 static void end_increment(simulation *s) {
   if (!relaxation_look(s->relaxation, s->clock.at.step)) return;
-  monitors_look(s->monitors, (long)s->clock.at.step, (long)run_clock_position(&s->clock));
+  monitors_look(s->monitors, parts_done(s), (long)run_clock_position(&s->clock));
   record_sample(s);
   if (run_clock_position(&s->clock) == run_clock_end(&s->clock))
     s->clock.at.status = s->clock.at.status == STEP_OK ? STEP_END : s->clock.at.status;
@@ -221,8 +237,7 @@ static void end_increment(simulation *s) {
 static void look_at_loads(simulation *s) {
   see_ties(s);
   for (int b = 0; b < s->body_count; b++)
-    s->bodies[b].look =
-        load_steps_observe(s->bodies[b].loads, s->bodies[b].body, (long)s->clock.at.step);
+    s->bodies[b].look = load_steps_observe(s->bodies[b].loads, s->bodies[b].body, parts_done(s));
   look_at_ties(s);
 }
 
@@ -243,7 +258,7 @@ static void after_observing(simulation *s) {
     end_increment(s);
     return;
   }
-  monitors_look(s->monitors, (long)s->clock.at.step, (long)run_clock_position(&s->clock));
+  monitors_look(s->monitors, parts_done(s), (long)run_clock_position(&s->clock));
   if (sample_due(s)) record_sample(s);
 }
 
@@ -282,7 +297,7 @@ static void do_block(simulation *s, run_body *of, int task, int block) {
   engine->step(of->state, task, block);
   now = add_time(s, now, &b->stepping);
   if (task < engine->step_stages - 1 || of->tied) return;
-  load_steps_apply(of->loads, of->body, block, (long)s->clock.at.step);
+  load_steps_apply(of->loads, of->body, block, parts_done(s));
   add_time(s, now, &b->loading);
 }
 
@@ -363,7 +378,7 @@ static void begin(simulation *s) {
     load_steps_set_back(s->bodies[b].loads, s->bodies[b].body);
   run_stamps_set_back(&s->stamps);
   follow_ties(s);
-  monitors_step(s->monitors, 0);
+  monitors_step(s->monitors, 0, 1);
 }
 
 void time_loop_observe(simulation *s) {
@@ -402,7 +417,7 @@ static void stand(simulation *s) {
     mesh_rest_work(s->bodies[b].rest);
     cells_look_at_tips(s->bodies[b].state);
   }
-  monitors_look(s->monitors, (long)s->clock.at.step, (long)run_clock_position(&s->clock));
+  monitors_look(s->monitors, parts_done(s), (long)run_clock_position(&s->clock));
   record_sample(s);
   if (run_clock_position(&s->clock) == run_clock_end(&s->clock) && s->clock.at.status == STEP_OK)
     s->clock.at.status = STEP_END;
@@ -418,18 +433,29 @@ static void stand_on(simulation *s) {
   }
 }
 
+/* The team has stopped for a look at the step, and not for a frame that has come. */
+static bool is_held_up(const simulation *s, int64_t event) {
+  return step_shrink_due(s) && s->clock.at.step < s->until && s->clock.at.event == event &&
+         !(s->interrupted && *s->interrupted);
+}
+
 step_status time_loop_run(simulation *s, long steps, const volatile sig_atomic_t *interrupted) {
   if (s->clock.at.status != STEP_OK) return (step_status)s->clock.at.status;
   s->until = next_stop(s, steps);
   s->interrupted = interrupted;
-  s->go_on = s->clock.at.step < s->until && !(interrupted && *interrupted);
   const double begun = s->profile ? monotonic_seconds() : 0;
   begin(s);
+  s->go_on = goes_on(s);
   s->observe = s->clock.at.samples == 0;
   const bool solved = s->relaxation && s->relaxation->deck->solved;
   const int64_t event = s->clock.at.event;
   if (solved) s->go_on = false;
   run_team(s);
+  while (is_held_up(s, event)) {
+    step_shrink_look(s);
+    s->go_on = s->clock.at.status == STEP_OK; /* a look is followed by a step */
+    run_team(s);
+  }
   if (solved && s->clock.at.event == event) stand_on(s);
   if (s->profile) {
     s->profile->elapsed += monotonic_seconds() - begun;

@@ -136,25 +136,36 @@ static inline bool deck_case_regions(deck_case *c, const deck_material *m, const
   return true;
 }
 
-static inline bool deck_case_law(deck_case *c, const deck_interaction *of, const char *path,
-                                 model *opened, simulation_law *into) {
+/* The compiled kernel of a material and its parameters; `on` is NULL of a crack's. */
+static inline bool deck_case_kernel(deck_case *c, const deck_material *m, const deck_lattice *on,
+                                    const char *path, model *opened, simulation_law *into) {
   const char *note;
   char error[4096];
-  const deck_material *m = of->material;
-  if (!m || !material_law_open(m, &c->deck->lattices[of->lattice], path, opened, &c->said))
-    return false;
+  if (!m || !material_law_open(m, on, path, opened, &c->said)) return false;
   into->law = model_kernel(opened, false, &note, error, sizeof error);
   if (!into->law) return false;
   into->parameters = deck_case_parameters(c, into->law, &opened->values);
-  return into->parameters && deck_case_regions(c, m, opened, into);
+  return into->parameters != NULL;
+}
+
+static inline bool deck_case_law(deck_case *c, const deck_interaction *of, const char *path,
+                                 model *opened, simulation_law *into) {
+  return deck_case_kernel(c, of->material, &c->deck->lattices[of->lattice], path, opened, into) &&
+         deck_case_regions(c, of->material, opened, into);
 }
 
 /* A simulation of the deck with the compiled kernels of its own laws. */
 static inline bool deck_case_start(deck_case *c, const char *path) {
-  bool good = c->deck->interaction_count <= DECK_CASE_LAWS &&
+  bool good = c->deck->interaction_count + c->deck->crack_count <= DECK_CASE_LAWS &&
               deck_case_law(c, c->deck->interactions, path, &c->model, &c->law);
   for (int n = 1; n < c->deck->interaction_count && good; n++)
     good = deck_case_law(c, &c->deck->interactions[n], path, &c->more_models[n], &c->laws[n]);
+  for (int k = 0; k < c->deck->crack_count && good; k++) {
+    const int n = c->deck->interaction_count + k;
+    if (c->deck->cracks[k].model)
+      good = deck_case_kernel(c, &c->deck->cracks[k].material, NULL, path, &c->more_models[n],
+                              &c->laws[n]);
+  }
   c->laws[0] = c->law;
   if (good) c->simulation = simulation_new(c->deck, c->laws, &c->said);
   if (c->said.errors) diag_print(&c->said, stderr);

@@ -57,10 +57,10 @@ static void in_tension(void **state) {
   const double theory = 58.88e3;
   double published[ANGLES], conservative[ANGLES];
   assert_true(peaks("examples/tension/rot%d.nml", "7.6 ms", "published", published) < 0.022);
-  assert_true(peaks("examples/tension/rot%d.nml", "7.8 ms", "conservative", conservative) < 0.006);
+  assert_true(peaks("examples/tension/rot%d.nml", "8 ms", "conservative", conservative) < 0.011);
   for (int k = 0; k < ANGLES; k++) {
     assert_true(published[k] > 0.95 * theory && published[k] < 1.01 * theory);
-    assert_true(fabs(conservative[k] / theory - 1) < 0.004);
+    assert_true(fabs(conservative[k] / theory - 1) < 0.008);
   }
   says("examples/tension/README.md", "| at %d°", "%.2f kN", published);
   says("examples/tension/README.md", "| at %d°", "| %.2f kN", conservative);

@@ -25,7 +25,7 @@ static void begin(grown *g) {
   memset(g, 0, sizeof *g);
   g->items[0] = (mesh_tip){.of = &slit, .at_start = true, .number = 0, .law = &some_law};
   g->items[1] = (mesh_tip){.of = &slit, .at_start = false, .number = 1, .law = &some_law};
-  g->tips = (tips){.items = g->items, .count = 2, .check_steps = 10};
+  g->tips = (tips){.items = g->items, .count = 2, .check_steps = 10, .planned = {10}};
   g->tips.pieces.items = g->pieces;
   g->tips.pieces.tip = g->tip;
   g->tips.pieces.leg = g->leg;

@@ -31,7 +31,7 @@ static void check_series(const history *h, int k, const char *name, const char *
 static void monitors_come_first_then_energies_then_increments(void **state) {
   (void)state;
   const relaxation r = {.interval = 1};
-  history h = history_new(&both, &none, &no_stamps, &r, true, SAMPLES);
+  history h = history_new(&both, &none, &no_stamps, &r, NULL, true, SAMPLES);
   arena *memory = arena_new();
   assert_int_equal(h.series_count, MONITORS + LEDGER_COUNT + 2);
   check_series(&h, 0, "load", "N");
@@ -52,8 +52,8 @@ static void monitors_come_first_then_energies_then_increments(void **state) {
 static void without_energies_nothing_judges(void **state) {
   (void)state;
   const relaxation r = {.interval = 1};
-  history dynamic = history_new(&both, &none, &no_stamps, NULL, false, SAMPLES),
-          quasi_static = history_new(&both, &none, &no_stamps, &r, false, SAMPLES);
+  history dynamic = history_new(&both, &none, &no_stamps, NULL, NULL, false, SAMPLES),
+          quasi_static = history_new(&both, &none, &no_stamps, &r, NULL, false, SAMPLES);
   assert_int_equal(dynamic.series_count, MONITORS);
   assert_null(history_energies(&dynamic));
   assert_int_equal(history_imbalance(&dynamic, -1), -1);
@@ -64,12 +64,28 @@ static void without_energies_nothing_judges(void **state) {
   history_free(&quasi_static);
 }
 
+/* The step, where it may shrink. */
+static void the_step_comes_last(void **state) {
+  (void)state;
+  run_clock clock = {.time_step = 8e-6};
+  history h = history_new(&both, &none, &no_stamps, NULL, &clock, true, SAMPLES);
+  const double *step;
+  assert_int_equal(h.series_count, MONITORS + LEDGER_COUNT + 1);
+  check_series(&h, h.series_count - 1, "time_step", "s");
+  history_add(&h, 0, 0);
+  clock.at.halvings = 3;
+  history_add(&h, 1, 1e-3);
+  history_series(&h, h.series_count - 1, NULL, &step);
+  assert_true(step[0] == 8e-6 && step[1] == 1e-6);
+  history_free(&h);
+}
+
 /* Sample n of series k is 100 k + n, up to the last that there is room for; what an increment took
    is the relaxation's. */
 static void samples_stand_where_they_were_put(void **state) {
   (void)state;
   relaxation r = {.interval = 1};
-  history h = history_new(&both, &none, &no_stamps, &r, true, SAMPLES);
+  history h = history_new(&both, &none, &no_stamps, &r, NULL, true, SAMPLES);
   const int monitored = h.series_count - 2;
   for (int n = 0; n < SAMPLES; n++) {
     for (int k = 0; k < monitored; k++)
@@ -90,6 +106,7 @@ static void samples_stand_where_they_were_put(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(monitors_come_first_then_energies_then_increments),
+      cmocka_unit_test(the_step_comes_last),
       cmocka_unit_test(without_energies_nothing_judges),
       cmocka_unit_test(samples_stand_where_they_were_put),
   };

@@ -14,6 +14,7 @@
 #include "runtime/parts/link_limit.h"
 #include "runtime/parts/run_link.h"
 #include "runtime/simulation/simulation_state.h"
+#include "runtime/simulation/step_shrink.h"
 #include "tests/runtime/hand_over.h"
 #include "tests/runtime/rigid_motion.h"
 #include "tests/runtime/same_runs.h"
@@ -267,6 +268,27 @@ static void energies_add_up(void **state) {
   assert_true(work > 0 && stored > 1e-3 * work && small_last(&r.run, "c/stored") > 1e-3 * work);
   assert_true(imbalance < 1e-10 * work && own < 1e-9 * stored);
   assert_true(small_largest(&r.run, "l/kinetic") == 0);
+  close_linked(&r);
+}
+
+/* Each with its own ledger. */
+static void energies_add_up_over_a_shorter_step(void **state) {
+  (void)state;
+  linked_run r;
+  char pulled[2048];
+  snprintf(pulled, sizeof pulled, PULLED, 1e-6);
+  open_free(&r, ONE_WAY, 0.5, pulled);
+  simulation *s = r.run.simulation;
+  simulation_advance(s, simulation_step_count(s) / 2, NULL);
+  step_shrink_to(s, 2, STEP_STIFFER, 0);
+  assert_int_equal(small_go(&r.run), STEP_END);
+  const double work = small_largest(&r.run, "energy/external"),
+               stored = small_largest(&r.run, "l/stored");
+  print_message("imbalance %.1e of the work, of the link %.1e of what it stores\n",
+                small_largest(&r.run, "energy/imbalance") / work,
+                small_largest(&r.run, "l/imbalance") / stored);
+  assert_true(small_largest(&r.run, "energy/imbalance") < 1e-10 * work);
+  assert_true(small_largest(&r.run, "l/imbalance") < 1e-9 * stored);
   close_linked(&r);
 }
 
@@ -537,6 +559,7 @@ int main(void) {
       cmocka_unit_test(a_free_body_keeps_its_momenta),
       cmocka_unit_test(a_rigid_turn_causes_no_force),
       cmocka_unit_test(energies_add_up),
+      cmocka_unit_test(energies_add_up_over_a_shorter_step),
       cmocka_unit_test(the_imbalance_falls_with_the_step),
       cmocka_unit_test(threads_and_stops_do_not_change_a_bit),
       cmocka_unit_test(which_end_a_bar_begins_with_is_no_matter),

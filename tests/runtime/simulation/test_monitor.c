@@ -191,7 +191,7 @@ static void a_window_holds_the_last_steps(void **state) {
     s->body->displacement[0][right] = 1e-3 * (double)(n * n);
     for (long k = n - held + 1; k <= n; k++)
       mean += 1e-3 * (double)(k * k) / (double)held;
-    monitors_step(w.monitors, n);
+    monitors_step(w.monitors, n, 1);
     monitors_look(w.monitors, n, n);
     if (n == 5) zero = mean;
     monitors_sample(w.monitors, n, (double)n * 1e-7, values);
