@@ -269,6 +269,9 @@ typedef struct pl_family {
   /* Of `force_state`: [dof] N, then N m; planes one for each neighbour, `new_plane` apart, written:
      what the particle's own side of the bond does to it. 0 where the bond is absent. */
   double *const *force_state;
+  /* [count] of laws that read it (pl_law.reads_own_size): spacing of each particle over that of the
+     bond class, and so its horizon over that. */
+  const double *own_size;
 } pl_family;
 
 /* uniforms: rows: [neighbours][uniform_count], as `prepare` wrote them for the bond class of each
@@ -510,6 +513,10 @@ typedef struct pl_law {
      rectangles, to the bit the same. NULL: the host asks point by point. */
   pl_rectangle_function rectangle_step;
   pl_rectangle_function rectangle_ledger;
+
+  /* Of laws of families: `spacing` and `horizon` of the law are a particle's own, those of the bond
+     class times pl_family.own_size. */
+  int reads_own_size;
 } pl_law;
 
 /* The one symbol that a compiled kernel exports. */

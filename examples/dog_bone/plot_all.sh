@@ -13,6 +13,8 @@ done
 "$perilat" plot b_s8.h5 b_s4.h5 b_s2.h5 --x displacement --y load --title "Dog-bone B" \
   --label "8 mm" --label "4 mm" --label "2 mm" -o b_curves.png
 "$perilat" plot d_s8.h5 --x displacement --y load --title "Dog-bone D, 8 mm" -o d_curve.png
+[[ -s d_graded.h5 ]] || "$perilat" run d_graded.nml
+"$perilat" plot d_graded.h5 --map damage --frame 14 --factor 50 -o d_graded_damage.png
 
 beside() { # size, lattice, theory
   local law

@@ -12,6 +12,8 @@
 #include "generator/kernel/model.h"
 #include "generator/results/frame_choice.h"
 #include "generator/results/measured.h"
+#include "generator/study/study_plot.h"
+#include "generator/study/study_read.h"
 #include "runtime/base/quantity.h"
 #include "runtime/plot/plot_curve.h"
 #include "runtime/plot/plot_map.h"
@@ -279,13 +281,34 @@ static bool draw_paths(plot_request *q) {
   return good;
 }
 
+/* A column of a study's table over a key. */
+static bool draw_study(plot_request *q) {
+  if (q->beside_count > 0 || q->y_count > 1) {
+    say_error("%s: the table of a study is drawn by itself, one --y over one --x", q->results[0]);
+    return false;
+  }
+  q->curve.labels = q->label_count ? q->labels : NULL;
+  q->curve.y = q->ys[0];
+  return study_plot(q->results[0], &q->curve, q->label_count);
+}
+
+/* Whose table has no time. */
+static bool is_study(const plot_request *q) {
+  return !q->is_map && !q->is_paths && q->result_count == 1 && strcmp(q->curve.x, "time") != 0 &&
+         study_is_table(q->results[0]);
+}
+
 static bool draw(plot_request *q) {
-  const bool good = q->is_paths ? draw_paths(q) : q->is_map ? draw_map(q) : draw_curves(q);
+  const bool good = is_study(q)   ? draw_study(q)
+                    : q->is_paths ? draw_paths(q)
+                    : q->is_map   ? draw_map(q)
+                                  : draw_curves(q);
   if (good) printf("written %s\n", q->curve.output);
   return good;
 }
 
 static bool are_results(const plot_request *q) {
+  if (is_study(q)) return true;
   for (int k = 0; k < q->result_count; k++)
     if (!file_suits(q->results[k], FILES(RESULT), "perilat plot",
                     "a result, which `perilat run` makes"))
@@ -300,7 +323,7 @@ static bool complete(const plot_request *q) {
     say_error("--cracks draws paths, --map a map, which has its cracks in it; give one of them");
   else if (q->is_map && q->result_count > 1)
     say_error("a map shows one result; give one file");
-  else if (q->label_count && q->label_count != q->result_count &&
+  else if (q->label_count && !is_study(q) && q->label_count != q->result_count &&
            q->label_count != q->result_count + q->table_count)
     say_error("%d labels for %d results%s; give one --label a result%s", q->label_count,
               q->result_count, q->table_count ? " and their tables" : "",

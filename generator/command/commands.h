@@ -144,8 +144,9 @@
   X(plot, "-o", "FILE",                                                                            \
     "the picture: PNG, SVG or PDF by the name's ending (RESULT_HISTORY.png, RESULT_FIELD.png)")    \
   X(plot, "--title", "TEXT", "title of the picture")                                               \
-  X(plot, "--x", "NAME", "history along x")                                                        \
-  X(plot, "--y", "NAME", "history along y; several give several curves")                           \
+  X(plot, "--x", "NAME", "history along x; of a study's table (NAME.h5) a key that was varied")    \
+  X(plot, "--y", "NAME",                                                                           \
+    "history along y; several give several curves; of a study's table a column")                   \
   X(plot, "--x-unit", "UNIT", "unit along x")                                                      \
   X(plot, "--y-unit", "UNIT", "unit along y")                                                      \
   X(plot, "--label", "TEXT", "name of a result's curve, one for each result")                      \

@@ -129,6 +129,7 @@ static void write_programs(c_text *out, const kernel_plan *p) {
     c_text_add(out, "    .varying_place = PL_ON_PARTICLE,\n");
   if (p->reads_share) c_text_add(out, "    .reads_share = 1,\n");
   if (p->reads_mass) c_text_add(out, "    .reads_mass = 1,\n");
+  if (p->variation.sizes) c_text_add(out, "    .reads_own_size = 1,\n");
   const kernel_program *step = &p->programs[PROGRAM_STEP], *losses = &p->programs[PROGRAM_LEDGER],
                        *alone = &p->programs[PROGRAM_FORCE_STATE];
   write_program(out, p, step);

@@ -38,7 +38,7 @@ static const char *shared(const emitter *e, int index, const family_index *at, c
                at->first, owner, number);
 }
 
-/* Of a particle's position, velocity, protection, volume, mass or share, or of bonds' chords. */
+/* Of a particle's position, velocity, protection, volume, mass, share or size, or of bonds' chords. */
 static word ends_word(ends_array from) {
   static const word words[] = {[FROM_DISPLACEMENT] = SAY_DISPLACEMENT,
                                [FROM_VELOCITY] = SAY_VELOCITY,
@@ -47,6 +47,7 @@ static word ends_word(ends_array from) {
                                [FROM_VOLUME] = SAY_VOLUME,
                                [FROM_MASS] = SAY_MASS,
                                [FROM_SHARE] = SAY_SHARE,
+                               [FROM_SIZE] = SAY_OWN_SIZE,
                                [FROM_HELD] = SAY_PROTECTED_PARTICLES};
   return words[from];
 }

@@ -247,6 +247,7 @@ static void describe_families(interpreted *p) {
   p->law.reads_shape = plan->reads_shape;
   p->law.reads_share = plan->reads_share;
   p->law.reads_mass = plan->reads_mass;
+  p->law.reads_own_size = plan->variation.sizes;
   p->law.varying_place = l->tree->law == LAW_STATE ? PL_ON_PARTICLE : PL_ON_BOND;
   p->law.pairwise = l->tree->law != LAW_STATE;
   p->law.topology = l->irregular ? PL_LIST : PL_ROWS;

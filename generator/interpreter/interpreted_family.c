@@ -37,6 +37,7 @@ static void point_at_particles(runner *r, const pl_family *f, long first) {
     r->protection[0][q] = f->held[first + q] ? 1 : 0;
   ends[ENDS_HELD_I] = r->protection[0];
   if (r->plan->reads_share) ends[ENDS_SHARE_I] = f->share + first;
+  if (r->plan->variation.sizes) ends[ENDS_SIZE_I] = f->own_size + first;
   if (f->volume) ends[ENDS_VOLUME_I] = f->volume + first;
   if (f->mass) ends[ENDS_MASS_I] = f->mass + first;
   ends[ENDS_TIME_STEP] = &f->time_step;
@@ -116,6 +117,7 @@ static void point_at_parameters(runner *r, const pl_family *f, long first, long 
       r->at[IR_FROM_NEIGHBOUR_PARAMETER][n] = at_neighbours(r, f, f->parameter[n], first, k);
   if (f->mass) ends[ENDS_MASS_J] = at_neighbours(r, f, f->mass, first, k);
   if (r->plan->reads_share) ends[ENDS_SHARE_J] = at_neighbours(r, f, f->share, first, k);
+  if (r->plan->variation.sizes) ends[ENDS_SIZE_J] = at_neighbours(r, f, f->own_size, first, k);
 }
 
 static void point_at_neighbour(runner *r, const pl_family *f, long first, long k,

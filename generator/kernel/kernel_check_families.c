@@ -25,6 +25,7 @@ typedef struct body {
   double **shape;     /* [PL_SHAPE_PLANES][SIZE] */
   double **parameter; /* [varying][SIZE], on bonds as many for each neighbour */
   double *share;      /* [SIZE] */
+  double *own_size;   /* [SIZE] */
   double **before;    /* [fields] */
   double **after[2], **link[2], **bond_link[2], **force[2], **observed[2], **lost[2], **sum[2];
   double **force_state[2];                     /* [dof][neighbours * SIZE] */
@@ -84,6 +85,7 @@ static body body_new(const pl_law *law, int neighbours) {
   b.shape = planes_new(PL_SHAPE_PLANES(law->dimensions), SIZE);
   b.parameter = planes_new(law->varying_count, parameter_planes(&b) * SIZE);
   b.share = must_calloc(SIZE, sizeof *b.share);
+  b.own_size = must_calloc(SIZE, sizeof *b.own_size);
   b.before = values_new(&b, law->fields, law->field_count);
   for (int side = 0; side < 2; side++) {
     b.after[side] = values_new(&b, law->fields, law->field_count);
@@ -113,6 +115,7 @@ static void body_free(body *b) {
   planes_free(b->shape, PL_SHAPE_PLANES(b->law->dimensions));
   planes_free(b->parameter, b->law->varying_count);
   free(b->share);
+  free(b->own_size);
   planes_free(b->before, b->law->field_count);
   for (int side = 0; side < 2; side++) {
     planes_free(b->after[side], b->law->field_count);
@@ -277,6 +280,8 @@ static void draw_parameters(body *b, const double *parameters, uint64_t *seed) {
       b->parameter[k][q] = parameters[b->law->varying[k]] * draw_uniform(seed, 0.95, 1.05);
     if (b->law->varying_place == PL_ON_BOND) match_ends(b, b->parameter[k]);
   }
+  for (int q = 0; q < SIZE && b->law->reads_own_size; q++)
+    b->own_size[q] = draw_uniform(seed, 1, 1.5);
   for (int q = 0; q < SIZE && b->law->reads_share; q++)
     b->share[q] = (double)(draw_bits(seed) & 1);
 }
@@ -427,6 +432,7 @@ static void run_part(const law_readers *l, const body *b, int side, pl_family_fu
                  .held_near = any_held(b),
                  .unusual = b->unusual + site / PL_LANES,
                  .share = b->share + site,
+                 .own_size = b->own_size + site,
                  .mass = b->particle[1] + site,
                  .time_step = 1.7e-7,
                  .lost = {b->lost[side][0] + site, b->lost[side][1] + site}};

@@ -323,8 +323,8 @@ static bool is_placed(const deck_material *m, const symbol *parameter) {
 }
 
 /* The parameters that random fields, regions or formulas make differ, as the law orders them. */
-static bool find_variation(const deck_material *m, model *out, law_variation *v,
-                           diagnostics *said) {
+static bool find_variation(const deck_material *m, const deck_lattice *l, model *out,
+                           law_variation *v, diagnostics *said) {
   const symbol_list *all = &out->law->parameters;
   int *varying = arena_alloc(out->memory, ((size_t)all->count + 1) * sizeof *varying);
   bool good = true;
@@ -337,6 +337,7 @@ static bool find_variation(const deck_material *m, model *out, law_variation *v,
       varying[v->varying_count++] = p;
   v->shares = m->beside && out->law->tree->law == LAW_STATE;
   v->masses = m->beside;
+  v->sizes = l && l->graded;
   for (int k = 0; out->law->rho && k < v->varying_count; k++)
     v->masses = v->masses || varying[k] == out->law->rho->index;
   return good;
@@ -376,7 +377,7 @@ bool material_law_plan(const deck_material *m, const deck_lattice *l, model *out
   law_variation v;
   if (!is_of_bodies(m, l, out->law, said)) return false;
   if (!take_setting(m, l, out, said) || !suits_section(m, l, out->law, said)) return false;
-  if (!find_variation(m, out, &v, said)) return false;
+  if (!find_variation(m, l, out, &v, said)) return false;
   return l && needs_families(m, l, out->law, &v) ? model_plan_of_families(out, &v)
                                                  : model_plan_varying(out, &v);
 }

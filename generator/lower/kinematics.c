@@ -13,7 +13,7 @@ const ends_origin ends_origins[ENDS_COUNT] = {
 ir_node kinematics_input(ir *g, ends_input which) {
   const ends_origin *o = &ends_origins[which];
   const bool of_particle = o->array == FROM_HELD || o->array == FROM_VOLUME ||
-                           o->array == FROM_MASS || o->array == FROM_SHARE;
+                           o->array == FROM_MASS || o->array == FROM_SHARE || o->array == FROM_SIZE;
   placement on = o->array == FROM_CLASS            ? ON_BODY
                  : of_particle && o->owner == OF_I ? ON_PARTICLE
                                                    : ON_BOND;

@@ -48,6 +48,8 @@
   X(HELD_J, "held_j", FROM_HELD, OF_J, 0)                                                          \
   X(SHARE_I, "share_i", FROM_SHARE, OF_I, 0)                                                       \
   X(SHARE_J, "share_j", FROM_SHARE, OF_J, 0)                                                       \
+  X(SIZE_I, "size_i", FROM_SIZE, OF_I, 0)                                                          \
+  X(SIZE_J, "size_j", FROM_SIZE, OF_J, 0)                                                          \
   X(PROTECTED, "protected", FROM_FLAGS, OF_BOND, 0)                                                \
   X(TIME_STEP, "time_step", FROM_TIME, OF_STRIP, 0)                                                \
   X(PHI_IX, "phi_ix", FROM_DISPLACEMENT, OF_I, 3)                                                  \
@@ -75,6 +77,7 @@ typedef enum ends_array {
   FROM_VOLUME,
   FROM_MASS,
   FROM_SHARE,
+  FROM_SIZE, /* families: of a particle, over that of its bond class */
   FROM_CLASS,
   FROM_FLAGS,
   FROM_HELD, /* families: a particle's damage stays as it is */
@@ -91,7 +94,7 @@ typedef struct ends_origin {
 extern const ends_origin ends_origins[ENDS_COUNT];
 
 /* The input node. Its placement follows from what it is: CLASS_CHORD on the body; HELD_I, VOLUME_I,
-   MASS_I and SHARE_I on the particle; all others on the bond. */
+   MASS_I, SHARE_I and SIZE_I on the particle; all others on the bond. */
 ir_node kinematics_input(ir *g, ends_input which);
 
 /* asin(x)/x of the square of x, for |x| < 1/16. */

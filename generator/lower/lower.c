@@ -233,15 +233,16 @@ static ir_node of_both_ends(lowering *c, ir_node value) {
   const law_variation *v = c->variation;
   ir *g = c->graph;
   const int nodes = ir_count(g);
-  if (v->varying_count == 0) return value;
+  if (v->varying_count == 0 && !v->sizes) return value;
   ir_substitution *s = ir_substitution_new(g);
   unsigned char *marks = must_calloc((size_t)nodes + 1, 1);
   ir_mark(g, &value, 1, marks);
   for (ir_node n = 0; n < nodes; n++)
     if (marks[n] && (ir_operation(g, n) == IR_NEIGHBOUR || ir_is_reduction(ir_operation(g, n))))
       ir_substitution_add(s, n, n);
-  for (int k = 0; k < v->varying_count; k++) {
-    const ir_node mine = lower_own_parameter(c, v->varying[k]);
+  for (int k = v->sizes ? -1 : 0; k < v->varying_count; k++) {
+    const ir_node mine =
+        k < 0 ? kinematics_input(g, ENDS_SIZE_I) : lower_own_parameter(c, v->varying[k]);
     ir_substitution_add(s, mine, half(g, ir_add(g, mine, ir_unary(g, IR_NEIGHBOUR, mine))));
   }
   value = ir_substitution_apply(s, value);

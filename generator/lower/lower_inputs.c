@@ -41,6 +41,13 @@ ir_node lower_volume(ir *g, const law *l) {
   return l->irregular ? kinematics_input(g, ENDS_VOLUME_I) : lower_quantity(g, QUANTITY_V);
 }
 
+ir_node lower_own_size(ir *g, const law *l, builtin_quantity q) {
+  ir_node size = kinematics_input(g, ENDS_SIZE_I);
+  if (l->tree->law != LAW_STATE)
+    size = ir_scaled(g, 0.5, ir_add(g, size, kinematics_input(g, ENDS_SIZE_J)));
+  return ir_mul(g, size, lower_quantity(g, q));
+}
+
 ir_node lower_inverse_shape(ir *g, const law *l, int row, int column) {
   static const char *const names[] = {
       "shape_0",  "shape_1",  "shape_2",  "shape_3",  "shape_4",  "shape_5",  "shape_6",

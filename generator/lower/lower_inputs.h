@@ -33,6 +33,8 @@ static inline bool lower_is_none(const law *l, int k) {
 
 /* Volume of the particle, m^3: one for all on a lattice, each its own in irregular bodies. */
 ir_node lower_volume(ir *g, const law *l);
+/* Spacing or horizon, where these are a particle's own; in laws of bonds the mean of both ends'. */
+ir_node lower_own_size(ir *g, const law *l, builtin_quantity q);
 /* Of families: 1 where the bonds of the particle resolve all strains, else 0. */
 ir_node lower_resolved(ir *g, const law *l);
 /* Entry (row, column) of the particle's inverse shape matrix, which the runtime keeps as an upper

@@ -38,6 +38,8 @@ static components lower_quantity_name(lowering *c, builtin_quantity q) {
   if (builtin_quantities[q].shape == SHAPE_BENDING) return lower_bending_quantity(c, q);
   if (q == QUANTITY_TWIST && !c->law->twists) return scalar(ir_constant(c->graph, 0));
   if (q == QUANTITY_N_FAMILY && lower_is_state_law(c)) return scalar(lower_family_size(c->graph));
+  if (c->variation->sizes && (q == QUANTITY_SPACING || q == QUANTITY_HORIZON))
+    return scalar(lower_own_size(c->graph, c->law, q));
   if (q == QUANTITY_DIRECTION) return lower_direction(c->graph, c->law);
   return scalar(lower_quantity(c->graph, q));
 }

@@ -20,6 +20,7 @@ typedef struct law_variation {
   int varying_count;
   bool masses; /* particles have masses of their own */
   bool shares; /* force state and energy are those of a particle's share (pl_family) */
+  bool sizes;  /* `spacing` and `horizon` are a particle's own (pl_family) */
   bool alone;  /* hosts take single families (pl_law.force_state) */
 } law_variation;
 

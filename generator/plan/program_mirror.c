@@ -105,7 +105,8 @@ static const ends_input exchanged[][2] = {
     {ENDS_V_IX, ENDS_V_JX},         {ENDS_V_IY, ENDS_V_JY},       {ENDS_V_IZ, ENDS_V_JZ},
     {ENDS_PHI_I, ENDS_PHI_J},       {ENDS_OMEGA_I, ENDS_OMEGA_J}, {ENDS_PHI_IX, ENDS_PHI_JX},
     {ENDS_PHI_IY, ENDS_PHI_JY},     {ENDS_PHI_IZ, ENDS_PHI_JZ},   {ENDS_HELD_I, ENDS_HELD_J},
-    {ENDS_VOLUME_I, ENDS_VOLUME_J}, {ENDS_MASS_I, ENDS_MASS_J},   {ENDS_SHARE_I, ENDS_SHARE_J}};
+    {ENDS_VOLUME_I, ENDS_VOLUME_J}, {ENDS_MASS_I, ENDS_MASS_J},   {ENDS_SHARE_I, ENDS_SHARE_J},
+    {ENDS_SIZE_I, ENDS_SIZE_J}};
 
 static ir_node mirror_ends(builder *b, ir_node n) {
   switch ((ends_input)ir_input_index(b->g, n)) {

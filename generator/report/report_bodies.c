@@ -47,7 +47,7 @@ void announce_notches(const run *r, int lattice) {
 static void announce_particles(const run *r, int lattice) {
   const rows *w = simulation_rows(r->simulation, lattice);
   const deck_lattice *k = &r->deck->lattices[lattice];
-  char depth[32] = "";
+  char depth[32] = "", sizes[64];
   int fewest = ROWS_MAX_NEIGHBOURS, most = 0;
   if (w->dimensions == 3) snprintf(depth, sizeof depth, " x %.5g", 1e3 * w->depth);
   for (long p = 0; p < w->particle_count; p++) {
@@ -55,10 +55,14 @@ static void announce_particles(const run *r, int lattice) {
     fewest = degree < fewest ? degree : fewest;
     most = degree > most ? degree : most;
   }
-  printf("  particles  %s: %ld of %s, spacing %.6g mm, %.5g x %.5g%s mm between outermost ones\n"
+  if (w->own_size)
+    snprintf(sizes, sizeof sizes, "%.4g to %.4g", 1e3 * w->spacing, 1e3 * rows_largest_spacing(w));
+  else
+    snprintf(sizes, sizeof sizes, "%.6g", 1e3 * w->spacing);
+  printf("  particles  %s: %ld of %s, spacing %s mm, %.5g x %.5g%s mm between outermost ones\n"
          "  neighbours %d to %d, mean %.4g, %ld bonds\n",
-         k->name, w->particle_count, k->file ? k->file : "blue noise", 1e3 * w->spacing,
-         1e3 * w->width, 1e3 * w->height, depth, fewest, most,
+         k->name, w->particle_count, k->file ? k->file : "blue noise", sizes, 1e3 * w->width,
+         1e3 * w->height, depth, fewest, most,
          2 * (double)w->bond_count / (double)w->particle_count, w->bond_count);
 }
 

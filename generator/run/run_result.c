@@ -237,7 +237,7 @@ static result_text *collect_files(run *r) {
 }
 
 typedef struct particle_arrays { /* of all bodies, one after the other */
-  double *reference, *volume;
+  double *reference, *volume, *spacing;
   int32_t *body, *resolved;
 } particle_arrays;
 
@@ -249,6 +249,7 @@ static void put_particles(const run *r, int lattice, particle_arrays at) {
     rows_place(w, w->particle_site[p], here);
     memcpy(at.reference + dimensions * p, here, dimensions * sizeof *here);
     at.volume[p] = w->site_volume ? w->site_volume[w->particle_site[p]] : w->volume;
+    at.spacing[p] = rows_spacing(w, w->particle_site[p]);
     at.resolved[p] = 1;
   }
   if (deck_lattice_is_bar(&r->deck->lattices[lattice]))
@@ -266,15 +267,17 @@ static size_t own_particles(const run *r, int lattice) {
 
 static void particle_table(run *r, result_header *h) {
   const int bodies = simulation_bodies(r->simulation);
-  bool irregular = false;
+  bool irregular = false, graded = false;
   h->dimensions = simulation_rows(r->simulation, 0)->dimensions;
   for (int b = 0; b < bodies; b++) {
     h->particle_count += (long)own_particles(r, b);
+    graded = graded || simulation_rows(r->simulation, b)->own_size;
     irregular = irregular || (own_particles(r, b) > 0 && simulation_rows(r->simulation, b)->list &&
                               !deck_lattice_is_bar(&r->deck->lattices[b]));
   }
   const size_t n = (size_t)h->particle_count, dimensions = (size_t)h->dimensions;
   const particle_arrays all = {arena_alloc(r->memory, dimensions * n * sizeof(double)),
+                               arena_alloc(r->memory, n * sizeof(double)),
                                arena_alloc(r->memory, n * sizeof(double)),
                                arena_alloc(r->memory, n * sizeof(int32_t)),
                                arena_alloc(r->memory, n * sizeof(int32_t))};
@@ -283,11 +286,12 @@ static void particle_table(run *r, result_header *h) {
     if (own_particles(r, b) > 0)
       put_particles(r, b,
                     (particle_arrays){all.reference + dimensions * first, all.volume + first,
-                                      all.body + first, all.resolved + first});
+                                      all.spacing + first, all.body + first, all.resolved + first});
     first += own_particles(r, b);
   }
   h->reference = all.reference;
   h->volume = all.volume;
+  h->spacing = graded ? all.spacing : NULL;
   h->body = all.body;
   h->resolved = irregular ? all.resolved : NULL;
 }

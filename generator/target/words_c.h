@@ -225,6 +225,7 @@
   X(FAMILY_PARAMETER, "family->parameter[$1]$2")                                                   \
   X(FAMILY_PARAMETER_TOWARD, "family->parameter[$1]$2 + $3*family->plane")                         \
   X(SHARE, "family->share$2")                                                                      \
+  X(OWN_SIZE, "family->own_size$2")                                                                \
   X(MASS, "family->mass$2")                                                                        \
   X(LENGTH, "family->length$2 + $3*family->plane")                                                 \
   X(CHORD, "family->chord[$1]$2 + $3*family->plane")                                               \

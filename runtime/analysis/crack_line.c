@@ -69,8 +69,9 @@ static double distance_between(const rows *g, int32_t i, int32_t j) {
 }
 
 /* So near to each other sites are joined, unless something cut them apart. */
-static double reach_of(const rows *g) {
-  return (g->list ? g->spacing : g->horizon) * (1 - 1e-6);
+static double reach_of(const rows *g, int32_t i, int32_t j) {
+  const double spacing = pl_fmin(rows_spacing(g, i), rows_spacing(g, j));
+  return (g->list ? spacing : g->horizon) * (1 - 1e-6);
 }
 
 static void add_pair(crack_line *l, long part, int32_t i, int32_t j) {
@@ -84,7 +85,7 @@ static void add_pair(crack_line *l, long part, int32_t i, int32_t j) {
   }
   const double length = distance_between(g, i, j);
   if (k < 0) {
-    l->cut[part] = l->cut[part] || length < reach_of(g);
+    l->cut[part] = l->cut[part] || length < reach_of(g, i, j);
     return;
   }
   l->bonds[l->first[part + 1]++] =

@@ -282,7 +282,7 @@ static bool window_of(const pl_law *law, const rows *w, int axis, window *v) {
     low = pl_fmin(low, at[axis]);
     high = pl_fmax(high, at[axis]);
   }
-  const double margin = passes * w->horizon, half = 0.5 * w->spacing;
+  const double margin = passes * rows_largest_horizon(w), half = 0.5 * w->spacing;
   const bool has_middle = high - low - 2 * margin >= FEWEST * w->spacing;
   *v = has_middle ? (window){axis, low + margin, high - low - 2 * margin}
                   : (window){axis, low - half, high - low + 2 * half};

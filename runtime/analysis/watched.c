@@ -43,7 +43,7 @@ static bool is_near(const deck_monitor *m, const rows *g, const char *what, cons
                     diagnostics *d) {
   const double distance = bravais_distance(here, m->at);
   char text[ROWS_PLACE_TEXT];
-  if (distance <= g->spacing) return true;
+  if (distance <= rows_largest_spacing(g)) return true;
   diag_report(d, DIAG_EMPTY_REGION, deck_where(&m->item, "at"),
               "no %s stands within a spacing of `at`", what);
   diag_hint(d, "the nearest %s stands %.4g mm away at %s", what, 1e3 * distance,

@@ -500,13 +500,15 @@ static void list_interactions(arena *a, deck *k) {
   k->interaction_count = count;
 }
 
-/* Middle of the box that holds what a material is for; NaN where no shape says. */
-static void find_middle(const deck *k, const deck_material *m, double middle[3]) {
+/* Middle of the box of a region, or where that is NULL of a lattice's bodies; NaN where no shape
+   says. */
+static void find_middle(const deck *k, const char *lattice, const char *of_region,
+                        double middle[3]) {
   double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
-  const int region = m->region ? deck_find_region(k, m->region) : -1;
+  const int region = of_region ? deck_find_region(k, of_region) : -1;
   for (int b = 0; b < (region < 0 ? k->body_count : 1); b++) {
     double low[3], high[3];
-    if (region < 0 && !deck_same_name(k->bodys[b].lattice, m->lattice)) continue;
+    if (region < 0 && !deck_same_name(k->bodys[b].lattice, lattice)) continue;
     if ((region < 0 ? &k->bodys[b].item : &k->regions[region].item)->faulty) continue;
     shape_box(region < 0 ? &k->bodys[b].shape : &k->regions[region].shape, low, high);
     for (int c = 0; c < 3; c++) {
@@ -524,11 +526,21 @@ static void take_middles(deck_reader *r) {
   for (int i = 0; i < r->k->material_count; i++) {
     const deck_material *m = &r->k->materials[i];
     double middle[3];
-    find_middle(r->k, m, middle);
+    find_middle(r->k, m->lattice, m->region, middle);
     for (int n = 0; n < m->assignment_count; n++) {
       deck_assignment *a = &m->assignments[n];
       if (a->placed && a->placed->formula) a->value = formula_value(a->placed->formula, middle);
     }
+  }
+}
+
+static void take_middle_spacings(deck_reader *r) {
+  for (int i = 0; i < r->k->lattice_count; i++) {
+    deck_lattice *l = (deck_lattice *)(uintptr_t)&r->k->lattices[i]; /* still being read */
+    double middle[3];
+    if (!l->graded) continue;
+    find_middle(r->k, l->name, NULL, middle);
+    l->spacing = formula_value(l->graded, middle);
   }
 }
 
@@ -579,6 +591,7 @@ static void check_whole(deck_reader *r) {
   check_meshless(r);
   check_regional_materials(r);
   take_middles(r);
+  take_middle_spacings(r);
   for (int i = 0; i < k->lattice_count; i++) {
     const deck_lattice *lattice = &k->lattices[i];
     if (!lattice->name) continue;

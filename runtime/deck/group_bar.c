@@ -260,10 +260,22 @@ static void take_quantities(const deck_lattice *bar, const deck_lattice *around,
   item->mass_thickness = around->mass_thickness;
 }
 
+/* Links and ties are as long as a spacing says, which here is not one. */
+static bool is_graded(deck_reader *r, const deck_lattice *l, const deck_item *item,
+                      const char *word) {
+  if (!l->graded) return false;
+  diag_report(r->d, DIAG_CONFLICT, deck_where(item, "lattice"),
+              "the particles of `%s` differ in size from place to place: no %s joins them",
+              deck_shown(r->memory, l->name), word);
+  diag_hint(r->d, "give `%s` one `spacing`", deck_shown(r->memory, l->name));
+  return true;
+}
+
 /* What is wrong with what it joins has been said, and the link is left out with it. */
 static void take_around(deck_reader *r, deck_link *item) {
   const deck_lattice *around = &r->k->lattices[item->of_around];
   item->item.faulty = around->item.faulty || r->k->lattices[item->of_bar].item.faulty;
+  if (is_graded(r, around, &item->item, "link")) return;
   if (!item->item.faulty) take_quantities(&r->k->lattices[item->of_bar], around, item);
   if (deck_lattice_is_bar(around) || deck_lattice_is_link(around))
     diag_report(r->d, DIAG_BAD_VALUE, deck_where(&item->item, "lattice"),
@@ -354,6 +366,7 @@ static void check_tie(deck_reader *r, const namelist_group *from, void *into) {
                 deck_shown(r->memory, item->lattice), deck_lattice_word(l));
     return;
   }
+  if (is_graded(r, l, &item->item, "tie")) return;
   for (int n = 0; n < r->k->tie_count; n++)
     if (deck_same_name(r->k->ties[n].lattice, item->lattice) &&
         deck_same_name(r->k->ties[n].mesh, item->mesh)) {

@@ -31,14 +31,12 @@ static const deck_key_info lattice_keys[] = {
             "says: `blue_noise`, even "
             "but at random, and `particles`, read from a `file`"},
     {.name = "spacing",
-     .type = DECK_REAL,
+     .type = DECK_LATER,
      .unit = "m",
-     .bound = BOUND_POSITIVE,
      .fallback = "= from the mean volume with kind `particles`; else required",
-     DECK_AT(lattice, spacing),
+     DECK_NOT_KEPT,
      .doc = "distance of nearest neighbours; `blue_noise`, `particles`: in the hexagonal or fcc "
-            "lattice with particles as "
-            "large"},
+            "lattice with particles as large; `blue_noise`: or a formula of `x`, `y`, `z`"},
     {.name = "horizon",
      .type = DECK_REAL,
      .unit = "1",
@@ -214,6 +212,38 @@ static bool has_spacing(deck_reader *r, const namelist_group *from, int arrangem
   return false;
 }
 
+/* Only particles that are thrown can be as large as the place wants them. */
+static bool read_graded(deck_reader *r, const namelist_value *v, deck_lattice *item) {
+  static const double anywhere[FORMULA_VARIABLES];
+  const formula *f = deck_formula_read(r->memory, v, "spacing", &deck_formula_of_place, "m", r->d);
+  if (!f) return false;
+  for (int k = 0; k < FORMULA_VARIABLES; k++)
+    if (formula_reads(f, k)) item->graded = f;
+  item->spacing = formula_value(f, anywhere);
+  if (!item->graded && !(item->spacing > 0 && isfinite(item->spacing))) {
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, v->where, "`spacing` must be greater than 0");
+    return false;
+  }
+  if (!item->graded || arrangement_of(item) == BLUE_NOISE) return true;
+  diag_report(r->d, DIAG_CONFLICT, v->where, "the spacing of %s is the same everywhere",
+              arrangement_words[arrangement_of(item)]);
+  diag_hint(r->d, "only with kind = 'blue_noise' may `spacing` be a formula of the place");
+  return false;
+}
+
+static bool read_spacing(deck_reader *r, const namelist_group *from, deck_lattice *item) {
+  const namelist_key *key = namelist_find(from, "spacing");
+  if (!key) return true;
+  if (!deck_values_counted(key, 1, r->d)) return false;
+  const namelist_value *v = &key->values[0];
+  if (deck_is_place_file(v)) {
+    diag_report(r->d, DIAG_BAD_VALUE, v->where, "`spacing` is a number or a formula, not a file");
+    return false;
+  }
+  if (deck_is_formula(v)) return read_graded(r, v, item);
+  return deck_real_read(v, "spacing", "m", BOUND_POSITIVE, &item->spacing, r->d);
+}
+
 static void check_neighbours(deck_reader *r, const namelist_group *from, deck_lattice *item,
                              int dimensions) {
   deck_refuse_both(r, from, "horizon", "neighbours");
@@ -267,7 +297,8 @@ static void check_kind(deck_reader *r, const namelist_group *from, deck_lattice 
                    : arrangement != REGULAR && dimensions == 3 ? IRREGULAR_SPACE
                                                                : dimensions;
   if (arrangement != REGULAR && !refuse_keys_of_sites(r, from)) return;
-  if (!has_spacing(r, from, arrangement) || !setting_suits(r, item, dimensions) ||
+  if (!has_spacing(r, from, arrangement) || !read_spacing(r, from, item) ||
+      !setting_suits(r, item, dimensions) ||
       !deck_keys_fit(from, arrangement_uses, 3, arrangement, arrangement_words[arrangement],
                      r->d) ||
       !deck_keys_fit(from, dimension_uses, DIMENSION_USES, kind, dimension_words[kind], r->d))

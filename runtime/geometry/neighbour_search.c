@@ -221,17 +221,33 @@ typedef struct reach_list {
   long *room;
   int32_t own;
   double square;
+  const double *reach; /* of each point, or NULL: `square` is that of all */
   int found, most;
 } reach_list;
 
+static double square_of(const reach_list *l, int32_t point) {
+  if (!l->reach) return l->square;
+  const double mean = 0.5 * (l->reach[l->own] + l->reach[point]);
+  return mean * mean;
+}
+
 static bool take_within(void *of, int32_t point, double square) {
   reach_list *l = of;
-  if (point == l->own || !(square <= l->square)) return false;
+  if (point == l->own || !(square <= square_of(l, point))) return false;
   if (point > l->own) add_pair(l->pairs, l->room, l->own, point);
   return ++l->found > l->most;
 }
 
-point_pairs pairs_within(const point_cloud *c, double distance, int most) {
+static double largest_of(const double *values, long count) {
+  double largest = 0;
+  for (long k = 0; k < count; k++)
+    largest = pl_fmax(largest, values[k]);
+  return largest;
+}
+
+/* `reach` as in reach_list. */
+static point_pairs find_within(const point_cloud *c, double distance, const double *reach,
+                               int most) {
   point_pairs pairs = {.crowded = -1};
   long room = 0;
   if (c->count == 0) return pairs;
@@ -239,12 +255,20 @@ point_pairs pairs_within(const point_cloud *c, double distance, int most) {
   for (long p = 0; p < c->count && pairs.crowded < 0; p++) {
     double from[3];
     point_at(c, p, from);
-    const walk w = walk_from(&s, from, distance);
-    reach_list l = {&pairs, &room, (int32_t)p, distance * distance, 0, most};
+    const walk w = walk_from(&s, from, reach ? 0.5 * (reach[p] + distance) : distance);
+    reach_list l = {&pairs, &room, (int32_t)p, distance * distance, reach, 0, most};
     if (visit_boxes(&w, NULL, take_within, &l)) pairs.crowded = p;
   }
   search_free(&s);
   return pairs;
+}
+
+point_pairs pairs_within(const point_cloud *c, double distance, int most) {
+  return find_within(c, distance, NULL, most);
+}
+
+point_pairs pairs_within_own(const point_cloud *c, const double *reach, int most) {
+  return find_within(c, largest_of(reach, c->count), reach, most);
 }
 
 /* --- near some -------------------------------------------------------------------------------- */

@@ -31,6 +31,9 @@ point_pairs pairs_of_nearest(const point_cloud *c, int nearest, int most);
 /* i and j are a pair when they are at most `distance` (m) apart. */
 point_pairs pairs_within(const point_cloud *c, double distance, int most);
 
+/* The same where they are at most the mean of reach[i] and reach[j] (m) apart. */
+point_pairs pairs_within_own(const point_cloud *c, const double *reach, int most);
+
 /* near[count] becomes 1 for points at most `distance` (m) from one of the chosen, else 0. */
 void points_near(const point_cloud *c, const int32_t *chosen, long chosen_count, double distance,
                  unsigned char *near);

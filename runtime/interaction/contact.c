@@ -100,7 +100,7 @@ contact *contact_new(const contact_body *bodies, int count, bool selves) {
   for (int b = 0; b < count; b++) {
     new_side(c, &c->sides[b], &bodies[b]);
     least = pl_fmin(least, bodies[b].of->lattice->spacing);
-    most = pl_fmax(most, bodies[b].of->lattice->spacing);
+    most = pl_fmax(most, rows_largest_spacing(bodies[b].of->lattice));
   }
   c->skin = skin_part * least;
   c->reach = most + c->skin;
@@ -176,7 +176,8 @@ static int64_t slot_between(const rows *g, long p, long q) {
 }
 
 static double spacing_of(const contact *c, int32_t i, int32_t j) {
-  return 0.5 * (rows_of(&c->sides[c->side[i]])->spacing + rows_of(&c->sides[c->side[j]])->spacing);
+  return 0.5 * (rows_spacing(rows_of(&c->sides[c->side[i]]), c->site[i]) +
+                rows_spacing(rows_of(&c->sides[c->side[j]]), c->site[j]));
 }
 
 /* What two particles do when they touch. False where they cannot. */

@@ -202,6 +202,11 @@ static void new_shares(sweep *w, family *f) {
     f->whole[q] = 1;
 }
 
+/* Of a law that reads sizes on particles of one. */
+static bool sizes_are_alike(const sweep *w) {
+  return PL_HAS(w->law, reads_own_size) && w->law->reads_own_size && !w->lattice->own_size;
+}
+
 static void new_masses(sweep *w, family *f) {
   const long size = w->lattice->size;
   f->mass = body_doubles(w->body, size);
@@ -284,7 +289,7 @@ sweep_engine family_engine(sweep *w, const double *parameters) {
   new_planes(w, f);
   new_blocks(w, f);
   if (law->reads_shape) find_shapes(w, f);
-  if (law->reads_share) new_shares(w, f);
+  if (law->reads_share || sizes_are_alike(w)) new_shares(w, f);
   if (law->reads_mass && !w->lattice->site_mass) new_masses(w, f);
   f->pairs = family_pairs_new(w, f);
   f->windows = f->pairs ? NULL : family_windows(w, f);

@@ -64,6 +64,8 @@ void family_run_part(const sweep *w, int block, const row_part *at, pl_family *r
   if (w->law->reads_mass)
     run->mass = (w->lattice->site_mass ? w->lattice->site_mass : family_of(w)->mass) + start;
   if (w->law->reads_share) run->share = (w->share ? w->share : family_of(w)->whole) + start;
+  if (PL_HAS(w->law, reads_own_size) && w->law->reads_own_size)
+    run->own_size = (w->lattice->own_size ? w->lattice->own_size : family_of(w)->whole) + start;
   if (w->lost_state) {
     const bool aside = w->body->blocks[block].aside;
     run->lost[PL_LOST_TO_STATES] = (aside ? w->lost_state : w->dissipated_state) + start;

@@ -32,7 +32,7 @@ typedef struct family {
   double **bond_link;            /* [bond_links][neighbours * size]; the same */
   double **observed;             /* [1 + outputs][planes * size] */
   double *shape[SHAPE_PLANES];   /* [size]; NULL unless the law reads them */
-  double *whole;                 /* [size] 1, the share of all particles; NULL as before */
+  double *whole;                 /* [size] 1, the share or size of all particles; NULL as before */
   double *mass;                  /* [size] kg, where all particles are alike; NULL as before */
   family_block *blocks;          /* [block_count] */
   struct family_window *windows; /* [block_count]; NULL: links of the whole body are kept */

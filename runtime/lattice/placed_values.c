@@ -30,11 +30,11 @@ static bool evaluate(const deck_placed *p, const rows *w, int64_t site, span whe
 
 static bool look_up(const place_table *t, const rows *w, const int32_t *particles, long count,
                     span where, double *values, diagnostics *d) {
-  /* a little more: places of results are rounded */
-  const double within = (0.5 + 1e-6) * w->spacing;
   for (long k = 0; k < count; k++) {
     double at[3];
     rows_place(w, w->particle_site[particles[k]], at);
+    /* a little more: places of results are rounded */
+    const double within = (0.5 + 1e-6) * rows_spacing(w, w->particle_site[particles[k]]);
     const long nearest = place_table_nearest(t, at, within);
     if (nearest < 0)
       return report(w, at, "the file has no value within half a spacing of the particle at", where,
@@ -49,7 +49,7 @@ static bool look_up(const place_table *t, const rows *w, const int32_t *particle
 static bool from_file(const deck_placed *p, const rows *w, const int32_t *particles, long count,
                       span where, double *values, diagnostics *d) {
   place_table t;
-  const bool good = place_table_read(&t, p, w->dimensions, w->spacing, where, d) &&
+  const bool good = place_table_read(&t, p, w->dimensions, rows_largest_spacing(w), where, d) &&
                     look_up(&t, w, particles, count, where, values, d);
   place_table_free(&t);
   return good;

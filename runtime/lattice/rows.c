@@ -90,6 +90,7 @@ void rows_free(rows *w) {
   free_list(w->list);
   free(w->site_volume);
   free(w->site_mass);
+  free(w->own_size);
   free(w->row_class);
   free(w->bonds);
   free(w->held_bonds);

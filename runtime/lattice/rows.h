@@ -81,7 +81,7 @@ typedef struct rows {
   double length[PL_MAX_DIRECTIONS];   /* m */
   double weight[PL_MAX_DIRECTIONS];   /* part of the partner's volume that lies in the horizon */
   int shell[PL_MAX_DIRECTIONS];       /* 1: of the nearest neighbours */
-  double horizon;                     /* m */
+  double horizon;                     /* m; of particles of the size 1 (own_size) */
   double spacing, volume;     /* m, m^3 (stiffness thickness does not enter: mass thickness does) */
   double site_area;           /* m^2 of the plane that one site stands for; 0 in space, of chains */
   double stiffness_thickness; /* m: `t` of the laws; 0 in space and of chains */
@@ -90,10 +90,14 @@ typedef struct rows {
                                  are not alike */
   neighbour_list *list;       /* NULL on lattices */
   double *site_volume, *site_mass; /* [size] m^3, kg; NULL where all particles are alike */
-  uint64_t *bonds;                 /* [size] bit k: the owned bond k exists */
-  uint64_t *held_bonds;            /* [size] bit k: the damage of the owned bond k stays as it is */
-  uint64_t *held;                  /* [size] 1: the particle is protected */
-  unsigned char *present;          /* [size] the site exists */
+  /* [size] spacing of each particle over `spacing`, which is then the smallest; NULL where that is
+     the same everywhere */
+  double *own_size;
+  double largest_size;    /* of these; 0 without */
+  uint64_t *bonds;        /* [size] bit k: the owned bond k exists */
+  uint64_t *held_bonds;   /* [size] bit k: the damage of the owned bond k stays as it is */
+  uint64_t *held;         /* [size] 1: the particle is protected */
+  unsigned char *present; /* [size] the site exists */
   double *x, *y, *z; /* [size] reference position, m (absent sites too); z is NULL in the plane */
   long particle_count, bond_count;
   rows_copy *copies;           /* [particle_count] of a link (linked.h); else NULL */
@@ -143,6 +147,18 @@ static inline double rows_stressed_mean(const rows *w) {
 static inline double rows_stressed_volume(const rows *w, long site) {
   const double V = w->site_volume ? w->site_volume[site] : w->volume;
   return w->site_area > 0 ? V / w->volume * w->site_area * w->stiffness_thickness : V;
+}
+
+/* Spacing of a site's particle, and the largest of all, m. */
+static inline double rows_spacing(const rows *w, long site) {
+  return w->own_size ? w->spacing * w->own_size[site] : w->spacing;
+}
+static inline double rows_largest_spacing(const rows *w) {
+  return w->own_size ? w->spacing * w->largest_size : w->spacing;
+}
+/* The largest horizon, m. */
+static inline double rows_largest_horizon(const rows *w) {
+  return w->own_size ? w->horizon * w->largest_size : w->horizon;
 }
 
 /* Reference position of a site; at[2] is 0 in the plane. */

@@ -10,6 +10,7 @@
 #include "runtime/geometry/shape.h"
 #include "runtime/lattice/bond_numbers.h"
 #include "runtime/lattice/shape_matrix.h"
+#include "runtime/particles/gradation.h"
 #include "runtime/particles/particle_set.h"
 #include "runtime/particles/site_marks.h"
 
@@ -85,10 +86,13 @@ static double longest_given(const scattered *from) {
 static double horizon_of(const builder *b) {
   if (b->from->horizon > 0) return b->from->horizon;
   if (b->from->bonds) return longest_given(b->from);
-  return radius_of(b->points.dimensions, (b->from->neighbours + 1) * mean_measure(b));
+  const int dimensions = b->points.dimensions;
+  const double each =
+      b->from->own_size ? particle_measure(dimensions, b->from->spacing) : mean_measure(b);
+  return radius_of(dimensions, (b->from->neighbours + 1) * each);
 }
 
-static bool allocate(rows *w) {
+static bool allocate(rows *w, bool graded) {
   const long planes = 2 * (long)w->directions * w->size;
   neighbour_list *l = w->list = must_calloc(1, sizeof *l);
   w->row_class = must_calloc((size_t)w->row_count + 1, 1);
@@ -97,7 +101,9 @@ static bool allocate(rows *w) {
   l->length = rows_array(planes, sizeof *l->length);
   w->site_volume = rows_array(w->size, sizeof *w->site_volume);
   w->site_mass = rows_array(w->size, sizeof *w->site_mass);
-  bool good = l->neighbour && l->incoming && l->length && w->site_volume && w->site_mass;
+  if (graded) w->own_size = rows_array(w->size, sizeof *w->own_size);
+  bool good = l->neighbour && l->incoming && l->length && w->site_volume && w->site_mass &&
+              (!graded || w->own_size);
   for (int a = 0; a < w->dimensions; a++)
     good = (l->chord[a] = rows_array(planes, sizeof(double))) && good;
   return rows_new_sites(w) && good;
@@ -128,7 +134,7 @@ static bool new_rows(builder *b, int numbers) {
     w->chord[k][0] = w->length[k] = from->spacing;
     w->weight[k] = w->shell[k] = 1;
   }
-  return allocate(w);
+  return allocate(w, from->own_size != NULL);
 }
 
 static void place_particles(builder *b) {
@@ -139,6 +145,7 @@ static void place_particles(builder *b) {
   for (long q = 0; q < w->size; q++) {
     w->site_particle[q] = -1;
     w->site_volume[q] = w->volume; /* of absent sites, so that nothing is divided by 0 */
+    if (w->own_size) w->own_size[q] = 1;
     for (int a = 0; a < w->dimensions; a++)
       at[a][q] = b->at[a][0];
   }
@@ -149,6 +156,8 @@ static void place_particles(builder *b) {
     w->site_particle[site] = particle;
     w->particle_site[particle] = (int32_t)site;
     w->site_volume[site] = b->from->measure[particle] * thickness;
+    if (w->own_size) w->own_size[site] = b->from->own_size[particle];
+    if (w->own_size) w->largest_size = pl_fmax(w->largest_size, w->own_size[site]);
     for (int a = 0; a < w->dimensions; a++)
       at[a][site] = b->at[a][r];
   }
@@ -265,9 +274,19 @@ static point_pairs given_pairs(const builder *b) {
   return pairs;
 }
 
+static point_pairs pairs_by_sizes(const builder *b) {
+  double *reach = must_alloc(((size_t)b->points.count + 1) * sizeof *reach);
+  for (long r = 0; r < b->points.count; r++)
+    reach[r] = b->from->horizon * b->from->own_size[b->order[r]];
+  const point_pairs pairs = pairs_within_own(&b->points, reach, ROWS_MAX_NEIGHBOURS);
+  free(reach);
+  return pairs;
+}
+
 static point_pairs find_pairs(const builder *b) {
   const scattered *from = b->from;
   if (from->bonds) return given_pairs(b);
+  if (from->horizon > 0 && from->own_size) return pairs_by_sizes(b);
   return from->horizon > 0 ? pairs_within(&b->points, from->horizon, ROWS_MAX_NEIGHBOURS)
                            : pairs_of_nearest(&b->points, from->neighbours, ROWS_MAX_NEIGHBOURS);
 }
@@ -381,9 +400,10 @@ static double mean_nearest(const rows *w) {
   return sum / (double)w->particle_count;
 }
 
-/* Particles as far apart as they are large: volumes in another unit than the file says are the
+/* Particles of a file as far apart as they are large: volumes in another unit than the file says are the
    usual slip. */
 static void compare_sizes(const rows *w, const deck_lattice *l, diagnostics *d) {
+  if (w->own_size) return;
   const double apart = mean_nearest(w), ratio = apart / w->spacing;
   if (ratio > 0.3 && ratio < 2) return;
   diag_report(d, DIAG_DECK_WARNING, deck_where(&l->item, "file"),
@@ -412,11 +432,14 @@ rows *scattered_build(const deck *k, int lattice, diagnostics *d) {
   const deck_lattice *l = &k->lattices[lattice];
   particle_set *set = particle_set_make(k, lattice, d);
   if (!set) return NULL;
+  for (long n = 0; set->own && n < set->count; n++)
+    set->own[n] /= set->spacing;
   long crowded;
   const scattered from = {
       .points = {set->dimensions, set->count, {set->at[0], set->at[1], set->at[2]}},
       .measure = set->volume,
       .spacing = set->spacing,
+      .own_size = set->own,
       .horizon = l->horizon * (1 + BRAVAIS_REACH_TOLERANCE) * set->spacing,
       .neighbours = l->neighbours,
       .stiffness_thickness = l->stiffness_thickness,

@@ -15,7 +15,11 @@ typedef struct scattered {
   point_cloud points;
   const double *measure; /* [points.count] m^2 of the plane, m^3 of space and of bars */
   double spacing;        /* m, nominal: scales tolerances and limits, and is told to laws */
-  double horizon; /* m: bonds join particles at most this far apart; 0: `neighbours` decides */
+  /* [points.count] spacing of each over `spacing`, the smallest; NULL where all have that */
+  const double *own_size;
+  /* m: bonds join particles at most this far apart, where sizes are given the mean of both sizes
+     times this; 0: `neighbours` decides */
+  double horizon;
   int neighbours; /* a bond: either particle is among so many nearest ones of the other */
   /* [bond_count] instead of both: these bonds, each once, between particles at different places; no
      particle has more than ROWS_MAX_NEIGHBOURS */
@@ -27,7 +31,7 @@ typedef struct scattered {
 } scattered;
 
 /* With `neighbours` the rows' horizon is the radius of a disc or sphere of one particle more than
-   that, all of mean size. NULL when there is not enough memory or are 2^31 bonds or more (*crowded
+   that, all of mean size, or where sizes are given of the size 1. NULL when there is not enough memory or are 2^31 bonds or more (*crowded
    < 0), or when particle *crowded has more neighbours than there can be. */
 rows *scattered_rows(const scattered *from, long *crowded);
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
 #include "runtime/base/random_number.h"
 #include "runtime/geometry/bins.h"
 #include "runtime/geometry/shape.h"
@@ -25,8 +26,9 @@ static const double lloyd_tolerance[] = {[2] = 1e-3, [3] = 1e-2}; /* of a cell *
 
 typedef struct board {
   const solid *solid;
+  const gradation *sizes;
   double *share;        /* [bodies] of boxes of bodies up to this one in the volume of all boxes */
-  boxes boxes;          /* as large as the distance, or larger */
+  boxes boxes;          /* as large as the first distance of the smallest particles, or larger */
   int32_t *head, *next; /* first point of each box, the next of each point, or -1 */
   uint64_t seed, thrown;
 } board;
@@ -46,8 +48,10 @@ static void find_shares(board *b) {
     b->share[n] /= sum;
 }
 
-static void board_begin(board *b, const solid *s, long points, double size, uint64_t seed) {
+static void board_begin(board *b, const solid *s, const gradation *g, long points, uint64_t seed) {
+  const double size = FIRST_DISTANCE * g->least;
   *b = (board){.solid = s,
+               .sizes = g,
                .boxes = {.dimensions = s->dimensions, .size = size, .count = {1, 1, 1}},
                .seed = random_mix(seed)};
   for (int c = 0; c < s->dimensions; c++) {
@@ -87,6 +91,16 @@ static bool throw_dart(board *b, double at[3]) {
   return shape_contains(s->bodies[body], at, 0) && solid_holds(s, at);
 }
 
+/* The spacing where the dart has fallen; 0 where others have fallen as densely as particles are to
+   stand there: so often that it is the density which counts. */
+static double spacing_of_dart(board *b, const double at[3]) {
+  const gradation *g = b->sizes;
+  if (!g->graded) return g->spacing;
+  const double spacing = pl_fmax(gradation_at(g, at), g->least), part = g->least / spacing;
+  const double density = g->dimensions == 3 ? part * part * part : part * part;
+  return draw(b) < density ? spacing : 0;
+}
+
 static bool is_near(const board *b, const voronoi_points *p, const int box[3], const double at[3],
                     double square) {
   const int64_t number = boxes_number(&b->boxes, box);
@@ -100,12 +114,12 @@ static bool is_near(const board *b, const voronoi_points *p, const int box[3], c
 }
 
 static bool is_free(const board *b, const voronoi_points *p, const double at[3], double distance) {
-  const int layers = p->dimensions == 3 ? 1 : 0;
+  const int reach = (int)ceil(distance / b->boxes.size), layers = p->dimensions == 3 ? reach : 0;
   int home[3];
   boxes_home(&b->boxes, at, home);
   for (int z = -layers; z <= layers; z++)
-    for (int y = -1; y <= 1; y++)
-      for (int x = -1; x <= 1; x++) {
+    for (int y = -reach; y <= reach; y++)
+      for (int x = -reach; x <= reach; x++) {
         const int box[3] = {home[0] + x, home[1] + y, home[2] + z};
         if (is_near(b, p, box, at, distance * distance)) return false;
       }
@@ -122,14 +136,16 @@ static void put(board *b, voronoi_points *p, long k, const double at[3]) {
   *head = (int32_t)k;
 }
 
-static void throw_all(voronoi_points *p, const solid *s, uint64_t seed) {
-  double distance = FIRST_DISTANCE * p->spacing, at[3];
+static void throw_all(voronoi_points *p, const solid *s, const gradation *g, uint64_t seed) {
+  double distance = FIRST_DISTANCE, at[3]; /* spacings */
   board b;
-  board_begin(&b, s, p->count, distance, seed);
+  board_begin(&b, s, g, p->count, seed);
   int misses = 0;
   for (long k = 0; k < p->count;) {
     if (!throw_dart(&b, at)) continue;
-    if (is_free(&b, p, at, distance)) {
+    const double spacing = spacing_of_dart(&b, at);
+    if (!(spacing > 0)) continue;
+    if (is_free(&b, p, at, distance * spacing)) {
       put(&b, p, k++, at);
       misses = 0;
     } else if (++misses == MISSES) {
@@ -142,27 +158,53 @@ static void throw_all(voronoi_points *p, const solid *s, uint64_t seed) {
 
 /* --- Lloyd ------------------------------------------------------------------------------------ */
 
+/* From the centroid of a cell to that of a mass in it of the density h^-(d + 2), in d dimensions: h
+   is linear across the cell, and the cell a disc or ball of radius r, whose second moment is r^2/(d
+   + 2) of its size. */
+static void lean(const gradation *g, double volume, double at[3]) {
+  if (!g->graded) return;
+  const double r = g->dimensions == 2 ? sqrt(volume / M_PI) : pl_cbrt(0.75 * volume / M_PI);
+  const double h = gradation_at(g, at);
+  double slope[3];
+  gradation_slope(g, at, r, slope);
+  for (int c = 0; c < g->dimensions && h > 0; c++)
+    at[c] -= r * r * slope[c] / h;
+}
+
 /* In a body that is not convex a centroid may lie outside: then the point stays. */
-static void move(voronoi_points *p, const solid *s, double *const centroid[3]) {
+static void move(voronoi_points *p, const solid *s, const gradation *g, const double *volume,
+                 double *const centroid[3]) {
   for (long k = 0; k < p->count; k++) {
     double at[3] = {0, 0, 0};
     for (int c = 0; c < p->dimensions; c++)
       at[c] = centroid[c][k];
+    lean(g, volume[k], at);
     if (!solid_holds(s, at)) continue;
     for (int c = 0; c < p->dimensions; c++)
       p->at[c][k] = at[c];
   }
 }
 
-void blue_noise_fill(voronoi_points *p, const solid *s, uint64_t seed) {
+static void find_own(voronoi_points *p, const gradation *g) {
+  for (long k = 0; p->own && k < p->count; k++) {
+    double at[3] = {0, 0, 0};
+    for (int c = 0; c < p->dimensions; c++)
+      at[c] = p->at[c][k];
+    p->own[k] = pl_fmax(gradation_at(g, at), p->spacing);
+  }
+}
+
+void blue_noise_fill(voronoi_points *p, const solid *s, const gradation *g, uint64_t seed) {
   const size_t bytes = (size_t)p->count * sizeof(double);
   double *volume = must_alloc(bytes), *centroid[3] = {0};
   for (int c = 0; c < p->dimensions; c++)
     centroid[c] = must_alloc(bytes);
-  throw_all(p, s, seed);
+  throw_all(p, s, g, seed);
+  find_own(p, g);
   for (int n = 0; n < LLOYD_STEPS; n++) {
     voronoi_measure(p, s, lloyd_tolerance[p->dimensions], volume, centroid);
-    move(p, s, centroid);
+    move(p, s, g, volume, centroid);
+    find_own(p, g);
   }
   free(volume);
   for (int c = 0; c < p->dimensions; c++)

@@ -10,18 +10,23 @@
         Lloyd    0.1125       0.4375          0.825        each point goes to the middle
         again    0.1375       0.453           0.8156       towards 1/6, 1/2, 5/6
 
-   Ten steps are taken; more would freeze the points into grains of a lattice. */
+   Ten steps are taken; more would freeze the points into grains of a lattice.
+
+   Where the spacing h is graded, darts fall as densely as the particles are to stand, each with a
+   distance of its own, and a cell's centroid is that of a mass of density h^-(2 + dimensions):
+   cells of a centroidal tessellation are as large as h then (Gersho 1979). */
 #ifndef PERILAT_RUNTIME_BLUE_NOISE_H
 #define PERILAT_RUNTIME_BLUE_NOISE_H
 
 #include <stdint.h>
 
-#include "runtime/particles/solid.h"
+#include "runtime/particles/gradation.h"
 #include "runtime/particles/voronoi.h"
 
 /* Places p->count points in the body at p->at[dimensions][count]; p->spacing is that of the
-   hexagonal or fcc lattice of as many. All lie in the body. The same bits for the same seed,
+   hexagonal or fcc lattice of as many; p->own becomes what the gradation asks for at each, unless
+   it is NULL. All lie in the body. The same bits for the same seed,
    whatever the number of threads. */
-void blue_noise_fill(voronoi_points *p, const solid *s, uint64_t seed);
+void blue_noise_fill(voronoi_points *p, const solid *s, const gradation *g, uint64_t seed);
 
 #endif

@@ -8,6 +8,7 @@
 #include "dsl/base/elementary.h"
 #include "runtime/geometry/shape.h"
 #include "runtime/particles/blue_noise.h"
+#include "runtime/particles/gradation.h"
 #include "runtime/particles/particle_table.h"
 #include "runtime/particles/site_marks.h"
 #include "runtime/particles/solid.h"
@@ -18,10 +19,6 @@ static const double cell_tolerance[] = {[2] = 1e-9, [3] = 1e-4};
 #define SIZE_TOLERANCE(dimensions) (0.1 * cell_tolerance[dimensions])
 
 #define NEAREST 1e-3 /* spacings: particles nearer to each other are one by mistake */
-
-double particle_measure(int dimensions, double spacing) {
-  return dimensions == 2 ? sqrt(0.75) * spacing * spacing : sqrt(0.5) * spacing * spacing * spacing;
-}
 
 static double spacing_for(int dimensions, double measure) {
   return dimensions == 2 ? sqrt(measure / sqrt(0.75)) : pl_cbrt(measure / sqrt(0.5));
@@ -42,12 +39,13 @@ void particle_set_free(particle_set *set) {
   for (int c = 0; c < 3; c++)
     free(set->at[c]);
   free(set->volume);
+  free(set->own);
   free(set);
 }
 
 static voronoi_points points_of(const particle_set *set) {
   return (voronoi_points){
-      set->dimensions, set->count, {set->at[0], set->at[1], set->at[2]}, set->spacing};
+      set->dimensions, set->count, {set->at[0], set->at[1], set->at[2]}, set->spacing, set->own};
 }
 
 typedef struct maker {
@@ -101,10 +99,10 @@ static bool has_body(const maker *m) {
 
 /* Boxes of the bodies' common box are kept while it is filled: their number is what memory must
    bear. Across a thin body there is one. */
-static bool few_enough(const maker *m, double measure) {
+static bool few_enough(const maker *m, double spacing, double measure) {
   double box = 1;
   for (int c = 0; c < m->solid.dimensions; c++)
-    box *= pl_fmax(m->solid.upper[c] - m->solid.lower[c], m->lattice->spacing);
+    box *= pl_fmax(m->solid.upper[c] - m->solid.lower[c], spacing);
   return !site_too_many(m->lattice, box / measure, m->d);
 }
 
@@ -120,22 +118,39 @@ static void report_nothing_left(const maker *m, double measure) {
               measure * (plane ? 1e6 : 1e9));
 }
 
+/* The smallest spacing becomes that of the set. */
+static particle_set *new_filled(const gradation *g, long count) {
+  particle_set *set = particle_set_new(g->dimensions, count);
+  set->spacing = g->least;
+  if (g->graded) set->own = must_calloc((size_t)count + 1, sizeof *set->own);
+  return set;
+}
+
 static particle_set *fill(maker *m) {
   const int dimensions = m->solid.dimensions;
-  const double measure = particle_measure(dimensions, m->lattice->spacing);
-  if (!has_body(m) || !few_enough(m, measure)) return NULL;
+  gradation g;
+  if (!has_body(m)) return NULL;
+  if (!m->lattice->graded &&
+      !few_enough(m, m->lattice->spacing, particle_measure(dimensions, m->lattice->spacing)))
+    return NULL;
   m->size = solid_size(&m->solid, SIZE_TOLERANCE(dimensions));
-  const long count = lround(m->size / measure);
+  if (!gradation_begin(&g, m->lattice, &m->solid, m->size, m->d)) return NULL;
+  const double measure = particle_measure(dimensions, g.least);
+  if (m->lattice->graded && m->size > 0 && !few_enough(m, g.least, measure)) return NULL;
+  const long count = lround(g.count);
   if (count < 1) {
     report_nothing_left(m, measure);
     return NULL;
   }
-  particle_set *set = particle_set_new(dimensions, count);
-  set->spacing = m->lattice->spacing;
+  particle_set *set = new_filled(&g, count);
   voronoi_points p = points_of(set);
-  blue_noise_fill(&p, &m->solid, (uint64_t)m->lattice->seed);
+  blue_noise_fill(&p, &m->solid, &g, (uint64_t)m->lattice->seed);
   measure_cells(m, set);
-  if (bodies_have_particles(m, set)) return set;
+  if (gradation_is_borne(&g, m->lattice, set->at, set->own, count, m->d) &&
+      bodies_have_particles(m, set)) {
+    set->spacing = g.least;
+    return set;
+  }
   particle_set_free(set);
   return NULL;
 }
@@ -230,7 +245,7 @@ static double spacing_of(const maker *m, const particle_table *t) {
 }
 
 static bool all_apart(const maker *m, particle_table *t, double spacing) {
-  const voronoi_points p = {t->dimensions, t->count, {t->at[0], t->at[1], t->at[2]}, spacing};
+  const voronoi_points p = {t->dimensions, t->count, {t->at[0], t->at[1], t->at[2]}, spacing, NULL};
   char first[PARTICLE_TABLE_TEXT], second[PARTICLE_TABLE_TEXT];
   long pair[2];
   if (!voronoi_too_near(&p, NEAREST * spacing, pair)) return true;

@@ -16,8 +16,9 @@ typedef struct particle_set {
   double *at[3];  /* [count] m; at[2] is NULL in the plane */
   double *volume; /* [count] m^2 of the plane or m^3 of space */
   /* m, of nearest neighbours in the hexagonal or fcc lattice with as large particles: of the deck,
-     or from the mean volume */
+     or from the mean volume; where the deck grades it the smallest */
   double spacing;
+  double *own; /* [count] m, the deck's spacing at each particle where it is graded; else NULL */
 } particle_set;
 
 /* Particles of the deck's lattice of that number, whose kind deck_lattice_is_irregular. The same
@@ -31,8 +32,5 @@ void particle_set_measure(particle_set *set, const deck *k, int lattice);
 /* Of so many particles, all places and volumes 0. */
 particle_set *particle_set_new(int dimensions, long count);
 void particle_set_free(particle_set *set);
-
-/* m^2 or m^3 that a site of the hexagonal or fcc lattice of that spacing stands for. */
-double particle_measure(int dimensions, double spacing);
 
 #endif

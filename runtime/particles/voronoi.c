@@ -228,20 +228,22 @@ typedef struct diagram {
   const solid *solid;
   bins bins;
   vicinity vicinity;
-  double reach, tolerance; /* m; of a cell */
+  double reach;     /* spacings */
+  double tolerance; /* of a cell */
   double *volume;
   double *const *centroid;
   bool *open;
 } diagram;
 
 static void measure_cell(const diagram *g, cutter *w, long k) {
+  const double reach = g->reach * (g->points->own ? g->points->own[k] : g->points->spacing);
   double at[3];
   place_of(g->points, k, at);
-  begin_cell(w, g->solid, at, g->reach);
+  begin_cell(w, g->solid, at, reach);
   cut_by_neighbours(w, g->points, &g->bins, &g->vicinity, k, at);
   const cell_moments m = solid_fill(g->solid, &w->scratch, &w->cell, at, g->tolerance);
   g->volume[k] = m.size;
-  g->open[k] = is_open(w, at, g->reach);
+  g->open[k] = is_open(w, at, reach);
   for (int c = 0; g->centroid && c < g->points->dimensions; c++)
     g->centroid[c][k] = m.size > 0 ? at[c] + m.first[c] / m.size : at[c];
 }
@@ -283,6 +285,13 @@ static double farthest(const diagram *g) {
   return sqrt(square);
 }
 
+static double largest_spacing(const voronoi_points *p) {
+  double largest = p->spacing;
+  for (long k = 0; p->own && k < p->count; k++)
+    largest = pl_fmax(largest, p->own[k]);
+  return largest;
+}
+
 void voronoi_measure(const voronoi_points *p, const solid *s, double tolerance, double *volume,
                      double *const centroid[3]) {
   diagram g = {p, s, .tolerance = tolerance, .volume = volume, .centroid = centroid};
@@ -291,12 +300,13 @@ void voronoi_measure(const voronoi_points *p, const solid *s, double tolerance, 
                BOX_SIZE * p->spacing);
   g.open = must_alloc((size_t)p->count * sizeof *g.open);
   memset(g.open, true, (size_t)p->count * sizeof *g.open);
-  const double all = farthest(&g);
-  for (g.reach = FIRST_REACH * p->spacing;; g.reach *= 2) {
-    g.vicinity = vicinity_of(&g.bins.boxes, 2 * g.reach * sqrt(p->dimensions) / g.bins.boxes.size);
+  const double all = farthest(&g), largest = largest_spacing(p);
+  for (g.reach = FIRST_REACH;; g.reach *= 2) {
+    g.vicinity =
+        vicinity_of(&g.bins.boxes, 2 * g.reach * largest * sqrt(p->dimensions) / g.bins.boxes.size);
     measure_open_cells(&g);
     free(g.vicinity.boxes);
-    if (g.reach >= all || !any_open(&g)) break;
+    if (g.reach * p->spacing >= all || !any_open(&g)) break;
   }
   free(g.open);
   bins_end(&g.bins);

@@ -13,6 +13,7 @@ typedef struct voronoi_points {
   long count;
   double *at[3];  /* [count] m; at[2] is NULL in the plane */
   double spacing; /* m: about the distance of neighbours */
+  double *own;    /* [count] m: the same of each point where they differ, none less; or NULL */
 } voronoi_points;
 
 /* volume[count] in m^2 or m^3 and, unless that is NULL, centroid[dimensions][count], which may lie

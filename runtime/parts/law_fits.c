@@ -95,6 +95,12 @@ static bool topology_serves(const pl_law *law, const deck_lattice *l, const rows
     diag_hint(d, "build another one with `perilat build`, or use `perilat run`");
     return false;
   }
+  if (w->own_size && !(PL_HAS(law, reads_own_size) && law->reads_own_size)) {
+    diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&l->item, "spacing"),
+                "this solver was built for particles of one size");
+    diag_hint(d, "build another one with `perilat build`, or use `perilat run`");
+    return false;
+  }
   if (law->kind == PL_STATE && same) return true;
   if (law->kind == PL_STATE) {
     if (l->edges == EDGES_EXACT)

@@ -10,6 +10,7 @@
 #include "runtime/analysis/uniform_strain.h"
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/lattice/rows_select.h"
+#include "runtime/particles/gradation.h"
 
 /* --- which bodies ----------------------------------------------------------------------------- */
 
@@ -45,6 +46,14 @@ static double modulus_of(const run_body *b, const run_law *l, const deck *k) {
   return implied_elastic(l->law, l->parameters, g, &e) ? e.E[0] : NAN;
 }
 
+/* Of a particle of the spacing, m^3: the mean, where all are meant to be as large. */
+static double stressed_volume(const rows *g) {
+  const double thickness = g->dimensions == 2 ? g->stiffness_thickness : 1;
+  return g->own_size ? particle_measure(g->dimensions, g->spacing) * thickness
+                     : rows_stressed_mean(g);
+}
+
+/* Of the softest of its laws. */
 double run_contact_stiffness(const run_body *b, const deck *k) {
   const rows *g = b->lattice_rows;
   double least = INFINITY;
@@ -53,7 +62,7 @@ double run_contact_stiffness(const run_body *b, const deck *k) {
     if (!(E > 0)) return NAN;
     least = pl_fmin(least, E);
   }
-  return least * rows_stressed_mean(g) / (g->spacing * g->spacing);
+  return least * stressed_volume(g) / (g->spacing * g->spacing);
 }
 
 static bool find_stiffness(run_contact *c, const deck *k, const run_body *bodies, diagnostics *d) {

@@ -25,11 +25,16 @@ static double *gather(const run_body *b, double *const *from, bool at_rest) {
   return values;
 }
 
+/* The deck's; where that is graded the smallest. */
+static double spacing_of(const run_body *b, const deck *k) {
+  return b->lattice_rows->own_size ? b->lattice_rows->spacing : k->lattices[b->lattice].spacing;
+}
+
 static state_body take_body(const run_body *b, const deck *k, double step) {
   const deck_lattice *l = &k->lattices[b->lattice];
   return (state_body){.lattice = must_copy(b->name),
                       .kind = must_copy(l->kind),
-                      .spacing = l->spacing,
+                      .spacing = spacing_of(b, k),
                       .first = b->first_particle,
                       .count = b->lattice_rows->particle_count,
                       .dof = b->body->dof,
@@ -196,10 +201,10 @@ static bool lattice_fits(const starting *s, const run_body *b, const state_body 
     diag_report(s->d, DIAG_CONFLICT, s->where, "`%s` is %s in `%s`, and %s in this deck", b->name,
                 from->kind, name_of(s), l->kind);
     diag_hint(s->d, "give it the `kind` that it has in the result's deck, or another name");
-  } else if (!same_size(l->spacing, from->spacing)) {
+  } else if (!same_size(spacing_of(b, s->deck), from->spacing)) {
     diag_report(s->d, DIAG_CONFLICT, s->where,
                 "`%s` has a spacing of %.6g mm in `%s`, and of %.6g mm in this deck", b->name,
-                1e3 * from->spacing, name_of(s), 1e3 * l->spacing);
+                1e3 * from->spacing, name_of(s), 1e3 * spacing_of(b, s->deck));
     diag_hint(s->d, "give it the `spacing` of the result's deck, or another name");
   } else
     return true;

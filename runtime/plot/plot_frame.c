@@ -22,6 +22,7 @@
 
 void plot_frame_free(plot_frame *m) {
   free(m->reference);
+  free(m->size);
   free(m->moved);
   free(m->values);
   free(m->damage);
@@ -70,6 +71,21 @@ static double spacing_of(const plot_frame *m) {
   }
   free(nearest);
   return count ? sum / (double)count : 0;
+}
+
+/* Of graded particles, over the mean: as `spacing` is one of the mean. */
+static double *sizes_of(result_file *f, const plot_frame *m) {
+  long count = 0;
+  double sum = 0, *size = result_read_spacing(f, &count);
+  if (!size || count != m->particles) {
+    free(size);
+    return NULL;
+  }
+  for (long p = 0; p < count; p++)
+    sum += size[p];
+  for (long p = 0; p < count; p++)
+    size[p] *= (double)count / sum;
+  return size;
 }
 
 /* Displacements times factor; a factor is chosen so that the largest relative one is a twentieth of
@@ -464,6 +480,7 @@ static bool read_frame(result_file *f, const char *path, plot_frame *m, const pl
   m->increment = increment_at(f, m->time);
   m->frequency = frequency_of(f, k);
   m->spacing = spacing_of(m);
+  m->size = sizes_of(f, m);
   if (m->spacing == 0 && m->meshes.count > 0) m->spacing = m->meshes.items[0].size;
   char *title = result_read_title(f);
   snprintf(m->title, sizeof m->title, "%s", o->title ? o->title : title);

@@ -236,6 +236,10 @@ static bool is_dot(const map *m, long p, int component) {
   return m->frame.surface && isnan(plot_frame_value(&m->frame, p, component));
 }
 
+static double half_spacing(const map *m, long p) {
+  return 0.5 * m->frame.spacing * m->at.scale * (m->frame.size ? m->frame.size[p] : 1);
+}
+
 /* In the plane the more damaged above the less damaged; in a view of a surface those in front above
    those behind, each with an edge to stand out by, above dots, so that nothing hides a bar
    inside. */
@@ -244,7 +248,6 @@ static void draw_particles(canvas *c, const map *m, int component, double low, d
   const bool coloured = m->frame.values && !m->frame.of_bonds;
   const unsigned char *nodes = m->frame.nodes; /* cells show their values */
   const bool by_class = coloured && m->frame.of_damage && !m->frame.surface;
-  const double whole = 0.5 * m->frame.spacing * m->at.scale;
   cairo_new_path(c->cr);
   for (int k = 0; k < (by_class ? CLASSES : PASSES); k++)
     for (long p = 0; p < m->frame.particles; p++) {
@@ -252,7 +255,7 @@ static void draw_particles(canvas *c, const map *m, int component, double low, d
       if (nodes && nodes[p]) continue;
       if ((by_class ? damage_class_of(m->frame.values[p]) : ball ? BALLS : DOTS) != k) continue;
       draw_particle(c, m, p, coloured ? particle_colour(m, p, component, low, high) : plain_ink,
-                    pl_fmax(0.7, ball ? whole : 0.2 * whole), ball && m->frame.surface);
+                    pl_fmax(0.7, (ball ? 1 : 0.2) * half_spacing(m, p)), ball && m->frame.surface);
     }
 }
 

@@ -101,6 +101,7 @@ static bool write_particles(hid_t file, const result_header *h) {
               h5_write_doubles(file, "/particles/reference", h->reference, 2, places, "m") &&
               h5_write_doubles(file, "/particles/volume", h->volume, 1, one, "m^3") &&
               h5_write_integers(file, "/particles/body", h->body, 1, one) &&
+              (!h->spacing || h5_write_doubles(file, "/particles/spacing", h->spacing, 1, one, "m")) &&
               (!h->resolved || h5_write_integers(file, "/particles/resolved", h->resolved, 1, one));
   for (int k = 0; good && k < h->interaction_count; k++)
     good = write_bonds(file, &h->bonds[k]);

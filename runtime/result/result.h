@@ -14,6 +14,7 @@
      /particles/reference   [N, dimensions] m, body by body in the order of the deck's lattices
      /particles/body        [N] which of them
      /particles/volume      [N] m^3
+     /particles/spacing     [N] m; only where particles are graded
      /particles/resolved    [N] 1 where the bonds resolve all strains, else 0; only of particles
                             that stand on no lattice
      /bonds/<interaction>   [M, 2] particle indices
@@ -148,6 +149,7 @@ typedef struct result_header {
   const int32_t *body;       /* [N] number of the body in the deck, from 0 */
   const double *volume;      /* [N] */
   const int32_t *resolved;   /* [N]; NULL on lattices */
+  const double *spacing;     /* [N] m; NULL where no particles are graded */
   const result_bonds *bonds; /* [interaction_count] */
   int interaction_count;
   const result_mesh *meshes;

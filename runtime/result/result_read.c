@@ -62,6 +62,15 @@ double *result_read_volume(result_file *f, long *particles) {
   return result_read_table(f, "/particles/volume", false, 1, 1, particles, &columns);
 }
 
+double *result_read_spacing(result_file *f, long *particles) {
+  int columns;
+  result_names all = result_members(f, "/particles");
+  const bool graded = result_names_find(&all, "spacing") >= 0;
+  result_names_free(&all);
+  return graded ? result_read_table(f, "/particles/spacing", false, 1, 1, particles, &columns)
+                : NULL;
+}
+
 double *result_read_frame_times(result_file *f, long *frames) {
   int columns;
   return result_read_table(f, "/frames/time", false, 1, 1, frames, &columns);

@@ -18,6 +18,8 @@ void result_read_unchecked(result_file *f, const char *name, char *why, size_t s
 double *result_read_reference(result_file *f, long *particles,
                               int *dimensions);              /* [N][2] or [N][3] */
 double *result_read_volume(result_file *f, long *particles); /* [N] m^3 */
+/* [N] m; NULL where no particles are graded. */
+double *result_read_spacing(result_file *f, long *particles);
 double *result_read_frame_times(result_file *f, long *frames);
 /* Cracks across the line of a monitor: [frames][most][2] place and width, m, NaN beyond the last.
    */

@@ -95,6 +95,44 @@ static void the_lattice_in_space_is_isotropic(void **state) {
   is_isotropic("mplm_concrete_space");
 }
 
+/* The hexagon with bonds to more than the nearest: all share one axial rigidity, 2 sqrt(3) E s^2 t
+   over (1 - nu) and the sum of their lengths, and are as stiff across as (1 - 3 nu)/(1 + nu) of
+   that along. A family of six directions is isotropic, so that K and G need no more. */
+static void larger_horizons_hold_the_moduli(void **state) {
+  (void)state;
+  static const char *const laws[] = {"elastic_micropolar", "mplm_bilinear", "mplm_concrete"};
+  static const char *const horizons[] = {"1.5", "1.7321", "1.9", "2", "2.646", "2.9", "3", "3.46"};
+  static const int neighbours[] = {6, 12, 12, 18, 30, 30, 36, 36};
+  double worst = 0;
+  for (int k = 0; k < 3 * 8 * 2 * 4; k++) {
+    const int law_number = k / 64, reach = k / 8 % 8, strain = k / 4 % 2;
+    const double nu = k % 4 / (strain ? 12.0 : 9.0), turn = 17 * (k % 3);
+    char text[1024];
+    deck_case c;
+    implied_elasticity e;
+    snprintf(text, sizeof text,
+             "&simulation end_time = 1e-4 /\n"
+             "&lattice name = 'c' kind = 'hexagonal' horizon = %s thickness = 0.1 spacing = 0.01 "
+             "rotation = %g setting = '%s' /\n"
+             "&material lattice = 'c' model = '%s' E = 30e9 nu = %.17g /\n"
+             "&body lattice = 'c' shape = 'disc' centre = 0, 0 radius = 0.055 /\n",
+             horizons[reach], turn, strain ? "plane_strain" : "plane_stress", laws[law_number], nu);
+    deck_case_open(&c, text);
+    const rows *g = simulation_rows(c.simulation, 0);
+    const double E_p = strain ? E / (1 - nu * nu) : E, nu_p = strain ? nu / (1 - nu) : nu;
+    assert_int_equal(2 * g->directions, neighbours[reach]);
+    assert_true(implied_elastic(c.law.law, c.law.parameters, g, &e));
+    for (int a = 0; a < 2; a++) {
+      worst = fmax(worst, fabs(e.E[a] / E_p - 1));
+      worst = fmax(worst, fabs(e.nu[a] - nu_p));
+    }
+    worst = fmax(worst, fabs(e.G / (E_p / (2 * (1 + nu_p))) - 1));
+    deck_case_close(&c);
+  }
+  print_message("6 to 36 neighbours on the hexagon: E, nu and G to %.1e\n", worst);
+  assert_true(worst < 1e-10);
+}
+
 /* Eq 18 of Gerstle et al. (2013) asks for the largest frequency: m omega_n^2 = max(9 k_n + 6 k_s,
    50 k_s) is that of all waves without dampers; with them, dt = 2/omega_n (root(1 + xi^2) - xi). */
 static void the_fastest_wave_is_that_of_the_damper(void **state) {
@@ -372,6 +410,7 @@ static void cantilevers_converge_to_theory(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_lattice_in_space_is_isotropic),
+      cmocka_unit_test(larger_horizons_hold_the_moduli),
       cmocka_unit_test(the_fastest_wave_is_that_of_the_damper),
       cmocka_unit_test(a_rigid_motion_leaves_no_force),
       cmocka_unit_test(a_spinning_body_conserves),

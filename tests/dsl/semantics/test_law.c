@@ -112,7 +112,7 @@ static void micropolar_law_is_understood(void **state) {
   assert_non_null(l->rho);
   assert_true(l->rho->initial == 2323);
   is_of(l, "E", SYMBOL_PARAMETER, "Pa", SHAPE_SCALAR, ON_BODY);
-  is_of(l, "EA", SYMBOL_CONSTANT, "N", SHAPE_SCALAR, ON_BOND);
+  is_of(l, "EA", SYMBOL_CONSTANT, "N", SHAPE_SCALAR, ON_BODY);
   is_of(l, "EI", SYMBOL_CONSTANT, "N*m^2", SHAPE_SCALAR, ON_BOND);
   is_of(l, "psi", SYMBOL_DEFINED, "1/m", SHAPE_SCALAR, ON_BOND);
   is_of(l, "omega", SYMBOL_DAMAGE, "1", SHAPE_SCALAR, ON_BOND);

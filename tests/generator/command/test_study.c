@@ -57,6 +57,24 @@ static void a_row_is_a_run(void **state) {
   assert_string_equal(w->said, "True\n");
 }
 
+/* A column over a key, a curve for each value of the other. */
+static void a_table_is_drawn(void **state) {
+  workplace *w = *state;
+  expect(w, "study two_study.nml", 0, "wrote");
+  expect(w, "plot two_study.h5 --x velocity --y 'load peak' -o peaks.png", 0, "written peaks.png");
+  assert_true(exists(w, "peaks.png"));
+  expect(w, "plot two_study.h5 --x drive.velocity --y 'load peak' --label a --label b -o ab.svg", 0,
+         "written ab.svg");
+  expect(w, "plot two_study.h5 --x velocity --y 'load peak' --label a", 1,
+         "1 labels for 2 curves; give one --label a curve");
+  expect(w, "plot two_study.h5 --x alpha --y 'load peak'", 1,
+         "there is no column `alpha` in `two_study.h5`");
+  expect(w, "plot two_study.h5 --x velocity --y ended", 1, "holds texts, not numbers");
+  expect(w, "plot two_study.h5 --x velocity --y 'load peak' --line '5 kN'", 1,
+         "the table of a study is drawn by itself");
+  expect(w, "plot two_study.h5 --x velocity --y 'load peak' -o two_study.h5", 1, "would overwrite");
+}
+
 /* Options and group say the same. */
 static void options_or_group(void **state) {
   workplace *w = *state;
@@ -474,6 +492,7 @@ static void longest_first(void **state) {
 int main(void) {
 #define WITH(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down_workplace)
   const struct CMUnitTest tests[] = {WITH(a_row_is_a_run),
+                                     WITH(a_table_is_drawn),
                                      WITH(options_or_group),
                                      WITH(killed_again_and_again),
                                      WITH(gone_on_with),

@@ -66,6 +66,28 @@ static void check_within(const point_cloud *c, double distance) {
   free(found.items);
 }
 
+/* Of reaches of their own: the mean of both counts. */
+static void check_within_own(const point_cloud *c) {
+  enum { MOST = 150 };
+  double reach[MOST];
+  long at = 0;
+  for (long k = 0; k < c->count; k++)
+    reach[k] = 0.05 * (1 + (double)(k * k % 7));
+  point_pairs found = pairs_within_own(c, reach, ANY);
+  points_sort(&found);
+  assert_int_equal(found.crowded, -1);
+  for (long i = 0; i < c->count; i++)
+    for (long j = i + 1; j < c->count; j++) {
+      const double mean = 0.5 * (reach[i] + reach[j]);
+      if (square_between(c, i, j) > mean * mean) continue;
+      assert_true(at < found.count);
+      assert_true(found.items[at].i == i && found.items[at].j == j);
+      at++;
+    }
+  assert_int_equal(at, found.count);
+  free(found.items);
+}
+
 static const double boxes[][3] = {{1, 1, 1}, {5, 0.2, 1}, {1, 0, 0}, {0, 2, 0.01}, {1e-3, 3e3, 1}};
 enum { BOXES = sizeof boxes / sizeof *boxes };
 
@@ -77,6 +99,7 @@ static void agrees_with_all_against_all(void **state) {
       check_nearest(&p.cloud, 1);
       check_nearest(&p.cloud, 12);
       check_nearest(&p.cloud, 400);
+      check_within_own(&p.cloud);
       for (double part = 1e-3; part < 10; part *= 5)
         check_within(&p.cloud, part * hypot(boxes[k][0], boxes[k][1]));
       points_free(&p);

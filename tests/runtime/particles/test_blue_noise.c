@@ -40,7 +40,12 @@ static void fill(filled *f, const char *text, int dimensions, double size, uint6
                        .spacing = dimensions == 2 ? sqrt(each / sqrt(0.75)) : cbrt(each * sqrt(2))};
   for (int c = 0; c < dimensions; c++)
     f->points.at[c] = must_calloc(COUNT, sizeof(double));
-  blue_noise_fill(&f->points, &f->solid, seed);
+  const gradation alike = {.dimensions = dimensions,
+                           .spacing = f->points.spacing,
+                           .least = f->points.spacing,
+                           .most = f->points.spacing,
+                           .count = COUNT};
+  blue_noise_fill(&f->points, &f->solid, &alike, seed);
   voronoi_measure(&f->points, &f->solid, 1e-3, f->volume, NULL);
 }
 

@@ -16,6 +16,7 @@
 #include "runtime/base/random_number.h"
 #include "runtime/deck/deck_read.h"
 #include "runtime/geometry/shape.h"
+#include "runtime/particles/gradation.h"
 #include "runtime/particles/particle_set.h"
 #include "runtime/particles/voronoi.h"
 #include "runtime/result/hdf5_tools.h"
@@ -75,7 +76,7 @@ static double spread(const particle_set *set) {
 
 static bool any_nearer(const particle_set *set, double distance) {
   const voronoi_points p = {
-      set->dimensions, set->count, {set->at[0], set->at[1], set->at[2]}, set->spacing};
+      set->dimensions, set->count, {set->at[0], set->at[1], set->at[2]}, set->spacing, NULL};
   long pair[2];
   return voronoi_too_near(&p, distance, pair);
 }

@@ -39,7 +39,7 @@ static bench *begin(int dimensions, double spacing) {
   b->deck =
       (deck){.lattices = &b->lattice, .lattice_count = 1, .bodys = b->bodies, .notchs = b->notches};
   b->points = (voronoi_points){
-      dimensions, 0, {b->x[0], b->x[1], dimensions == 3 ? b->x[2] : NULL}, spacing};
+      dimensions, 0, {b->x[0], b->x[1], dimensions == 3 ? b->x[2] : NULL}, spacing, NULL};
   return b;
 }
 
