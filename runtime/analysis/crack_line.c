@@ -71,7 +71,8 @@ static double distance_between(const rows *g, int32_t i, int32_t j) {
 /* So near to each other sites are joined, unless something cut them apart. */
 static double reach_of(const rows *g, int32_t i, int32_t j) {
   const double spacing = pl_fmin(rows_spacing(g, i), rows_spacing(g, j));
-  return (g->list ? spacing : g->horizon) * (1 - 1e-6);
+  const bool on_lattice = !g->list || g->infinite.axes > 0;
+  return (on_lattice ? g->horizon : spacing) * (1 - 1e-6);
 }
 
 static void add_pair(crack_line *l, long part, int32_t i, int32_t j) {

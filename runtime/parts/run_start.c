@@ -30,10 +30,18 @@ static double spacing_of(const run_body *b, const deck *k) {
   return b->lattice_rows->own_size ? b->lattice_rows->spacing : k->lattices[b->lattice].spacing;
 }
 
+/* "hexagonal", "hexagonal with exact edges"; to be freed. */
+static char *kind_of(const deck_lattice *l) {
+  static const char exact[] = " with exact edges";
+  char *kind = must_alloc(strlen(l->kind) + sizeof exact);
+  sprintf(kind, "%s%s", l->kind, l->edges == EDGES_EXACT ? exact : "");
+  return kind;
+}
+
 static state_body take_body(const run_body *b, const deck *k, double step) {
   const deck_lattice *l = &k->lattices[b->lattice];
   return (state_body){.lattice = must_copy(b->name),
-                      .kind = must_copy(l->kind),
+                      .kind = kind_of(l),
                       .spacing = spacing_of(b, k),
                       .first = b->first_particle,
                       .count = b->lattice_rows->particle_count,
@@ -189,26 +197,32 @@ static bool same_size(double a, double b) {
 }
 
 /* On no lattice particles of either kind may be those of the result. */
-static bool same_kind(const deck_lattice *l, const char *kind) {
+static bool same_kind(const deck_lattice *l, const char *kind, const char *here) {
   const deck_lattice other = {.kind = kind};
-  if (strcmp(l->kind, kind) == 0) return true;
+  if (strcmp(here, kind) == 0) return true;
   return deck_lattice_is_irregular(l) && deck_lattice_is_irregular(&other);
 }
 
 static bool lattice_fits(const starting *s, const run_body *b, const state_body *from) {
   const deck_lattice *l = &s->deck->lattices[b->lattice];
-  if (!same_kind(l, from->kind)) {
+  char *kind = kind_of(l);
+  const bool alike = same_kind(l, from->kind, kind);
+  if (!alike) {
     diag_report(s->d, DIAG_CONFLICT, s->where, "`%s` is %s in `%s`, and %s in this deck", b->name,
-                from->kind, name_of(s), l->kind);
-    diag_hint(s->d, "give it the `kind` that it has in the result's deck, or another name");
-  } else if (!same_size(spacing_of(b, s->deck), from->spacing)) {
+                from->kind, name_of(s), kind);
+    diag_hint(s->d, "give it the `%s` that it has in the result's deck, or another name",
+              strncmp(kind, from->kind, strlen(l->kind)) == 0 ? "edges" : "kind");
+  }
+  free(kind);
+  if (!alike) return false;
+  if (!same_size(spacing_of(b, s->deck), from->spacing)) {
     diag_report(s->d, DIAG_CONFLICT, s->where,
                 "`%s` has a spacing of %.6g mm in `%s`, and of %.6g mm in this deck", b->name,
                 1e3 * from->spacing, name_of(s), 1e3 * spacing_of(b, s->deck));
     diag_hint(s->d, "give it the `spacing` of the result's deck, or another name");
-  } else
-    return true;
-  return false;
+    return false;
+  }
+  return true;
 }
 
 static bool motion_fits(const starting *s, const run_body *b, const state_body *from) {

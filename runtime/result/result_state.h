@@ -26,7 +26,7 @@ C_LINKAGE_BEGIN
 
 /* All that pointers lead to is malloc'ed. */
 typedef struct state_body {
-  char *lattice, *kind; /* "hexagonal" */
+  char *lattice, *kind; /* "hexagonal", "hexagonal with exact edges" */
   double spacing;       /* m */
   long first, count;    /* particles of the result */
   int dof;

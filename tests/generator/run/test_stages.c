@@ -27,6 +27,20 @@ static void two_stages_are_one_run(void **state) {
                            STEADY) >= 0);
 }
 
+/* Volumes and bonds are others, and the body would jump. */
+static void edges_stay_as_they_are(void **state) {
+  workplace *w = *state;
+  static const char start[] = "&start  result = 'first.h5'  /\n";
+  write_stage(w, "first",
+              BLOCK(HEXAGON "  edges = 'exact'", "model = 'splm_concrete'", BEAM) STEADY, "50 us",
+              "");
+  run_stage(w, "first");
+  write_stage(w, "second", BLOCK(HEXAGON, "model = 'splm_concrete'", BEAM) STEADY, "50 us", start);
+  expect(w, "check second.nml", 1,
+         "`c` is hexagonal with exact edges in `first.h5`, and hexagonal in this deck");
+  expect(w, "check second.nml", 1, "give it the `edges` that it has in the result's deck");
+}
+
 #define BAR                                                                                        \
   "&bar       name = 'b'  points = '2 mm', '12 mm', '58 mm', '12 mm'  diameter = '4 mm'  spacing " \
   "= '8 mm'  /\n"                                                                                  \
@@ -140,6 +154,8 @@ static void what_is_cut_out_takes_nothing_along(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(two_stages_are_one_run, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(edges_stay_as_they_are, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(bars_links_and_regions_go_on, set_up_workplace,
                                       tear_down_workplace),
