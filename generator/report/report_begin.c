@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <strings.h>
 
+#include "dsl/base/elementary.h"
 #include "generator/report/print_quantity.h"
 #include "generator/report/report_bodies.h"
 #include "generator/report/report_laws.h"
@@ -141,6 +142,32 @@ static void announce_shrinking(const run *r) {
   putchar('\n');
 }
 
+/* "stamp      ball: 0.5 kg at 3 m/s along (0, -1), 1.5 mm from `plate`" */
+static void announce_stamp(const run *r, int number) {
+  const deck_stamp *stamp = &r->deck->stamps[number];
+  const stamp_said said = simulation_stamp(r->simulation, number);
+  const double *v = said.velocity;
+  const double speed = pl_hypot(pl_hypot(v[0], v[1]), v[2]);
+  int lattice;
+  const double gap = simulation_stamp_gap(r->simulation, number, &lattice);
+  printf("  stamp      %s: ", stamp->name);
+  if (stamp->mass > 0)
+    printf("%.4g kg", stamp->mass);
+  else
+    fputs("its motion is prescribed", stdout);
+  if (stamp->mass > 0 && speed > 0) {
+    print_quantity(" at ", speed, "m/s");
+    printf(" along (%.3g, %.3g", v[0] / speed + 0.0, v[1] / speed + 0.0);
+    if (v[2] != 0) printf(", %.3g", v[2] / speed);
+    putchar(')');
+  }
+  if (isfinite(gap)) {
+    print_quantity(", ", pl_fmax(gap, 0), "m from");
+    printf(" `%s`", r->deck->lattices[lattice].name);
+  }
+  putchar('\n');
+}
+
 void announce(const run *r) {
   const deck_simulation *s = &simulation_deck(r->simulation)->simulation;
   printf("%s\n", s->title ? s->title : r->options->deck_path);
@@ -157,6 +184,8 @@ void announce(const run *r) {
   announce_start(r);
   for (int p = 0; p < r->deck->point_mass_count; p++)
     announce_point_mass(r, p);
+  for (int k = 0; k < r->deck->stamp_count; k++)
+    announce_stamp(r, k);
   for (int f = 0; f < r->deck->force_count; f++)
     if (r->deck->forces[f].per_length) announce_line_load(r, f);
   if (r->deck->relaxation.increments > 0)

@@ -468,7 +468,8 @@ static bool read_frame(result_file *f, const char *path, plot_frame *m, const pl
   }
   double *u = read_displacements(f, m, path, o->frame, error, size);
   if (!u) return false;
-  move_particles(m, u, o->factor);
+  /* what is magnified would lie in stamps, or far from them */
+  move_particles(m, u, o->factor < 0 && m->stamps.count > 0 ? 1 : o->factor);
   free(u);
   long frames = 0;
   double *times = result_read_frame_times(f, &frames);
@@ -731,11 +732,9 @@ static bool show_frame(plot_frame *m, const plot_map_options *o, char *error, si
 bool plot_frame_take(plot_frame *m, result_file *f, const char *path, const plot_map_options *o,
                      char *error, size_t size) {
   *m = (plot_frame){.factor = 1, .damage_of = "damage of bonds:"};
-  bool good = read_frame(f, path, m, o, error, size);
-  if (good && m->dimensions == 2 && !plot_stamps_read(&m->stamps, f, o->frame)) {
-    snprintf(error, size, "`%s` is damaged: its stamps cannot be read", path);
-    good = false;
-  }
+  bool good = plot_stamps_read(&m->stamps, f, o->frame);
+  if (!good) snprintf(error, size, "`%s` is damaged: its stamps cannot be read", path);
+  good = good && read_frame(f, path, m, o, error, size);
   if (result_trouble(f)) {
     snprintf(error, size, "%s", result_trouble(f));
     good = false;

@@ -73,8 +73,9 @@ static void add_stamps(sheet *s) {
   for (int k = 0; k < s->count; k++)
     plot_stamps_reach(&s->panels[k].frame.stamps, s->panels[k].frame.factor, low, high);
   for (int c = 0; c < 2; c++) {
-    s->low[c] = pl_fmax(low[c], s->low[c] - most);
-    s->high[c] = pl_fmin(high[c], s->high[c] + most);
+    const double line = low[c] < s->low[c] || high[c] > s->high[c] ? 0.02 * most : 0;
+    s->low[c] = pl_fmax(low[c] - line, s->low[c] - most);
+    s->high[c] = pl_fmin(high[c] + line, s->high[c] + most);
   }
 }
 

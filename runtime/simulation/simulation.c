@@ -543,9 +543,19 @@ stamp_said simulation_stamp(const simulation *s, int number) {
   const stamp_state *st = &of->state;
   stamp_said said = {
       .touching = (long)st->peaks.touching, .force = st->peaks.force, .too_far = of->too_far};
-  for (int c = 0; c < 3; c++)
+  for (int c = 0; c < 3; c++) {
     said.place[c] = st->at.place[c];
+    said.velocity[c] = st->at.velocity[c];
+  }
   return said;
+}
+
+double simulation_stamp_gap(const simulation *s, int number, int *lattice) {
+  const run_stamp *of = &s->stamps.items[number];
+  const stamp_inside in = stamp_look_inside(of->found, of->state.at.place, 0);
+  const run_body *nearest = &s->bodies[of->of[in.body]];
+  *lattice = nearest->lattice;
+  return fabs(in.depth) < 1e-6 * nearest->lattice_rows->spacing ? 0 : -in.depth;
 }
 
 long simulation_history(const simulation *s, const double **time) {

@@ -155,9 +155,13 @@ typedef struct stamp_said {
   long touching;   /* particles at a time, at most of all states so far */
   double force;    /* N: the largest on it */
   double place[3]; /* m: where it is now, from where it is drawn */
-  bool too_far;    /* the run has ended, as it went further than a spacing in a step */
+  double velocity[3];
+  bool too_far; /* the run has ended, as it went further than a spacing in a step */
 } stamp_said;
 stamp_said simulation_stamp(const simulation *s, int stamp);
+/* m: from the present place of the stamp to the nearest particle, a ball of half of its spacing;
+   *lattice: whose that is, its number in the deck. Infinite where it touches no body. */
+double simulation_stamp_gap(const simulation *s, int stamp, int *lattice);
 
 /* History so far. Series 0.. are the deck's monitors, then the energy terms, in sum and, of several
    bodies, of each; of quasi-static runs

@@ -5,6 +5,7 @@
 
 #include "dsl/base/arena.h"
 #include "tests/verification/case.h"
+#include "tests/verification/page.h"
 
 typedef struct middle { /* of a piece of crack; each particle counts by its share of broken bonds */
   double weight, x, y;
@@ -43,14 +44,69 @@ static inline double angle_of(const deck_case *c) {
   return 90 + atan2(dy, dx) * 180 / M_PI;
 }
 
-static inline void check_angle(const char *name, const char *const *overrides, int count,
-                               double expected) {
+static inline double angle_in(const char *name, const char *const *overrides, int count) {
   deck_case c;
   assert_true(deck_case_run(&c, name, overrides, count));
   assert_int_equal(deck_case_go(&c), STEP_END);
   const double angle = angle_of(&c);
   deck_case_close(&c);
+  return angle;
+}
+
+static inline void check_angle(const char *name, const char *const *overrides, int count,
+                               double expected) {
+  const double angle = angle_in(name, overrides, count);
   if (fabs(angle - expected) > 0.0501) fail_msg("%s, %s: %.2f degrees", name, overrides[0], angle);
+}
+
+/* --- with error bars, as angles.sh has them --------------------------------------------------- */
+
+enum { PLATES = 6 };
+typedef struct plates {   /* of one kind */
+  const char *deck, *row; /* the row of the page */
+  const char *key;        /* that is varied: first, first + by, ... */
+  int first, by;
+  double columns; /* spacings from the notch to a site; < 0: there is no lattice */
+} plates;
+
+static const plates all_plates[] = {
+    {"examples/kalthoff/hexagon.nml", "| hexagonal, turned by", "rotation", 0, 6, 0.25},
+    {"examples/kalthoff/square.nml", "| square, turned by", "rotation", 0, 9, 0.5},
+    {"examples/kalthoff/blue_noise.nml", "| blue noise, seeds", "seed", 1, 1, -1}};
+
+static inline double angle_at(const plates *p, int n, double spacing) {
+  enum { MOST = 7, ROOM = 64 };
+  char text[MOST][ROOM];
+  const char *overrides[MOST];
+  const double horizon = 3.015 / spacing;
+  snprintf(text[0], ROOM, "lattice.%s=%d", p->key, p->first + n * p->by);
+  snprintf(text[1], ROOM, "lattice.spacing=%g mm", spacing);
+  snprintf(text[2], ROOM, "lattice.horizon=%g", horizon);
+  snprintf(text[3], ROOM, "protect[1].radius=%g", horizon);
+  snprintf(text[4], ROOM, "protect[2].radius=%g", horizon);
+  snprintf(text[5], ROOM, "simulation.step=%g us", 0.1 * spacing);
+  snprintf(text[6], ROOM, "lattice.origin=%g mm, %g mm", 25 + p->columns * spacing, spacing / 2);
+  for (int k = 0; k < MOST; k++)
+    overrides[k] = text[k];
+  return angle_in(p->deck, overrides, p->columns < 0 ? MOST - 1 : MOST);
+}
+
+/* The page has mean, standard deviation, least and largest of the six. */
+static inline void check_plates(const plates *p, double spacing) {
+  double sum = 0, squares = 0, least = INFINITY, most = 0;
+  char cell[64];
+  for (int n = 0; n < PLATES; n++) {
+    const double angle = round(10 * angle_at(p, n, spacing)) / 10; /* as measure.sh prints it */
+    sum += angle;
+    squares += angle * angle;
+    least = fmin(least, angle);
+    most = fmax(most, angle);
+  }
+  const double mean = sum / PLATES,
+               deviation = sqrt((squares - PLATES * mean * mean) / (PLATES - 1));
+  snprintf(cell, sizeof cell, "%.1f° ± %.1f° (%.1f to %.1f)", mean, deviation, least, most);
+  print_message("%s, %g mm: %s\n", p->deck, spacing, cell);
+  page_line_says("examples/kalthoff/README.md", p->row, cell);
 }
 
 #endif

@@ -21,7 +21,14 @@ static void the_path_depends_on_the_lattice(void **state) {
   turned("examples/kalthoff/hexagon.nml", "lattice.rotation=30", 69.8);
 }
 
+/* Blue noise alone: the lattices are in test_crack_path_long. */
+static void the_angle_has_an_error_bar(void **state) {
+  (void)state;
+  check_plates(&all_plates[2], 1);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(the_path_depends_on_the_lattice)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(the_path_depends_on_the_lattice),
+                                     cmocka_unit_test(the_angle_has_an_error_bar)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

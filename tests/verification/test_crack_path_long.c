@@ -17,7 +17,16 @@ static void the_path_depends_less_on_a_fine_lattice(void **state) {
   check_angle("examples/kalthoff/hexagon.nml", turned, sizeof turned / sizeof *turned, 67.3);
 }
 
+static void angles_have_error_bars(void **state) {
+  (void)state;
+  static const double spacings[] = {1, 0.75, 0.6};
+  for (int kind = 0; kind < 3; kind++)
+    for (int k = 0; k < 3; k++)
+      check_plates(&all_plates[kind], spacings[k]);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(the_path_depends_less_on_a_fine_lattice)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(the_path_depends_less_on_a_fine_lattice),
+                                     cmocka_unit_test(angles_have_error_bars)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
