@@ -45,6 +45,28 @@ static void quasi_static_runs_count_increments(void **state) {
   expect(w, "run stop.nml", 0, "ended early at increment 4 of 8: moved was above 4e-07 m\n");
 }
 
+/* The block's upper particles lie at 20 mm and reach 5 mm further; maps of what stamps touch are not
+   magnified unless that is asked for. */
+static void stamps_are_told(void **state) {
+  workplace *w = *state;
+  write_text(w, "stamp.nml",
+             "&simulation  end_time = '0.01 ms'  /\n"
+             "&lattice     name = 'c'  kind = 'square'  spacing = '10 mm'  thickness = '10 mm'  /\n"
+             "&material    lattice = 'c'  model = 'elastic_central'  /\n"
+             "&body        lattice = 'c'  shape = 'rectangle'  corner = 0, 0  size = '30 mm', "
+             "'20 mm'  /\n"
+             "&stamp       name = 'ball'  shape = 'disc'  centre = 0, '40 mm'  radius = '10 mm'  "
+             "mass = '0.5 kg'  velocity = '3 m/s'  direction = 0, -1  /\n"
+             "&stamp       name = 'anvil'  shape = 'disc'  centre = 0, '-15 mm'  radius = '10 mm'  "
+             "velocity = 0  /\n"
+             "&output      result = 'stamp.h5'  fields = 'displacement', 'velocity'  /\n");
+  expect(w, "run stamp.nml", 0,
+         "  stamp      ball: 0.5 kg at 3 m/s along (0, -1), 5 mm from `c`\n");
+  assert_non_null(strstr(w->said, "  stamp      anvil: its motion is prescribed, 0 nm from `c`\n"));
+  expect(w, "plot stamp.h5 --map velocity -o stamp.svg", 0, "written");
+  expect(w, "plot stamp.h5 --map velocity --factor 7 -o seven.svg", 0, "written");
+}
+
 /* Rows of 4, 3 and 4 sites: one has all neighbours. */
 static void exact_edges_are_told(void **state) {
   workplace *w = *state;
@@ -376,6 +398,7 @@ int main(void) {
 #define ONE(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
   const struct CMUnitTest tests[] = {
       ONE(quasi_static_runs_count_increments),
+      ONE(stamps_are_told),
       ONE(exact_edges_are_told),
       ONE(runs_say_whether_frames_came),
       ONE(dynamic_runs_have_times),
