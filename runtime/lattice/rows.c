@@ -176,6 +176,7 @@ void rows_set_densities(rows *w, const double *rho) {
 }
 
 double rows_radius_square(const rows *w, long site) {
+  if (w->own_size) return w->own_size[site] * w->own_size[site];
   if (!w->site_volume) return 1;
   return pl_pow(w->site_volume[site] / w->volume, 2.0 / (w->area > 0 ? 1 : w->dimensions));
 }

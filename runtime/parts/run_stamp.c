@@ -311,7 +311,7 @@ static bool is_outside(const run_stamps *s, const run_stamp *item, diagnostics *
               rows_place_text(of->body->dimensions, at, text), 1e3 * in.depth);
   diag_hint(d,
             "move it out by as much: a particle reaches half a spacing, %.4g mm, beyond its place",
-            0.5e3 * of->lattice_rows->spacing);
+            0.5e3 * rows_spacing(of->lattice_rows, in.site));
   return false;
 }
 

@@ -219,6 +219,39 @@ static void particles_are_as_large_as_asked_for(void **state) {
   deck_case_close(&c);
 }
 
+/* --- how easily they turn --------------------------------------------------------------------- */
+
+#define FLAT_BODY                                                                                  \
+  " thickness = '100 mm' /\n&material lattice = 'l' model = 'splm_elastic' /\n"                    \
+  "&body lattice = 'l' shape = 'rectangle' corner = '-50 mm', '-100 mm' size = '100 mm', '200 "    \
+  "mm' /\n&simulation end_time = 1 /\n"
+
+/* m^2: of a particle, over its mass. */
+static double turning(const rows *g, long site) {
+  return g->inertia / g->mass * rows_radius_square(g, site);
+}
+
+/* As on a lattice of the particle's own spacing, whatever the others are. */
+static void they_turn_as_particles_of_their_size(void **state) {
+  (void)state;
+  deck_case even, c;
+  assert_true(deck_case_lattice(
+      &even, "&lattice name = 'l' kind = 'hexagonal' spacing = '5 mm'" FLAT_BODY));
+  rows_set_density(even.lattice, 2400);
+  const double of_5_mm = even.lattice->inertia / even.lattice->mass;
+  deck_case_close(&even);
+  assert_true(fabs(of_5_mm / (0.4 * 2.5e-3 * 2.5e-3) - 1) < 1e-12);
+  assert_true(deck_case_lattice(
+      &c, "&lattice name = 'l' kind = 'blue_noise' spacing = '2 [mm] + 0.04*abs(y)'" FLAT_BODY));
+  rows_set_density(c.lattice, 2400);
+  for (long p = 0; p < c.lattice->particle_count; p++) {
+    const long q = c.lattice->particle_site[p];
+    const double part = by_height(c.lattice, q) / 5e-3;
+    assert_true(fabs(turning(c.lattice, q) / (part * part * of_5_mm) - 1) < 1e-12);
+  }
+  deck_case_close(&c);
+}
+
 /* --- waves ------------------------------------------------------------------------------------ */
 
 /* The first mode along a free bar, let go: half a period until its ends have changed sides. The
@@ -284,6 +317,7 @@ int main(void) {
       cmocka_unit_test(particles_are_as_large_as_asked_for),
       cmocka_unit_test(moduli_are_held_at_every_ratio),
       cmocka_unit_test(the_steepest_gradation_is_borne),
+      cmocka_unit_test(they_turn_as_particles_of_their_size),
       cmocka_unit_test(waves_run_as_fast),
       cmocka_unit_test(the_dog_bone_with_a_fine_neck),
   };
