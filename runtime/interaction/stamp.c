@@ -120,6 +120,11 @@ static inline double radius_of(const body *of, long site) {
   return 0.5 * rows_spacing(of->lattice, site);
 }
 
+static inline double stiffness_of(const stamp_body *b, long site) {
+  const rows *g = b->of->lattice;
+  return b->by_size ? b->stiffness * (rows_spacing(g, site) / g->spacing) : b->stiffness;
+}
+
 static inline bool is_in_box(const stamp *s, const double at[3], double reach) {
   for (int d = 0; d < s->dimensions; d++)
     if (at[d] < s->box[0][d] - reach || at[d] > s->box[1][d] + reach) return false;
@@ -154,10 +159,11 @@ static double dot(const double a[3], const double b[3]) {
 typedef struct meeting {
   const stamp_side *side;
   long particle, site;
-  double out[3];  /* normal */
-  double past[3]; /* m/s: its velocity past the stamp */
-  double across;  /* m/s: along the normal */
-  double radius;  /* m: of the particle */
+  double out[3];    /* normal */
+  double past[3];   /* m/s: its velocity past the stamp */
+  double across;    /* m/s: along the normal */
+  double radius;    /* m: of the particle */
+  double stiffness; /* N/m: of its spring */
 } meeting;
 
 /* The spring along the surface, when the particle has gone on for `step`; `most`: the largest force
@@ -165,7 +171,7 @@ typedef struct meeting {
 static double drag(const stamp *s, const meeting *m, double most, double step, double q[3]) {
   double *kept = m->side->dragged + m->particle;
   const long plane = m->side->from.of->lattice->particle_count;
-  const double k = m->side->from.stiffness;
+  const double k = m->stiffness;
   double before[3] = {0}, taken = 0;
   for (int d = 0; d < s->dimensions; d++)
     before[d] = q[d] = kept[d * plane];
@@ -200,13 +206,13 @@ static void add_load(const touch *t, const double arm[3], stamp_load *l) {
 /* Damping of a particle on its spring, N s/m. */
 static double damper_of(const stamp *s, const meeting *m) {
   const body *of = m->side->from.of;
-  return 2 * s->damping * sqrt(m->side->from.stiffness * body_mass(of, 0, m->site));
+  return 2 * s->damping * sqrt(m->stiffness * body_mass(of, 0, m->site));
 }
 
 /* Of a particle that lies in the stamp by `depth`; `at`: where it is. */
 static void push_out(stamp *s, const meeting *m, int side, double depth, const double at[3],
                      double step, stamp_load *l) {
-  const double k = m->side->from.stiffness, spring = k * depth,
+  const double k = m->stiffness, spring = k * depth,
                damper = s->damping > 0 ? pl_fmax(-damper_of(s, m) * m->across, -spring) : 0;
   touch *t = &s->touching[s->touch_count++];
   double arm[3] = {0}, q[3] = {0};
@@ -243,7 +249,8 @@ stamp_load stamp_find(stamp *s, const stamp_motion *where, double step) {
     meeting m = {.side = &s->sides[p->side],
                  .particle = p->particle,
                  .site = p->site,
-                 .radius = radius_of(of, p->site)};
+                 .radius = radius_of(of, p->site),
+                 .stiffness = stiffness_of(&s->sides[p->side].from, p->site)};
     double at[3];
     place_of(s, of, p->site, where->place, at);
     const bool near = is_in_box(s, at, m.radius);

@@ -19,6 +19,7 @@
 typedef struct stamp_body {
   body *of;         /* it has outer forces (body_add_outer) */
   double stiffness; /* k of a particle, N/m */
+  bool by_size;     /* that is k of the smallest, and it grows with a particle's own spacing */
 } stamp_body;
 
 typedef struct stamp_motion {
