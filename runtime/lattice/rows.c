@@ -215,6 +215,7 @@ uint64_t rows_fingerprint(const rows *w) {
     const uint64_t bonds[2] = {w->bonds[site], w->list->incoming[site]};
     rows_place(w, site, of);
     hash = hash_words(hash, of, 4);
+    if (w->own_size) hash = hash_words(hash, &w->own_size[site], 1);
     hash = hash_words(hash, bonds, 2);
   }
   return hash ? hash : 1;

@@ -245,6 +245,10 @@ static void they_turn_as_particles_of_their_size(void **state) {
   assert_true(deck_case_lattice(
       &c, "&lattice name = 'l' kind = 'blue_noise' spacing = '2 [mm] + 0.04*abs(y)'" FLAT_BODY));
   rows_set_density(c.lattice, 2400);
+  const uint64_t known = rows_fingerprint(c.lattice);
+  c.lattice->own_size[c.lattice->particle_site[0]] *= 1.5; /* sizes are part of what a run is of */
+  assert_true(rows_fingerprint(c.lattice) != known);
+  c.lattice->own_size[c.lattice->particle_site[0]] /= 1.5;
   for (long p = 0; p < c.lattice->particle_count; p++) {
     const long q = c.lattice->particle_site[p];
     const double part = by_height(c.lattice, q) / 5e-3;
