@@ -71,20 +71,36 @@ static void put_bonds(const picture *w) {
   fputs("\"/>\n", w->out);
 }
 
+/* Quarters of the mean spacing, which graded particles are drawn by; all others have 4 of them. */
+enum { MOST_QUARTERS = 24 };
+static int quarters_of(const plot_frame *f, long particle) {
+  const double quarters = f->size ? 4 * f->size[particle] : 4;
+  return quarters < 1 ? 1 : quarters > MOST_QUARTERS ? MOST_QUARTERS : (int)(quarters + 0.5);
+}
+
+/* Particles of a size, as one path; `bonds`: of each, [particles]. */
+static void put_dots(const picture *w, const int32_t *bonds, int32_t most, int quarters) {
+  const plot_frame *f = &w->frame;
+  bool any = false;
+  for (long k = 0; k < f->particles; k++) {
+    if ((bonds[k] >= most && most > 0) || quarters_of(f, k) != quarters) continue;
+    if (!any)
+      fprintf(w->out, "<path class=\"bond\" stroke-width=\"%.2f\" stroke-linecap=\"round\" d=\"",
+              pl_fmax(1.2, 0.15 * quarters * f->spacing * w->scale));
+    fprintf(w->out, "M%.1f %.1fh0", at_x(w, f->reference[2 * k]), at_y(w, f->reference[2 * k + 1]));
+    any = true;
+  }
+  if (any) fputs("\"/>\n", w->out);
+}
+
 /* Many bonds are not told apart: the particles that have fewer than others, on the edge. */
 static void put_edge(const picture *w) {
   const plot_frame *f = &w->frame;
   int32_t *bonds = must_calloc((size_t)f->particles + 1, sizeof *bonds), most = 0;
   for (long k = 0; k < 2 * f->bonds; k++)
     if (++bonds[f->pairs[k]] > most) most = bonds[f->pairs[k]];
-  const double radius = pl_fmax(0.6, 0.3 * f->spacing * w->scale);
-  fprintf(w->out, "<path class=\"bond\" stroke-width=\"%.2f\" stroke-linecap=\"round\" d=\"",
-          2 * radius);
-  for (long k = 0; k < f->particles; k++)
-    if (bonds[k] < most || most == 0)
-      fprintf(w->out, "M%.1f %.1fh0", at_x(w, f->reference[2 * k]),
-              at_y(w, f->reference[2 * k + 1]));
-  fputs("\"/>\n", w->out);
+  for (int n = f->size ? 1 : 4; n <= (f->size ? MOST_QUARTERS : 4); n++)
+    put_dots(w, bonds, most, n);
   free(bonds);
 }
 

@@ -40,9 +40,10 @@ static double steps_of(const deck *k, double finest) {
 double study_cost(const deck *k) {
   double bonds = 0, finest = INFINITY;
   for (int n = 0; n < k->lattice_count; n++) {
-    if (!(k->lattices[n].spacing > 0)) continue;
+    const double spacing = k->lattices[n].spacing; /* graded: in the middle, where it may be none */
+    if (!(spacing > 0 && isfinite(spacing))) continue;
     bonds += bonds_of(k, n);
-    finest = pl_fmin(finest, k->lattices[n].spacing);
+    finest = pl_fmin(finest, spacing);
   }
   const double cost = bonds * steps_of(k, finest);
   return isfinite(cost) ? cost : 0;

@@ -1,6 +1,7 @@
 #include "generator/study/study_plot.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -67,6 +68,14 @@ static int take_points(arena *a, const study_reading *r, const study_column *x,
   return count;
 }
 
+/* Points of a group stand together. */
+static int groups_of(const point *points, int count) {
+  int groups = 0;
+  for (int k = 0; k < count; k++)
+    groups += k == 0 || strcmp(points[k].group, points[k - 1].group) != 0;
+  return groups;
+}
+
 /* Shown in the units of the table, unless others are asked for. */
 static bool draw_points(arena *a, const point *points, int count, const study_column *x,
                         const study_column *y, const plot_curve_options *asked, int label_count) {
@@ -75,6 +84,7 @@ static bool draw_points(arena *a, const point *points, int count, const study_co
   double *along = arena_alloc(a, ((size_t)count + 1) * sizeof *along);
   double *up = arena_alloc(a, ((size_t)count + 1) * sizeof *up);
   char error[1024];
+  const int groups = groups_of(points, count);
   int made = 0;
   if (!o->x_unit && !unit_is_pure(x->unit)) o->x_unit = x->unit;
   for (int k = 0; k < count; k++) {
@@ -91,6 +101,8 @@ static bool draw_points(arena *a, const point *points, int count, const study_co
     say_error("%d labels for %d curves; give one --label a curve", label_count, made);
     return false;
   }
+  if (groups > made)
+    fprintf(stderr, "perilat: warning: of %d curves the first %d are drawn\n", groups, made);
   const bool good = plot_series_draw(series, made, x->unit, y->unit, o, error, sizeof error);
   if (!good) say_error("%s", error);
   return good;

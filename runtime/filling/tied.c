@@ -11,7 +11,8 @@
 #define ROUNDING 1e-9
 /* A line of a cell that is no deeper in a notch is not cut, in spacings. */
 #define NOTCH_DEPTH 1e-6
-/* Sites that may be corners of the cell: the nearest ones within so many spacings. */
+/* Sites that may be corners of the cell: the nearest ones within so many of the largest spacings.
+ */
 enum { SPACINGS = 3, NEAREST = 14, MOST_CORNERS = ROWS_MOST_COPIED };
 
 typedef struct tier {
@@ -148,7 +149,7 @@ static void make_weights_whole(rows_copy *c) {
 }
 
 near_particles tied_near(const rows *body) {
-  return near_particles_of(body, SPACINGS * body->spacing);
+  return near_particles_of(body, SPACINGS * rows_largest_spacing(body));
 }
 
 bool tied_cell(near_particles *near, const deck *k, const deck_lattice *around,

@@ -180,6 +180,12 @@ static double spacing_of(const contact *c, int32_t i, int32_t j) {
                 rows_spacing(rows_of(&c->sides[c->side[j]]), c->site[j]));
 }
 
+static double stiffness_of(const contact *c, int32_t i) {
+  const contact_body *of = &c->sides[c->side[i]].from;
+  const rows *g = of->of->lattice;
+  return of->by_size ? of->stiffness * (rows_spacing(g, c->site[i]) / g->spacing) : of->stiffness;
+}
+
 /* What two particles do when they touch. False where they cannot. */
 static bool may_touch(const contact *c, int32_t i, int32_t j, near_pair *pair) {
   const contact_side *a = &c->sides[c->side[i]], *b = &c->sides[c->side[j]];
@@ -190,7 +196,7 @@ static bool may_touch(const contact *c, int32_t i, int32_t j, near_pair *pair) {
     if (slot >= 0 && !(a->lost && a->lost[slot] > 0)) return false;
     if (slot >= 0) d = pl_fmin(d, a->lost[slot]);
   }
-  *pair = (near_pair){i, j, d, pl_fmin(a->from.stiffness, b->from.stiffness)};
+  *pair = (near_pair){i, j, d, pl_fmin(stiffness_of(c, i), stiffness_of(c, j))};
   return true;
 }
 

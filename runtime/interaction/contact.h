@@ -25,7 +25,8 @@ typedef struct contact_body {
   body *of;
   contact_law *laws; /* [law_count] the contact's from then on */
   int law_count;
-  double stiffness; /* k of two of its particles, N/m; of two bodies the smaller one counts */
+  double stiffness; /* k of two of its particles, N/m; of two particles the smaller one counts */
+  bool by_size;     /* that is k of the smallest, and it grows with a particle's own spacing */
 } contact_body;
 
 typedef struct contact contact;

@@ -7,11 +7,10 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 
-enum { LISTED_STEPS = 8 }; /* none goes further than a spacing in a step */
+enum { LISTED_STEPS = 8 }; /* none goes further than the smallest spacing in a step */
 
 typedef struct stamp_side {
   stamp_body from;
-  double radius;   /* m: of its particles */
   double *dragged; /* [dimensions][particles] m; NULL without friction */
 } stamp_side;
 
@@ -83,10 +82,9 @@ stamp *stamp_new(const surface *of, const stamp_body *bodies, int count, double 
                .least = INFINITY};
   s->sides = must_calloc((size_t)count, sizeof *s->sides);
   for (int b = 0; b < count; b++) {
-    const double spacing = bodies[b].of->lattice->spacing;
-    s->sides[b] = (stamp_side){.from = bodies[b], .radius = 0.5 * spacing};
-    s->largest = pl_fmax(s->largest, spacing);
-    s->least = pl_fmin(s->least, spacing);
+    s->sides[b] = (stamp_side){.from = bodies[b]};
+    s->largest = pl_fmax(s->largest, rows_largest_spacing(bodies[b].of->lattice));
+    s->least = pl_fmin(s->least, bodies[b].of->lattice->spacing);
   }
   find_box(s);
   if (friction > 0) share_out_drags(s);
@@ -116,6 +114,15 @@ static inline void place_of(const stamp *s, const body *of, long site, const dou
   rows_place(of->lattice, site, at);
   for (int d = 0; d < s->dimensions; d++)
     at[d] += of->displacement[d][site] - shift[d];
+}
+
+static inline double radius_of(const body *of, long site) {
+  return 0.5 * rows_spacing(of->lattice, site);
+}
+
+static inline double stiffness_of(const stamp_body *b, long site) {
+  const rows *g = b->of->lattice;
+  return b->by_size ? b->stiffness * (rows_spacing(g, site) / g->spacing) : b->stiffness;
 }
 
 static inline bool is_in_box(const stamp *s, const double at[3], double reach) {
@@ -152,9 +159,11 @@ static double dot(const double a[3], const double b[3]) {
 typedef struct meeting {
   const stamp_side *side;
   long particle, site;
-  double out[3];  /* normal */
-  double past[3]; /* m/s: its velocity past the stamp */
-  double across;  /* m/s: along the normal */
+  double out[3];    /* normal */
+  double past[3];   /* m/s: its velocity past the stamp */
+  double across;    /* m/s: along the normal */
+  double radius;    /* m: of the particle */
+  double stiffness; /* N/m: of its spring */
 } meeting;
 
 /* The spring along the surface, when the particle has gone on for `step`; `most`: the largest force
@@ -162,7 +171,7 @@ typedef struct meeting {
 static double drag(const stamp *s, const meeting *m, double most, double step, double q[3]) {
   double *kept = m->side->dragged + m->particle;
   const long plane = m->side->from.of->lattice->particle_count;
-  const double k = m->side->from.stiffness;
+  const double k = m->stiffness;
   double before[3] = {0}, taken = 0;
   for (int d = 0; d < s->dimensions; d++)
     before[d] = q[d] = kept[d * plane];
@@ -197,13 +206,13 @@ static void add_load(const touch *t, const double arm[3], stamp_load *l) {
 /* Damping of a particle on its spring, N s/m. */
 static double damper_of(const stamp *s, const meeting *m) {
   const body *of = m->side->from.of;
-  return 2 * s->damping * sqrt(m->side->from.stiffness * body_mass(of, 0, m->site));
+  return 2 * s->damping * sqrt(m->stiffness * body_mass(of, 0, m->site));
 }
 
 /* Of a particle that lies in the stamp by `depth`; `at`: where it is. */
 static void push_out(stamp *s, const meeting *m, int side, double depth, const double at[3],
                      double step, stamp_load *l) {
-  const double k = m->side->from.stiffness, spring = k * depth,
+  const double k = m->stiffness, spring = k * depth,
                damper = s->damping > 0 ? pl_fmax(-damper_of(s, m) * m->across, -spring) : 0;
   touch *t = &s->touching[s->touch_count++];
   double arm[3] = {0}, q[3] = {0};
@@ -212,7 +221,7 @@ static void push_out(stamp *s, const meeting *m, int side, double depth, const d
   for (int d = 0; d < s->dimensions; d++) {
     t->damped[d] = damper * m->out[d];
     t->force[d] = spring * m->out[d] + t->damped[d] - k * q[d];
-    arm[d] = at[d] - (m->side->radius - depth) * m->out[d] - s->surface.centre[d];
+    arm[d] = at[d] - (m->radius - depth) * m->out[d] - s->surface.centre[d];
   }
   l->stored += 0.5 * k * (depth * depth + dot(q, q));
   add_load(t, arm, l);
@@ -236,13 +245,17 @@ stamp_load stamp_find(stamp *s, const stamp_motion *where, double step) {
   s->touch_count = 0;
   for (long n = 0; n < s->near_count; n++) {
     const near_particle *p = &s->near[n];
-    meeting m = {.side = &s->sides[p->side], .particle = p->particle, .site = p->site};
-    const body *of = m.side->from.of;
+    const body *of = s->sides[p->side].from.of;
+    meeting m = {.side = &s->sides[p->side],
+                 .particle = p->particle,
+                 .site = p->site,
+                 .radius = radius_of(of, p->site),
+                 .stiffness = stiffness_of(&s->sides[p->side].from, p->site)};
     double at[3];
     place_of(s, of, p->site, where->place, at);
-    const bool near = is_in_box(s, at, m.side->radius);
+    const bool near = is_in_box(s, at, m.radius);
     if (!near && !s->dragged) continue;
-    const double depth = m.side->radius - surface_distance(&s->surface, at, m.out);
+    const double depth = m.radius - surface_distance(&s->surface, at, m.out);
     for (int d = 0; d < s->dimensions; d++)
       m.past[d] = of->velocity[d][p->site] - where->velocity[d];
     m.across = dot(m.past, m.out);
@@ -280,8 +293,8 @@ stamp_inside stamp_look_inside(const stamp *s, const double shift[3], double lea
       const int32_t site = of->lattice->particle_site[p];
       double at[3], out[3];
       place_of(s, of, site, shift, at);
-      const double depth = s->sides[b].radius - surface_distance(&s->surface, at, out);
-      found.count += depth > least * of->lattice->spacing;
+      const double depth = radius_of(of, site) - surface_distance(&s->surface, at, out);
+      found.count += depth > least * rows_spacing(of->lattice, site);
       if (!(depth > found.depth)) continue;
       found.depth = depth;
       found.body = b;

@@ -1,5 +1,5 @@
-/* Contact of particles with a stamp, a rigid body without particles: a particle is a ball of half a
-   spacing, and as far as it lies in the stamp, w, it is pushed out along the normal n of the
+/* Contact of particles with a stamp, a rigid body without particles: a particle is a ball of half
+   its spacing, and as far as it lies in the stamp, w, it is pushed out along the normal n of the
    nearest point of the stamp's surface,
 
      f = k w n - c (v.n) n - k q,    W = k w^2/2 + k q^2/2,       v: of the particle past the stamp
@@ -19,6 +19,7 @@
 typedef struct stamp_body {
   body *of;         /* it has outer forces (body_add_outer) */
   double stiffness; /* k of a particle, N/m */
+  bool by_size;     /* that is k of the smallest, and it grows with a particle's own spacing */
 } stamp_body;
 
 typedef struct stamp_motion {
@@ -49,7 +50,7 @@ stamp_load stamp_find(stamp *s, const stamp_motion *at, double step);
 double stamp_power(const stamp *s, const double velocity[3], double *power, double *damped);
 
 /* m: the deepest that a particle lies in the stamp at the present places, and which; the number of
-   those that lie in it by more than `least` spacings is returned. */
+   those that lie in it by more than `least` of their spacings is returned. */
 typedef struct stamp_inside {
   long count;
   double depth; /* m; negative: how far the nearest is away */

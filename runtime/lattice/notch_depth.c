@@ -141,16 +141,22 @@ typedef struct extent {
   double low, high;
 } extent;
 
+/* How far from a plane the bonds across it reach at most, and more. */
+static double across_of(const rows *w) {
+  return rows_largest_horizon(w) + rows_largest_spacing(w);
+}
+
 /* Of the particles beside the middle plane, as far as bonds across it reach; `within`: those beside
    the notch only. */
 static extent extent_of(const rows *w, const box *b, int axis, bool within) {
-  const double reach = b->half[NORMAL] + w->horizon + w->spacing;
+  const double reach = b->half[NORMAL] + across_of(w);
   extent e = {INFINITY, -INFINITY};
   for (long p = 0; p < w->particle_count; p++) {
+    const long site = w->particle_site[p];
     double at[3];
-    rows_place(w, w->particle_site[p], at);
+    rows_place(w, site, at);
     if (fabs(along(b, NORMAL, at)) > reach ||
-        (within && fabs(along(b, WIDTH, at)) > b->half[WIDTH] + 0.5 * w->spacing))
+        (within && fabs(along(b, WIDTH, at)) > b->half[WIDTH] + 0.5 * rows_spacing(w, site)))
       continue;
     e.low = pl_fmin(e.low, along(b, axis, at));
     e.high = pl_fmax(e.high, along(b, axis, at));
@@ -196,7 +202,7 @@ static void note_bonds(const rows *w, crossings *c, long site) {
   double here[3], there[3];
   rows_place(w, site, here);
   const double d = along(c->box, NORMAL, here);
-  if (fabs(d) > w->horizon + w->spacing) return;
+  if (fabs(d) > across_of(w)) return;
   if (fabs(d) <= touch) note(c, along(c->box, DEPTH, here), along(c->box, WIDTH, here), touch);
   for (int k = 0; k < w->directions; k++) {
     if (!rows_has_bond(w, site, k)) continue;

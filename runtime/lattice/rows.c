@@ -176,6 +176,7 @@ void rows_set_densities(rows *w, const double *rho) {
 }
 
 double rows_radius_square(const rows *w, long site) {
+  if (w->own_size) return w->own_size[site] * w->own_size[site];
   if (!w->site_volume) return 1;
   return pl_pow(w->site_volume[site] / w->volume, 2.0 / (w->area > 0 ? 1 : w->dimensions));
 }
@@ -214,6 +215,7 @@ uint64_t rows_fingerprint(const rows *w) {
     const uint64_t bonds[2] = {w->bonds[site], w->list->incoming[site]};
     rows_place(w, site, of);
     hash = hash_words(hash, of, 4);
+    if (w->own_size) hash = hash_words(hash, &w->own_size[site], 1);
     hash = hash_words(hash, bonds, 2);
   }
   return hash ? hash : 1;

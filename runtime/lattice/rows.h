@@ -87,7 +87,7 @@ typedef struct rows {
   double stiffness_thickness; /* m: `t` of the laws; 0 in space and of chains */
   double area;                /* m^2: `area` of the laws; 0 but of chains */
   double mass, inertia;       /* kg, kg m^2: see rows_set_density; of the mean particle where they
-                                 are not alike */
+                                 are not alike, the inertia always of the radius spacing/2 */
   neighbour_list *list;       /* NULL on lattices */
   double *site_volume, *site_mass; /* [size] m^3, kg; NULL where all particles are alike */
   /* [size] spacing of each particle over `spacing`, which is then the smallest; NULL where that is
@@ -202,7 +202,8 @@ void rows_set_density(rows *w, double rho);
 /* The same where each particle has a density of its own, [size]. `mass` and `inertia` are of one
    between the least and the largest. */
 void rows_set_densities(rows *w, const double *rho);
-/* The square of a particle's radius over that of the mean particle; 1 but on lists. */
+/* The square of a particle's radius over that of a particle as large as `spacing`; 1 but on lists.
+   So a particle's inertia is `inertia` times its mass over `mass` times this. */
 double rows_radius_square(const rows *w, long site);
 
 /* What a law is told about the bonds of one direction, 0 .. 2 directions - 1, wherever it is asked:

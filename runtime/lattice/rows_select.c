@@ -19,7 +19,8 @@ static long select_nearest(const rows *w, const deck_shape *shape, int32_t *list
     best = distance;
     list[0] = (int32_t)p;
   }
-  return best <= site_point_reach(shape, w->spacing) ? 1 : 0;
+  if (isinf(best)) return 0;
+  return best <= site_point_reach(shape, rows_spacing(w, w->particle_site[list[0]])) ? 1 : 0;
 }
 
 long rows_select(const rows *w, const deck_shape *shape, int32_t **list) {

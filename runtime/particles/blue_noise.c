@@ -185,12 +185,14 @@ static void move(voronoi_points *p, const solid *s, const gradation *g, const do
   }
 }
 
+/* Bounded, whatever the formula says between the places where it was looked at. */
 static void find_own(voronoi_points *p, const gradation *g) {
   for (long k = 0; p->own && k < p->count; k++) {
     double at[3] = {0, 0, 0};
     for (int c = 0; c < p->dimensions; c++)
       at[c] = p->at[c][k];
-    p->own[k] = pl_fmax(gradation_at(g, at), p->spacing);
+    p->own[k] =
+        pl_fmin(pl_fmax(gradation_at(g, at), p->spacing), GRADATION_MOST_RATIO * p->spacing);
   }
 }
 

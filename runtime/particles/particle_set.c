@@ -191,6 +191,7 @@ static void keep(particle_table *t, long from, long to) {
   for (int c = 0; c < t->dimensions; c++)
     t->at[c][to] = t->at[c][from];
   if (t->volume) t->volume[to] = t->volume[from];
+  if (t->spacing) t->spacing[to] = t->spacing[from];
   t->row[to] = t->row[from];
 }
 
@@ -219,6 +220,23 @@ static bool leave_out(const maker *m, particle_table *t, double spacing) {
                           : "the notches remove every particle of `%s` from lattice '%s'",
               m->lattice->file, m->lattice->name);
   if (outside > 0) diag_hint(m->d, "check the units in the file's first line: without one it is m");
+  return false;
+}
+
+/* Laws, horizons and contacts would take the particles of a graded result for alike. */
+static bool are_of_one_size(const maker *m, const particle_table *t) {
+  double least = INFINITY, most = 0;
+  for (long k = 0; t->spacing && k < t->count; k++) {
+    least = pl_fmin(least, t->spacing[k]);
+    most = pl_fmax(most, t->spacing[k]);
+  }
+  if (!t->spacing || most <= least * (1 + 1e-6)) return true;
+  diag_report(m->d, DIAG_CONFLICT, deck_where(&m->lattice->item, "file"),
+              "the particles of `%s` are graded, with spacings from %.4g to %.4g mm: those of "
+              "kind = 'particles' are of one size",
+              m->lattice->file, 1e3 * least, 1e3 * most);
+  diag_hint(m->d, "kind = 'blue_noise' with the formula of `spacing`, the `seed` and the bodies of "
+                  "that run gives the same particles");
   return false;
 }
 
@@ -309,7 +327,8 @@ static particle_set *from_table(maker *m, particle_table *t) {
     report_nothing_left(m, 0);
     return NULL;
   }
-  if (!leave_out(m, t, spacing_of(m, t)) || !can_be_stored(m, t)) return NULL;
+  if (!leave_out(m, t, spacing_of(m, t)) || !can_be_stored(m, t) || !are_of_one_size(m, t))
+    return NULL;
   const double spacing = spacing_of(m, t);
   return all_apart(m, t, spacing) ? take_table(m, t, spacing) : NULL;
 }

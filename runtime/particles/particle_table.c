@@ -172,13 +172,14 @@ static bool take_places(const reader *r, const double *reference, int dimensions
 static bool take_result(const reader *r, result_file *f) {
   particle_table *t = r->table;
   int dimensions;
-  long volumes;
+  long volumes, spacings;
   double *reference = result_read_reference(f, &t->count, &dimensions);
   t->volume = result_read_volume(f, &volumes);
+  t->spacing = result_read_spacing(f, &spacings);
   bool good = false;
   if (result_trouble(f))
     diag_report(r->d, DIAG_FILE, r->where, "%s", result_trouble(f));
-  else if (!reference || (t->volume && volumes != t->count))
+  else if (!reference || (t->volume && volumes != t->count) || (t->spacing && spacings != t->count))
     refuse_file(r, "its particles are damaged");
   else if (dimensions != t->dimensions)
     diag_report(r->d, DIAG_CONFLICT, r->where,
@@ -216,6 +217,7 @@ void particle_table_free(particle_table *t) {
   for (int c = 0; c < 3; c++)
     free(t->at[c]);
   free(t->volume);
+  free(t->spacing);
   free(t->row);
   text_table_free(&t->text);
 }

@@ -11,6 +11,7 @@ typedef struct particle_table {
   long count;
   double *at[3];   /* [count] m; at[2] is NULL in the plane */
   double *volume;  /* [count] m^2 of the plane or m^3 of space; NULL when the file gives none */
+  double *spacing; /* [count] m; NULL but of a result whose particles are graded */
   long *row;       /* [count] of the table, or the particle's number in the result */
   text_table text; /* without columns when the file is a result */
 } particle_table;

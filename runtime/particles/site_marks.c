@@ -139,8 +139,11 @@ bool site_too_many(const deck_lattice *l, double sites, diagnostics *d) {
                   : "the bodies of lattice '%s' span %.3g sites; the most that can be stored are "
                     "%.0e",
               l->name, sites, SITE_MOST);
-  diag_hint(d, "a spacing of %.3g mm would do%s", 1e3 * l->spacing * wider * 1.01,
-            bar ? "" : ", if the bodies lie close together");
+  const char *close = bar ? "" : ", if the bodies lie close together";
+  if (l->graded)
+    diag_hint(d, "spacings %.3g times as large would do%s", wider * 1.01, close);
+  else
+    diag_hint(d, "a spacing of %.3g mm would do%s", 1e3 * l->spacing * wider * 1.01, close);
   return true;
 }
 

@@ -80,18 +80,25 @@ static bool find_stiffness(run_contact *c, const deck *k, const run_body *bodies
   return true;
 }
 
-double run_contact_lightest(const rows *g) {
+bool run_contact_by_size(const rows *g, double given) {
+  return g->own_size && g->dimensions == 3 && !(given > 0);
+}
+
+double run_contact_lightest(const rows *g, bool by_size) {
   double least = g->mass;
-  for (long p = 0; g->site_mass && p < g->particle_count; p++)
-    least = pl_fmin(least, g->site_mass[g->particle_site[p]]);
+  for (long p = 0; g->site_mass && p < g->particle_count; p++) {
+    const long site = g->particle_site[p];
+    least = pl_fmin(least, g->site_mass[site] / (by_size ? g->own_size[site] : 1));
+  }
   return least;
 }
 
 static void add_rates(const run_contact *c, const run_body *bodies, touch_rates *touching) {
   for (int n = 0; n < c->count; n++) {
     const rows *g = bodies[c->of[n]].lattice_rows;
-    const double around = g->dimensions == 2 ? 3 : 4;
-    touching[c->of[n]].square += 2 * around * c->stiffness[n] / run_contact_lightest(g);
+    const double around = g->dimensions == 2 ? 3 : 4,
+                 lightest = run_contact_lightest(g, run_contact_by_size(g, c->from->stiffness));
+    touching[c->of[n]].square += 2 * around * c->stiffness[n] / lightest;
   }
 }
 
@@ -230,7 +237,10 @@ void run_contacts_begin(run_contacts *c, double ahead) {
     contact_body *of = must_calloc((size_t)item->count + 1, sizeof *of);
     for (int b = 0; b < item->count; b++) {
       const run_body *from = &c->bodies[item->of[b]];
-      of[b] = (contact_body){.of = from->body, .stiffness = item->stiffness[b]};
+      of[b] =
+          (contact_body){.of = from->body,
+                         .stiffness = item->stiffness[b],
+                         .by_size = run_contact_by_size(from->lattice_rows, item->from->stiffness)};
       of[b].laws = laws_of(from, &of[b].law_count);
       body_add_outer(from->body);
     }

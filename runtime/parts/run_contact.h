@@ -8,7 +8,8 @@
    The stiffness of two particles is k = E V/s^2: of a particle as a piece of a bar, as long as the
    spacing s, of its volume V and of the lattice's Young's modulus E. On the hexagon with central
    bonds it is that of a bond; a layer of contacts is about as stiff as a layer of the body. Of two
-   lattices the softer one counts.
+   lattices the softer one counts. Graded particles have a k of their own: the same in the plane, in
+   space in proportion to the spacing; of two the smaller one counts.
 
    The largest frequencies: with k |(u_i - u_j) n|^2 <= 2 k (|u_i n|^2 + |u_j n|^2) for each pair,
    and at most six contacts evenly around a particle in the plane, twelve in space (sum of n n^T =
@@ -55,10 +56,14 @@ bool run_contacts_open(run_contacts *c, const deck *k, run_body *bodies, int bod
 void run_contacts_begin(run_contacts *c, double ahead);
 void run_contacts_free(run_contacts *c);
 
-/* N/m: k = E V/s^2 by the softest law of a lattice; NaN where one has no Young's modulus. */
+/* N/m: k = E V/s^2 by the softest law of a lattice, of the smallest particles; NaN where one has no Young's modulus. */
 double run_contact_stiffness(const run_body *b, const deck *k);
-/* kg: of its lightest particle. */
-double run_contact_lightest(const rows *g);
+/* k grows with a particle's own spacing, and is that of the smallest: of graded particles in space,
+   where the deck gives no stiffness (`given` is 0). */
+bool run_contact_by_size(const rows *g, double given);
+/* kg: of its lightest particle; `by_size`: over the particle's spacing as a part of the smallest, so
+   that no k/m is larger than that of the smallest k with it. */
+double run_contact_lightest(const rows *g, bool by_size);
 
 /* Forces at the present places, after `step` steps. */
 void run_contacts_find(run_contacts *c, int64_t step);

@@ -44,7 +44,8 @@ static double most_touching(const run_stamp *s, const rows *g) {
 static void add_rates(const run_stamp *s, const run_body *bodies, touch_rates *touching) {
   for (int n = 0; n < s->count; n++) {
     const rows *g = bodies[s->of[n]].lattice_rows;
-    const double k = s->stiffness[n], m = run_contact_lightest(g);
+    const double k = s->stiffness[n],
+                 m = run_contact_lightest(g, run_contact_by_size(g, s->from->stiffness));
     const double inverse = 1 / m + (s->from->mass > 0 ? most_touching(s, g) / s->from->mass : 0);
     touching[s->of[n]].square += k * inverse;
     touching[s->of[n]].damping += 2 * s->damping * sqrt(k * m) * inverse;
@@ -179,7 +180,8 @@ void run_stamps_begin(run_stamps *s, const run_contacts *contacts) {
     surface_open(&item->from->shape, &shape);
     for (int b = 0; b < item->count; b++) {
       body *pushed = s->bodies[item->of[b]].body;
-      of[b] = (stamp_body){pushed, item->stiffness[b]};
+      of[b] = (stamp_body){pushed, item->stiffness[b],
+                           run_contact_by_size(pushed->lattice, item->from->stiffness)};
       s->slowest = pl_fmin(s->slowest, pushed->lattice->spacing);
       s->clears[item->of[b]] = true;
       body_add_outer(pushed);
@@ -311,7 +313,7 @@ static bool is_outside(const run_stamps *s, const run_stamp *item, diagnostics *
               rows_place_text(of->body->dimensions, at, text), 1e3 * in.depth);
   diag_hint(d,
             "move it out by as much: a particle reaches half a spacing, %.4g mm, beyond its place",
-            0.5e3 * of->lattice_rows->spacing);
+            0.5e3 * rows_spacing(of->lattice_rows, in.site));
   return false;
 }
 

@@ -77,12 +77,15 @@ static double spacing_of(const plot_frame *m) {
 static double *sizes_of(result_file *f, const plot_frame *m) {
   long count = 0;
   double sum = 0, *size = result_read_spacing(f, &count);
-  if (!size || count != m->particles) {
+  bool good = size && count == m->particles;
+  for (long p = 0; good && p < count; p++) {
+    good = size[p] > 0 && isfinite(size[p]);
+    sum += size[p];
+  }
+  if (!good) {
     free(size);
     return NULL;
   }
-  for (long p = 0; p < count; p++)
-    sum += size[p];
   for (long p = 0; p < count; p++)
     size[p] *= (double)count / sum;
   return size;
@@ -501,6 +504,10 @@ double plot_frame_value(const plot_frame *m, long k, int component) {
   return component >= 0 && m->components > 1 ? v[component] : size_of(v, m->components);
 }
 
+double plot_frame_spacing(const plot_frame *m, long p) {
+  return m->size ? m->spacing * m->size[p] : m->spacing;
+}
+
 /* --- what is shown of a body in space --------------------------------------------------------- */
 
 /* Takes row k of a table from row order[k], in place; rows of `width` doubles. */
@@ -530,6 +537,7 @@ static void take_particles(plot_frame *m, const long *order, long count) {
   }
   take_rows(&m->reference, order, count, m->dimensions);
   take_rows(&m->moved, order, count, m->dimensions);
+  take_rows(&m->size, order, count, 1);
   take_rows(&m->damage, bonds, kept, 1);
   take_rows(&m->second, bonds, kept, 1);
   if (m->marks_on_bonds)
@@ -564,17 +572,17 @@ static void project(plot_frame *m, const double across[3], const double up[3]) {
     }
 }
 
-/* Particles up to half a spacing from the plane; on the far side that distance itself counts, too.
+/* Particles up to half of their spacing from the plane; on the far side that distance itself counts, too.
    */
 static bool take_slice(plot_frame *m, const plot_map_options *o, char *error, size_t size) {
   static const double unit_vectors[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   static const int sides[3][2] = {{1, 2}, {0, 2}, {0, 1}};
   const int across = sides[o->slice_axis][0], up = sides[o->slice_axis][1];
-  const double half = 0.5 * m->spacing, rounding = 1e-6 * m->spacing;
+  const double rounding = 1e-6 * m->spacing;
   long *order = must_alloc(((size_t)m->particles + 1) * sizeof *order), count = 0;
   double low = INFINITY, high = -INFINITY;
   for (long p = 0; p < m->particles; p++) {
-    const double at = m->reference[3 * p + o->slice_axis];
+    const double at = m->reference[3 * p + o->slice_axis], half = 0.5 * plot_frame_spacing(m, p);
     low = pl_fmin(low, at);
     high = pl_fmax(high, at);
     if (at > o->slice_at - half + rounding && at <= o->slice_at + half + rounding)

@@ -54,5 +54,7 @@ void plot_frame_free(plot_frame *m);
 
 /* Component of value k, or its size for component -1. */
 double plot_frame_value(const plot_frame *m, long k, int component);
+/* m: as wide as particle p is shown. */
+double plot_frame_spacing(const plot_frame *m, long p);
 
 #endif

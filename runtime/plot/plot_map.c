@@ -238,7 +238,7 @@ static bool is_dot(const map *m, long p, int component) {
 }
 
 static double half_spacing(const map *m, long p) {
-  return 0.5 * m->frame.spacing * m->at.scale * (m->frame.size ? m->frame.size[p] : 1);
+  return 0.5 * m->at.scale * plot_frame_spacing(&m->frame, p);
 }
 
 /* In the plane the more damaged above the less damaged; in a view of a surface those in front above

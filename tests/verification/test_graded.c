@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "runtime/analysis/uniform_strain.h"
+#include "runtime/simulation/simulation_state.h"
 #include "tests/verification/page.h"
 #include "tests/verification/specimen.h"
 
@@ -219,6 +220,126 @@ static void particles_are_as_large_as_asked_for(void **state) {
   deck_case_close(&c);
 }
 
+/* --- how easily they turn --------------------------------------------------------------------- */
+
+#define FLAT_BODY                                                                                  \
+  " thickness = '100 mm' /\n&material lattice = 'l' model = 'splm_elastic' /\n"                    \
+  "&body lattice = 'l' shape = 'rectangle' corner = '-50 mm', '-100 mm' size = '100 mm', '200 "    \
+  "mm' /\n&simulation end_time = 1 /\n"
+
+/* m^2: of a particle, over its mass. */
+static double turning(const rows *g, long site) {
+  return g->inertia / g->mass * rows_radius_square(g, site);
+}
+
+/* As on a lattice of the particle's own spacing, whatever the others are. */
+static void they_turn_as_particles_of_their_size(void **state) {
+  (void)state;
+  deck_case even, c;
+  assert_true(deck_case_lattice(
+      &even, "&lattice name = 'l' kind = 'hexagonal' spacing = '5 mm'" FLAT_BODY));
+  rows_set_density(even.lattice, 2400);
+  const double of_5_mm = even.lattice->inertia / even.lattice->mass;
+  deck_case_close(&even);
+  assert_true(fabs(of_5_mm / (0.4 * 2.5e-3 * 2.5e-3) - 1) < 1e-12);
+  assert_true(deck_case_lattice(
+      &c, "&lattice name = 'l' kind = 'blue_noise' spacing = '2 [mm] + 0.04*abs(y)'" FLAT_BODY));
+  rows_set_density(c.lattice, 2400);
+  const uint64_t known = rows_fingerprint(c.lattice);
+  c.lattice->own_size[c.lattice->particle_site[0]] *= 1.5; /* sizes are part of what a run is of */
+  assert_true(rows_fingerprint(c.lattice) != known);
+  c.lattice->own_size[c.lattice->particle_site[0]] /= 1.5;
+  for (long p = 0; p < c.lattice->particle_count; p++) {
+    const long q = c.lattice->particle_site[p];
+    const double part = by_height(c.lattice, q) / 5e-3;
+    assert_true(fabs(turning(c.lattice, q) / (part * part * of_5_mm) - 1) < 1e-12);
+  }
+  deck_case_close(&c);
+}
+
+/* --- contact ---------------------------------------------------------------------------------- */
+
+/* N/m: E V/s^2 of a particle in space, as large as in the fcc lattice. */
+static double stiffness_of(const rows *g, long site) {
+  return E * by_depth(g, site) / sqrt(2);
+}
+
+/* Two blocks lie above each other, a gap between them; the upper one, and a flat stamp above it, go
+   down by `way`. */
+static void open_blocks(deck_case *c, double way) {
+#define BLOCK(name, z)                                                                             \
+  "&lattice name = '" name                                                                         \
+  "' kind = 'blue_noise' setting = 'space' spacing = '3 [mm] + 0.08*z' /\n"                        \
+  "&material lattice = '" name "' model = " ELASTIC " /\n"                                         \
+  "&body lattice = '" name "' shape = 'box' corner = 0, 0, " z                                     \
+  " size = '20 mm', '20 mm', '20 mm' "                                                             \
+  "/\n"
+  assert_true(deck_case_text(
+      c, "&simulation end_time = 1e-6 /\n" BLOCK("a", "0") BLOCK(
+             "b", "'30 mm'") "&contact name = 'c' /\n"
+                             "&stamp name = 's' shape = 'box' corner = '-50 mm', '-50 mm', '60 mm' "
+                             "size = '0.2 m', "
+                             "'0.2 m', '50 mm' direction = 0, 0, -1 velocity = 0 lattices = 'b' /\n"
+                             "&output frames = 0 /\n"));
+  body *upper = simulation_state(c->simulation, 1)->body;
+  for (long p = 0; p < upper->lattice->particle_count; p++)
+    upper->displacement[2][upper->lattice->particle_site[p]] = -way;
+}
+
+/* N along z: what the blocks exert on each other, pair by pair. */
+static double push_by_hand(const rows *a, const rows *b, double way, long *pairs) {
+  double sum = 0;
+  *pairs = 0;
+  for (long m = 0; m < a->particle_count; m++)
+    for (long n = 0; n < b->particle_count; n++) {
+      const long p = a->particle_site[m], q = b->particle_site[n];
+      const double x = b->x[q] - a->x[p], y = b->y[q] - a->y[p], z = b->z[q] - way - a->z[p],
+                   r = sqrt(x * x + y * y + z * z), d = 0.5 * (by_depth(a, p) + by_depth(b, q));
+      if (r >= d) continue;
+      sum += fmin(stiffness_of(a, p), stiffness_of(b, q)) * (d - r) * z / r;
+      ++*pairs;
+    }
+  return sum;
+}
+
+static double sum_of_outer(const body *w) {
+  double sum = 0;
+  for (long p = 0; p < w->lattice->particle_count; p++)
+    sum += body_outer(w, 2, w->lattice->particle_site[p]);
+  return sum;
+}
+
+/* In space a particle's E V/s^2 grows with its spacing: of two the softer one's counts. */
+static void large_particles_are_stiffer_in_contact(void **state) {
+  (void)state;
+  deck_case c;
+  open_blocks(&c, 11.5e-3);
+  body *const lower = simulation_state(c.simulation, 0)->body, *const upper =
+                                                                   simulation_state(c.simulation, 1)
+                                                                       ->body;
+  const rows *a = lower->lattice, *b = upper->lattice;
+  long pairs;
+  const double push = push_by_hand(a, b, 11.5e-3, &pairs);
+  body_clear_outer(lower);
+  body_clear_outer(upper);
+  contact_find(c.simulation->contacts.items[0].found);
+  assert_true(pairs > 10);
+  assert_int_equal(contact_touching(c.simulation->contacts.items[0].found, &(double){0}), pairs);
+  assert_true(fabs(sum_of_outer(upper) / push - 1) < 1e-6);
+  assert_true(fabs(sum_of_outer(lower) / push + 1) < 1e-6);
+  /* the stamp comes down by 22 mm on what has gone down by 11.5 mm */
+  const stamp_motion at = {.place = {0, 0, -22e-3}};
+  double pressed = 0;
+  for (long p = 0; p < b->particle_count; p++) {
+    const long q = b->particle_site[p];
+    const double depth = 0.5 * by_depth(b, q) - (60e-3 - 22e-3 - (b->z[q] - 11.5e-3));
+    pressed += stiffness_of(b, q) * fmax(depth, 0);
+  }
+  const stamp_load l = stamp_find(c.simulation->stamps.items[0].found, &at, 0);
+  assert_true(l.touching > 4 && fabs(l.force[2] / pressed - 1) < 1e-6);
+  deck_case_close(&c);
+}
+
 /* --- waves ------------------------------------------------------------------------------------ */
 
 /* The first mode along a free bar, let go: half a period until its ends have changed sides. The
@@ -284,6 +405,8 @@ int main(void) {
       cmocka_unit_test(particles_are_as_large_as_asked_for),
       cmocka_unit_test(moduli_are_held_at_every_ratio),
       cmocka_unit_test(the_steepest_gradation_is_borne),
+      cmocka_unit_test(they_turn_as_particles_of_their_size),
+      cmocka_unit_test(large_particles_are_stiffer_in_contact),
       cmocka_unit_test(waves_run_as_fast),
       cmocka_unit_test(the_dog_bone_with_a_fine_neck),
   };

@@ -310,6 +310,60 @@ static void images_are_alike(void **state) {
   deck_case_close(&first);
 }
 
+/* --- graded particles ------------------------------------------------------------------------- */
+
+#define TOP 0.06 /* m */
+
+/* Half of its own spacing. */
+static double radius_at(double y) {
+  return 0.5 * (2e-3 + 0.06 * y);
+}
+
+/* How far the lower side of a stamp at y lies in the body; `sum`: in all its particles. */
+static double depth_by_hand(const rows *w, double y, double *sum) {
+  double most = -INFINITY;
+  *sum = 0;
+  for (long p = 0; p < w->particle_count; p++) {
+    const double at = w->y[w->particle_site[p]], depth = radius_at(at) - (y - at);
+    most = fmax(most, depth);
+    *sum += fmax(depth, 0);
+  }
+  return most;
+}
+
+/* Particles from 2 to 5.6 mm: a stamp that comes down on the coarse side meets each at half of its
+   own spacing. */
+static void coarse_particles_touch_at_half_their_own_spacing(void **state) {
+  (void)state;
+  const deck_shape flat = {.kind = SHAPE_RECTANGLE, .corner = {-0.02, TOP}, .size = {0.08, 0.02}};
+  deck_case c;
+  surface of;
+  deck_case_open(&c, "&simulation end_time = 1e-4 /\n"
+                     "&lattice name = 'b' kind = 'blue_noise' spacing = '2 [mm] + 0.06*y' "
+                     "thickness = 0.01 /\n&material lattice = 'b' model = 'splm_elastic' /\n"
+                     "&body lattice = 'b' shape = 'rectangle' corner = 0, 0 size = 0.04, 0.06 /\n"
+                     "&output frames = 0 /\n");
+  body *w = simulation_state(c.simulation, 0)->body;
+  assert_true(surface_open(&flat, &of));
+  body_add_outer(w);
+  stamp *s = stamp_new(&of, &(stamp_body){.of = w, .stiffness = 1e8}, 1, 0, 0);
+  double sum;
+  for (int n = 0; n < 5; n++) {
+    const double way = 3e-4 * (n - 2);
+    const stamp_motion at = {.place = {0, way}};
+    const double most = depth_by_hand(w->lattice, TOP + way, &sum);
+    body_clear_outer(w);
+    const stamp_load l = stamp_find(s, &at, 1e-6);
+    const stamp_inside in = stamp_look_inside(s, at.place, 0);
+    assert_true(fabs(in.depth - most) < 1e-12);
+    assert_true(fabs(l.force[1] - 1e8 * sum) < 1e-6);
+    assert_int_equal(l.touching, in.count);
+    assert_true(n > 2 || l.touching > 0);
+  }
+  stamp_free(s);
+  deck_case_close(&c);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_roll_presses_as_hertz_says),
@@ -317,6 +371,7 @@ int main(void) {
       cmocka_unit_test(a_ram_slows_down_as_on_a_long_rod),
       cmocka_unit_test(a_hammer_breaks_a_beam),
       cmocka_unit_test(images_are_alike),
+      cmocka_unit_test(coarse_particles_touch_at_half_their_own_spacing),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,9 +11,19 @@
 
 #include "tests/generator/run/wrong_decks.h"
 
+#define BODY_OF_PLATE                                                                              \
+  "  E = '30 GPa'  nu = 0.2  rho = '2323 kg/m^3'  /\n"                                             \
+  "&body        lattice = 'plate'  shape = 'rectangle'  corner = 0, 0  size = '0.1 m', "
+
 static const fault faults[] = {
     {"inside", "'0.12 m'", "'0.1 m'", false},
     {"by_a_little", "'0.12 m'", "'0.115 m'", false},
+    {"coarse",
+     "'hexagonal'  spacing = '5 mm'  thickness = '10 mm'  /\n"
+     "&material    lattice = 'plate'  model = 'elastic_micropolar'" BODY_OF_PLATE "'0.1 m'",
+     "'blue_noise'  spacing = '4 [mm] + 0.1*y'  thickness = '10 mm'  /\n"
+     "&material    lattice = 'plate'  model = 'splm_elastic'" BODY_OF_PLATE "'0.11 m'",
+     false},
     {"mesh", "  lattices = 'plate'", "", false},
     {"mesh_named", "lattices = 'plate'", "lattices = 'rim'", false},
     {"too_fast", "'50 m/s'", "'50 km/s'", false},

@@ -255,12 +255,37 @@ static void places_share_the_masses_of_their_sites(void **state) {
   end(&b);
 }
 
+/* Particles of 1 to 4 mm: places among the coarse ones are in cells, too. */
+static void coarse_particles_make_cells(void **state) {
+  (void)state;
+  built_rows b;
+  build_rows(&b, "&simulation end_time = 1 /\n&material lattice = 'c' model = 'm' /\n"
+                 "&lattice name = 'c' kind = 'blue_noise' spacing = '1 [mm] + 0.1*y' thickness = 1 "
+                 "/\n&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.03, 0.03 /\n");
+  near_particles near = tied_near(b.rows);
+  for (int n = 0; n < 400; n++) {
+    const double at[3] = {4e-3 + 22e-3 * (n % 20) / 19, 4e-3 + 22e-3 * (n / 20) / 19, 0};
+    double mean[2] = {0, 0};
+    rows_copy cell;
+    assert_true(tied_cell(&near, NULL, NULL, at, &cell));
+    for (int k = 0; k < cell.count; k++) {
+      const long q = b.rows->particle_site[cell.particle[k]];
+      mean[0] += cell.weight[k] * b.rows->x[q];
+      mean[1] += cell.weight[k] * b.rows->y[q];
+    }
+    assert_true(fabs(mean[0] - at[0]) + fabs(mean[1] - at[1]) < 1e-12);
+  }
+  near_particles_end(&near);
+  built_end(&b);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(places_are_where_the_bar_is),
                                      cmocka_unit_test(corners_that_carry_nothing_are_none),
                                      cmocka_unit_test(bonds_stand_for_all_of_the_bar),
                                      cmocka_unit_test(what_lies_outside_is_told),
                                      cmocka_unit_test(no_cell_reaches_through_a_notch),
-                                     cmocka_unit_test(places_share_the_masses_of_their_sites)};
+                                     cmocka_unit_test(places_share_the_masses_of_their_sites),
+                                     cmocka_unit_test(coarse_particles_make_cells)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -129,7 +129,7 @@ static void the_list_misses_none(void **state) {
   surface of;
   open_wanderers(&w);
   assert_true(surface_open(&disc, &of));
-  const stamp_body bodies[BODIES] = {{w.of[0], k_of[0]}, {w.of[1], k_of[1]}};
+  const stamp_body bodies[BODIES] = {{w.of[0], k_of[0], false}, {w.of[1], k_of[1], false}};
   stamp *s = stamp_new(&of, bodies, BODIES, friction, damping);
   assert_true(stamp_look_inside(s, w.at.place, 0).count == 0);
   long most = 0;

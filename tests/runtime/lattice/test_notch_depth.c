@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -12,6 +13,7 @@
 #include "runtime/deck/deck_read.h"
 #include "runtime/filling/lattice.h"
 #include "runtime/lattice/notch_depth.h"
+#include "tests/runtime/built_rows.h"
 
 /* Depths of the notches of a deck that has these groups besides its lattice's name and
    thickness. */
@@ -144,6 +146,46 @@ static void what_stands_beside_the_notch_does_not_count(void **state) {
                MM(7), MM(3), 0);
 }
 
+/* Where the highest bond across x crosses it, and the highest particle. */
+static double highest_crossing(const rows *w, double x, double *top) {
+  double most = -INFINITY;
+  *top = -INFINITY;
+  rows_bond *bonds = rows_bonds(w);
+  for (long k = 0; k < w->bond_count; k++) {
+    const long i = w->particle_site[bonds[k].i], j = w->particle_site[bonds[k].j];
+    if ((w->x[i] > x) != (w->x[j] > x))
+      most = fmax(most, w->y[i] + (x - w->x[i]) / (w->x[j] - w->x[i]) * (w->y[j] - w->y[i]));
+  }
+  for (long p = 0; p < w->particle_count; p++)
+    *top = fmax(*top, w->y[w->particle_site[p]]);
+  free(bonds);
+  return most;
+}
+
+/* Particles of 1 to 4 mm, a slit among the coarse ones: bonds of all that reach across it count. */
+static void slits_among_coarse_particles(void **state) {
+  (void)state;
+  for (int seed = 1; seed <= 8; seed++) {
+    char text[1000];
+    built_rows b;
+    snprintf(
+        text, sizeof text,
+        "&simulation end_time = 1 /\n&material lattice = 'l' model = 'none' /\n"
+        "&lattice name = 'l' kind = 'blue_noise' spacing = '1 [mm] + 0.1*y' thickness = 1 "
+        "seed = %d /\n"
+        "&body lattice = 'l' shape = 'rectangle' corner = 0, 0 size = '16 mm', '30 mm' /\n"
+        "&notch lattice = 'l' shape = 'segment' from = '8 mm', '31 mm' to = '8 mm', '18 mm' /\n",
+        seed);
+    build_rows(&b, text);
+    double top;
+    const notch_depth found = notch_depth_of(b.rows, &b.deck->notchs[0].shape);
+    const double crossing = highest_crossing(b.rows, MM(8), &top);
+    assert_int_equal(found.kind, NOTCH_AT_EDGE);
+    assert_true(fabs(found.cut - (top - crossing)) < 1e-12);
+    built_end(&b);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(slits_end_at_bonds),
@@ -152,6 +194,7 @@ int main(void) {
       cmocka_unit_test(turned_slits),
       cmocka_unit_test(cuts_in_space),
       cmocka_unit_test(what_stands_beside_the_notch_does_not_count),
+      cmocka_unit_test(slits_among_coarse_particles),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,6 +8,8 @@
 
 #include "runtime/filling/lattice.h"
 #include "runtime/lattice/regions.h"
+#include "runtime/lattice/rows_select.h"
+#include "tests/runtime/built_rows.h"
 #include "tests/runtime/small_run.h"
 
 static void regions_hold_the_particles_inside(void **state) {
@@ -77,8 +79,37 @@ static void what_is_near_an_empty_region_is_told(void **state) {
   }
 }
 
+/* Particles of 1 to 4 mm: a point chooses the nearest one within half of that one's spacing. */
+static void points_reach_half_of_a_particles_own_spacing(void **state) {
+  (void)state;
+  built_rows b;
+  build_rows(&b, "&simulation end_time = 1 /\n&material lattice = 'c' model = 'm' /\n"
+                 "&lattice name = 'c' kind = 'blue_noise' spacing = '1 [mm] + 0.1*y' thickness = 1 "
+                 "/\n&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.03, 0.03 /\n");
+  const rows *g = b.rows;
+  for (int n = 0; n < 400; n++) {
+    const deck_shape point = {.kind = SHAPE_POINT,
+                              .at = {30e-3 * (n % 20) / 19, 30e-3 * (n / 20) / 19}};
+    double least = INFINITY, own = 0;
+    int32_t *list, nearest = -1;
+    for (int32_t p = 0; p < g->particle_count; p++) {
+      const long q = g->particle_site[p];
+      const double way = hypot(g->x[q] - point.at[0], g->y[q] - point.at[1]);
+      if (way < least) nearest = p, own = 1e-3 + 0.1 * g->y[q];
+      least = fmin(least, way);
+    }
+    const long count = rows_select(g, &point, &list);
+    assert_int_equal(count, least < 0.5 * own);
+    if (count) assert_int_equal(list[0], nearest);
+    free(list);
+  }
+  built_end(&b);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(regions_hold_the_particles_inside),
-                                     cmocka_unit_test(what_is_near_an_empty_region_is_told)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(regions_hold_the_particles_inside),
+      cmocka_unit_test(what_is_near_an_empty_region_is_told),
+      cmocka_unit_test(points_reach_half_of_a_particles_own_spacing)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

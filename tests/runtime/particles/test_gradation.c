@@ -10,6 +10,7 @@
 #include <cmocka.h>
 #include <omp.h>
 
+#include "runtime/particles/blue_noise.h"
 #include "runtime/particles/gradation.h"
 #include "runtime/particles/particle_set.h"
 #include "tests/runtime/built_rows.h"
@@ -115,15 +116,34 @@ static void what_cannot_be_is_said(void **state) {
   check_refused(DECK("spacing = 'sqrt(x*1 [mm])' thickness = 1", PLATE),
                 "`spacing` has no finite value at (-100, -100) mm", "max(2 [mm], ...)");
   check_refused(DECK("spacing = '1e-6 [mm]*(2 + x/1 [m])' thickness = 1", PLATE),
-                "the most that can be stored", "a spacing of");
+                "the most that can be stored", "times as large would do");
+}
+
+/* A spike between the places that were looked at: no particle is larger than four of the smallest. */
+static void sizes_are_bounded(void **state) {
+  (void)state;
+  enum { COUNT = 200 };
+  built_rows d;
+  solid s;
+  double at[2][COUNT], own[COUNT];
+  read_deck(&d, DECK("spacing = '4 [mm] + 1e3*abs(x)' thickness = 1", PLATE));
+  assert_non_null(d.deck);
+  solid_begin(&s, d.deck, 0);
+  voronoi_points p = {
+      .dimensions = 2, .count = COUNT, .at = {at[0], at[1]}, .spacing = 4e-3, .own = own};
+  const gradation g = {.dimensions = 2, .graded = d.deck->lattices[0].graded, .least = 4e-3};
+  blue_noise_fill(&p, &s, &g, 1);
+  for (long k = 0; k < COUNT; k++)
+    assert_true(own[k] >= 4e-3 && own[k] <= GRADATION_MOST_RATIO * 4e-3);
+  solid_end(&s);
+  built_end(&d);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(particles_are_counted),
-      cmocka_unit_test(one_spacing_is_that_of_all),
-      cmocka_unit_test(threads_do_not_matter),
-      cmocka_unit_test(what_cannot_be_is_said),
+      cmocka_unit_test(particles_are_counted), cmocka_unit_test(one_spacing_is_that_of_all),
+      cmocka_unit_test(threads_do_not_matter), cmocka_unit_test(what_cannot_be_is_said),
+      cmocka_unit_test(sizes_are_bounded),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

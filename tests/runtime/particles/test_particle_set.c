@@ -341,7 +341,7 @@ static void bodies_may_hold_none(void **state) {
 
 /* --- results ---------------------------------------------------------------------------------- */
 
-static const char *put_result(const double reference[2 * PARTICLES]) {
+static const char *put_result(const double reference[2 * PARTICLES], const double *spacing) {
   h5_quiet();
   const char *path = put_file("small.h5", "");
   char error[512];
@@ -349,6 +349,7 @@ static const char *put_result(const double reference[2 * PARTICLES]) {
   const double *values[2] = {u, omega}, time[1] = {0};
   result_header header = small_header(path);
   header.reference = reference;
+  header.spacing = spacing;
   result *r = small_begin(&header, error, sizeof error);
   assert_non_null(r);
   small_frame(0, u, omega);
@@ -368,7 +369,7 @@ static void remove_result(const char *path) {
 
 static void results_are_read_back(void **state) {
   (void)state;
-  const char *path = put_result(small_reference);
+  const char *path = put_result(small_reference, NULL);
   bench b;
   begin_table(&b, path, "thickness = '500 mm'", "");
   particle_set *set = make(&b);
@@ -396,7 +397,7 @@ static void results_are_read_back(void **state) {
 static void particles_of_results_keep_their_names(void **state) {
   (void)state;
   const double places[2 * PARTICLES] = {9, 9, 0.5, 0.5, 0.5, 0.5};
-  const char *path = put_result(places);
+  const char *path = put_result(places, NULL);
   bench b;
   begin_table(&b, path, "thickness = 1", BODY "'rectangle' corner = 0, 0 size = 1, 1 /");
   assert_null(particle_set_make(b.deck, 0, &b.d));
@@ -404,6 +405,25 @@ static void particles_of_results_keep_their_names(void **state) {
   assert_int_equal(said->code, DIAG_CONFLICT);
   assert_non_null(strstr(said->message, "particle 1 of the result and particle 2 of the result"));
   end(&b, NULL);
+  remove_result(path);
+}
+
+/* But where those that the bodies hold are alike. */
+static void graded_results_are_refused(void **state) {
+  (void)state;
+  static const double spacing[PARTICLES] = {0.01, 0.01, 0.03};
+  const char *path = put_result(small_reference, spacing);
+  bench b;
+  begin_table(&b, path, "thickness = 1", "");
+  assert_null(particle_set_make(b.deck, 0, &b.d));
+  const diagnostic *said = &b.d.items[b.d.count - 1];
+  assert_int_equal(said->code, DIAG_CONFLICT);
+  assert_non_null(strstr(said->message, "are graded, with spacings from 10 to 30 mm"));
+  end(&b, NULL);
+  begin_table(&b, path, "thickness = 1", BODY "'rectangle' corner = -0.1, -0.1 size = 1.2, 0.2 /");
+  particle_set *set = make(&b);
+  assert_int_equal(set->count, 2);
+  end(&b, set);
   remove_result(path);
 }
 
@@ -468,6 +488,7 @@ int main(void) {
                                      cmocka_unit_test(bodies_may_hold_none),
                                      cmocka_unit_test(results_are_read_back),
                                      cmocka_unit_test(particles_of_results_keep_their_names),
+                                     cmocka_unit_test(graded_results_are_refused),
                                      cmocka_unit_test(any_table_is_a_set_or_a_message)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
