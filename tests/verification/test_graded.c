@@ -327,6 +327,13 @@ static void large_particles_are_stiffer_in_contact(void **state) {
   assert_int_equal(contact_touching(c.simulation->contacts.items[0].found, &(double){0}), pairs);
   assert_true(fabs(sum_of_outer(upper) / push - 1) < 1e-6);
   assert_true(fabs(sum_of_outer(lower) / push + 1) < 1e-6);
+  /* what the stable step counts on */
+  const double lightest = run_contact_lightest(a, run_contact_by_size(a, 0));
+  const double most = E * a->spacing / sqrt(2) / lightest;
+  for (long p = 0; p < a->particle_count; p++)
+    assert_true(stiffness_of(a, a->particle_site[p]) / a->site_mass[a->particle_site[p]] <
+                most * (1 + 1e-9));
+  assert_false(run_contact_by_size(a, 1e8));
   /* the stamp comes down by 22 mm on what has gone down by 11.5 mm */
   const stamp_motion at = {.place = {0, 0, -22e-3}};
   double pressed = 0;
