@@ -38,7 +38,8 @@ static const char *shared(const emitter *e, int index, const family_index *at, c
                at->first, owner, number);
 }
 
-/* Of a particle's position, velocity, protection, volume, mass, share or size, or of bonds' chords. */
+/* Of a particle's position, velocity, protection, volume, mass, share or size, or of bonds'
+   chords. */
 static word ends_word(ends_array from) {
   static const word words[] = {[FROM_DISPLACEMENT] = SAY_DISPLACEMENT,
                                [FROM_VELOCITY] = SAY_VELOCITY,

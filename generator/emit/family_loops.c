@@ -107,8 +107,8 @@ void family_loops_particles(emitter *e, const segment *a) {
   expression_close(e);
 }
 
-/* On a list a number that no particle of the chunk has a bond of: what is kept of it beyond the pass
-   is 0. */
+/* On a list a number that no particle of the chunk has a bond of: what is kept of it beyond the
+   pass is 0. */
 static void skip_absent(emitter *e, const segment *a) {
   say(e, SAY_UNLESS_SOME);
   for (int k = 0; k < a->root_count; k++)

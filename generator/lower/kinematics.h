@@ -132,8 +132,7 @@ typedef struct family_kinematics {
   ir_node theta_i, theta_j; /* rad, with rotations in the plane */
   ir_node theta_rate[2];    /* rad/s, of end i and j */
 } family_kinematics;
-family_kinematics kinematics_family(ir *g, int dimensions, bool rotations, bool near,
-                                   bool listed);
+family_kinematics kinematics_family(ir *g, int dimensions, bool rotations, bool near, bool listed);
 
 /* Forces on end i and end moments (the particles receive the opposite of these):
    F_i = N e - V n, n = e turned by +90 degrees, V = (M_i + M_j)/L with the present L, which makes

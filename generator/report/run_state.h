@@ -19,7 +19,7 @@ typedef struct run {
   const deck *deck;
   model *models; /* [material_count] */
   int open_models;
-  int processors; /* what the process was kept to before (processors.h); 0: it still is */
+  int processors;   /* what the process was kept to before (processors.h); 0: it still is */
   model **model_of; /* [run_law_count] of these; NULL where it is built in or not known */
   /* [lattice_count] the simulation's, when there is one; NULL where it is not known */
   rows **lattices;
@@ -33,7 +33,7 @@ typedef struct run {
   double kept_time; /* s: of this moment */
   char started[32];
   double *frame_buffer;
-  profile profile; /* with --profile */
+  profile profile;                        /* with --profile */
   const char *said_begin, *said_warnings; /* what was said before the march */
   /* How it ended: */
   const char *ending; /* "end", "stopped", "interrupted", "failed" */

@@ -86,8 +86,7 @@ static void take_threads(run *r) {
 static int check_physics(run *r, int interaction) {
   const int lattice = r->deck->interactions[interaction].lattice;
   simulation_law *l = &r->laws[interaction];
-  const bool known =
-      r->lattices[lattice] || !deck_lattice_is_listed(&r->deck->lattices[lattice]);
+  const bool known = r->lattices[lattice] || !deck_lattice_is_listed(&r->deck->lattices[lattice]);
   if (r->options->laws || r->options->no_physics || !known || obeys_mechanics(r, interaction))
     return 0;
   free(l->parameters);

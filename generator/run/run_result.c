@@ -276,11 +276,10 @@ static void particle_table(run *r, result_header *h) {
                               !deck_lattice_is_bar(&r->deck->lattices[b]));
   }
   const size_t n = (size_t)h->particle_count, dimensions = (size_t)h->dimensions;
-  const particle_arrays all = {arena_alloc(r->memory, dimensions * n * sizeof(double)),
-                               arena_alloc(r->memory, n * sizeof(double)),
-                               arena_alloc(r->memory, n * sizeof(double)),
-                               arena_alloc(r->memory, n * sizeof(int32_t)),
-                               arena_alloc(r->memory, n * sizeof(int32_t))};
+  const particle_arrays all = {
+      arena_alloc(r->memory, dimensions * n * sizeof(double)),
+      arena_alloc(r->memory, n * sizeof(double)), arena_alloc(r->memory, n * sizeof(double)),
+      arena_alloc(r->memory, n * sizeof(int32_t)), arena_alloc(r->memory, n * sizeof(int32_t))};
   size_t first = 0;
   for (int b = 0; b < bodies; b++) {
     if (own_particles(r, b) > 0)

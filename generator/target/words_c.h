@@ -292,16 +292,16 @@
   X(BONDS_OF_ROWS, "      const uint64_t *restrict bonds = family->bonds + first + "               \
     "(k < half ? 0 : to);\n"                                                                       \
     "      const uint64_t present_bit = UINT64_C(1) << (k < half ? k : back);\n")                  \
-  X(SOME_BONDS, "    uint64_t some_own = 0, some_others = 0; /* bonds that some particle has */\n"        \
-    "    for (long q = 0; q < lanes; q++) {\n"                                                      \
-    "      some_own |= family->bonds[first + q];\n"                                                 \
-    "      some_others |= family->incoming[first + q];\n"                                           \
-    "    }\n")                                                                                      \
-  X(UNLESS_SOME, "      if (((k < half ? some_own : some_others) >> "                               \
-    "(k < half ? k : back) & 1) == 0) {\n")                                                          \
-  X(ZEROS, "        double *restrict absent_$1 = $2;\n"                                              \
-    "        for (long q = 0; q < lanes; q++)\n          absent_$1[q] = 0.0;\n")                      \
-  X(NEXT_NEIGHBOUR, "        continue;\n      }\n")                                                 \
+  X(SOME_BONDS, "    uint64_t some_own = 0, some_others = 0; /* bonds that some particle has */\n" \
+    "    for (long q = 0; q < lanes; q++) {\n"                                                     \
+    "      some_own |= family->bonds[first + q];\n"                                                \
+    "      some_others |= family->incoming[first + q];\n"                                          \
+    "    }\n")                                                                                     \
+  X(UNLESS_SOME, "      if (((k < half ? some_own : some_others) >> "                              \
+    "(k < half ? k : back) & 1) == 0) {\n")                                                        \
+  X(ZEROS, "        double *restrict absent_$1 = $2;\n"                                            \
+    "        for (long q = 0; q < lanes; q++)\n          absent_$1[q] = 0.0;\n")                   \
+  X(NEXT_NEIGHBOUR, "        continue;\n      }\n")                                                \
   X(BONDS_OF_LIST, "      const uint64_t *restrict bonds = (k < half ? family->bonds : "           \
     "family->incoming) + first;\n"                                                                 \
     "      const uint64_t present_bit = UINT64_C(1) << (k < half ? k : back);\n")                  \

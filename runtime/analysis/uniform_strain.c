@@ -7,8 +7,8 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "runtime/base/lane_sum.h"
-#include "runtime/interaction/interaction.h"
 #include "runtime/filling/bar_rows.h"
+#include "runtime/interaction/interaction.h"
 #include "runtime/lattice/shape_matrix.h"
 
 /* LAPACK: solves a system of linear equations. */

@@ -55,8 +55,8 @@ typedef struct deck_lattice {
   double spacing;   /* m; on no lattice: of the hexagonal or fcc one with as large particles */
   const struct formula *graded; /* blue_noise: `spacing` of x, y, z, whose value in the middle of
                                    the bodies `spacing` then is; or NULL */
-  double horizon;   /* in spacings; 0: `shells` or `neighbours` decide */
-  int shells;       /* 0: the nearest neighbours */
+  double horizon;               /* in spacings; 0: `shells` or `neighbours` decide */
+  int shells;                   /* 0: the nearest neighbours */
   int neighbours;   /* blue_noise, particles: so many nearest ones; 0: `horizon` decides */
   int seed;         /* blue_noise */
   const char *file; /* particles: as written; deck_file_path finds it */

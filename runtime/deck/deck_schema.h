@@ -5,8 +5,8 @@
 
 #include <stddef.h>
 
-#include "runtime/deck/deck.h"
 #include "runtime/base/namelist.h"
+#include "runtime/deck/deck.h"
 
 typedef enum deck_type {
   DECK_TEXT,   /* a text, perhaps empty */

@@ -154,14 +154,13 @@ static const char *const dimension_words[] = {[PLANE] = "a lattice in the plane"
                                               [SPACE] = "a lattice in space",
                                               [IRREGULAR_SPACE] = "a lattice of particles in space",
                                               [CHAIN] = "a chain"};
-static const deck_key_use dimension_uses[] = {
-    {"axis", IN_SPACE, false},
-    {"thickness", IN_PLANE, true},
-    {"stiffness_thickness", IN_PLANE, false},
-    {"mass_thickness", IN_PLANE, false},
-    {"area", IN_CHAIN, true},
-    {"edges", IN_PLANE | IN_SPACE, false},
-    {"setting", IN_PLANE | IN_IRREGULAR_SPACE, false}};
+static const deck_key_use dimension_uses[] = {{"axis", IN_SPACE, false},
+                                              {"thickness", IN_PLANE, true},
+                                              {"stiffness_thickness", IN_PLANE, false},
+                                              {"mass_thickness", IN_PLANE, false},
+                                              {"area", IN_CHAIN, true},
+                                              {"edges", IN_PLANE | IN_SPACE, false},
+                                              {"setting", IN_PLANE | IN_IRREGULAR_SPACE, false}};
 enum { DIMENSION_USES = sizeof dimension_uses / sizeof *dimension_uses };
 
 enum {

@@ -118,8 +118,8 @@ static void find_candidates(builder *b, long particle, int least) {
   qsort(b->near, (size_t)b->near_count, sizeof *b->near, by_distance);
 }
 
-/* To as many as a whole family has, and to the usual number if these are more. Whole shells, so that
-   what is symmetric stays so. */
+/* To as many as a whole family has, and to the usual number if these are more. Whole shells, so
+   that what is symmetric stays so. */
 static void join_further(builder *b, long particle) {
   const int whole = 2 * b->of->directions, usual = lattice_usual_neighbours(b->of->dimensions);
   const int degree = rows_degree(b->of, b->of->particle_site[particle]);

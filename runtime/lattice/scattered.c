@@ -400,8 +400,8 @@ static double mean_nearest(const rows *w) {
   return sum / (double)w->particle_count;
 }
 
-/* Particles of a file as far apart as they are large: volumes in another unit than the file says are the
-   usual slip. */
+/* Particles of a file as far apart as they are large: volumes in another unit than the file says
+   are the usual slip. */
 static void compare_sizes(const rows *w, const deck_lattice *l, diagnostics *d) {
   if (w->own_size) return;
   const double apart = mean_nearest(w), ratio = apart / w->spacing;

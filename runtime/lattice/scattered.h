@@ -31,7 +31,8 @@ typedef struct scattered {
 } scattered;
 
 /* With `neighbours` the rows' horizon is the radius of a disc or sphere of one particle more than
-   that, all of mean size, or where sizes are given of the size 1. NULL when there is not enough memory or are 2^31 bonds or more (*crowded
+   that, all of mean size, or where sizes are given of the size 1. NULL when there is not enough
+   memory or are 2^31 bonds or more (*crowded
    < 0), or when particle *crowded has more neighbours than there can be. */
 rows *scattered_rows(const scattered *from, long *crowded);
 

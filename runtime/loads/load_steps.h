@@ -61,7 +61,8 @@ void load_steps_apply(loads *l, body *w, int block, long step);
 /* Some load begins or ends within half a step of the instant after `step` steps: only a part of it
    counts there (load_clock_part_after), and the step is not to change. */
 bool load_steps_jump(const loads *l, const body *w, long step);
-/* The state after `step` steps was observed: from it on steps take `time_step` (s), of which `steps`
+/* The state after `step` steps was observed: from it on steps take `time_step` (s), of which
+   `steps`
    would have led there. Each particle keeps its velocity at this instant, the mean of those half a
    step before and after, and what pushes it: so it is kicked over half of the former step and half
    of the new one, and the change is of the second order. */

@@ -26,8 +26,8 @@ typedef struct particle_set {
    particle, more particles than can be stored, a file that cannot be read or holds what is no set
    of particles. */
 particle_set *particle_set_make(const deck *k, int lattice, diagnostics *d);
-/* Volumes of particles whose places are set: of their Voronoi cells, cut by the bodies and notches of
-   the deck's lattice of that number. */
+/* Volumes of particles whose places are set: of their Voronoi cells, cut by the bodies and notches
+   of the deck's lattice of that number. */
 void particle_set_measure(particle_set *set, const deck *k, int lattice);
 /* Of so many particles, all places and volumes 0. */
 particle_set *particle_set_new(int dimensions, long count);

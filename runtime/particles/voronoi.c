@@ -155,8 +155,8 @@ static void cut_by_neighbours(cutter *w, const voronoi_points *p, const bins *b,
   }
 }
 
-/* The box about the point, within that of the bodies where the point is in there or, up to rounding,
-   on its side. */
+/* The box about the point, within that of the bodies where the point is in there or, up to
+   rounding, on its side. */
 static void begin_cell(cutter *w, const solid *s, const double at[3], double reach) {
   double lower[3] = {0, 0, 0}, upper[3] = {0, 0, 0};
   for (int c = 0; c < s->dimensions; c++) {

@@ -92,7 +92,8 @@ bool ledger_sample(ledger *g, const ledger_laws *of, const body *state, const lo
                    const load_look *look, double omega, double terms[LEDGER_COUNT]);
 /* The step has changed: the same state was `before` and is `after`, as it is now. Kinetic energies
    half m v- v+ of one state differ by (dt^2 - dt'^2) f^2/(8 m), which is of the second order; from
-   now on all is counted from what the new one finds. The works of half a step go on as they were. */
+   now on all is counted from what the new one finds. The works of half a step go on as they were.
+   */
 void ledger_carry(ledger *g, const double before[LEDGER_COUNT], const double after[LEDGER_COUNT]);
 /* The same of a contact: it stores that much (J), and `work` is done on it by the ways of its
    particles. */

@@ -56,13 +56,14 @@ bool run_contacts_open(run_contacts *c, const deck *k, run_body *bodies, int bod
 void run_contacts_begin(run_contacts *c, double ahead);
 void run_contacts_free(run_contacts *c);
 
-/* N/m: k = E V/s^2 by the softest law of a lattice, of the smallest particles; NaN where one has no Young's modulus. */
+/* N/m: k = E V/s^2 by the softest law of a lattice, of the smallest particles; NaN where one has
+   no Young's modulus. */
 double run_contact_stiffness(const run_body *b, const deck *k);
 /* k grows with a particle's own spacing, and is that of the smallest: of graded particles in space,
    where the deck gives no stiffness (`given` is 0). */
 bool run_contact_by_size(const rows *g, double given);
-/* kg: of its lightest particle; `by_size`: over the particle's spacing as a part of the smallest, so
-   that no k/m is larger than that of the smallest k with it. */
+/* kg: of its lightest particle; `by_size`: over the particle's spacing as a part of the smallest,
+   so that no k/m is larger than that of the smallest k with it. */
 double run_contact_lightest(const rows *g, bool by_size);
 
 /* Forces at the present places, after `step` steps. */

@@ -572,8 +572,8 @@ static void project(plot_frame *m, const double across[3], const double up[3]) {
     }
 }
 
-/* Particles up to half of their spacing from the plane; on the far side that distance itself counts, too.
-   */
+/* Particles up to half of their spacing from the plane; on the far side that distance itself
+   counts, too. */
 static bool take_slice(plot_frame *m, const plot_map_options *o, char *error, size_t size) {
   static const double unit_vectors[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   static const int sides[3][2] = {{1, 2}, {0, 2}, {0, 1}};

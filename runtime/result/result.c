@@ -97,12 +97,13 @@ static bool write_bonds(hid_t file, const result_bonds *b) {
 static bool write_particles(hid_t file, const result_header *h) {
   hsize_t places[2] = {(hsize_t)h->particle_count, (hsize_t)h->dimensions};
   hsize_t one[1] = {(hsize_t)h->particle_count};
-  bool good = h5_make_group(file, "/particles") && h5_make_group(file, "/bonds") &&
-              h5_write_doubles(file, "/particles/reference", h->reference, 2, places, "m") &&
-              h5_write_doubles(file, "/particles/volume", h->volume, 1, one, "m^3") &&
-              h5_write_integers(file, "/particles/body", h->body, 1, one) &&
-              (!h->spacing || h5_write_doubles(file, "/particles/spacing", h->spacing, 1, one, "m")) &&
-              (!h->resolved || h5_write_integers(file, "/particles/resolved", h->resolved, 1, one));
+  bool good =
+      h5_make_group(file, "/particles") && h5_make_group(file, "/bonds") &&
+      h5_write_doubles(file, "/particles/reference", h->reference, 2, places, "m") &&
+      h5_write_doubles(file, "/particles/volume", h->volume, 1, one, "m^3") &&
+      h5_write_integers(file, "/particles/body", h->body, 1, one) &&
+      (!h->spacing || h5_write_doubles(file, "/particles/spacing", h->spacing, 1, one, "m")) &&
+      (!h->resolved || h5_write_integers(file, "/particles/resolved", h->resolved, 1, one));
   for (int k = 0; good && k < h->interaction_count; k++)
     good = write_bonds(file, &h->bonds[k]);
   return good;

@@ -79,7 +79,8 @@ static inline bool monitor_watches(const monitors *all, const monitor *m, int b)
   return !m->of[0] || m->of[0] == &all->bodies[b];
 }
 
-/* In dynamic runs once at the start and after every step: into the windows what is known; velocities
+/* In dynamic runs once at the start and after every step: into the windows what is known;
+   velocities
    are means over the `parts` that the step was done in (run_clock.h). `step` counts parts here and
    where values are asked for. monitors_part: after each part that does not end a step; after the
    `first` what is known late of the state that the step began with. */

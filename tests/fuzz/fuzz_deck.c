@@ -4,8 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "runtime/deck/deck_read.h"
 #include "runtime/base/namelist.h"
+#include "runtime/deck/deck_read.h"
 #include "tests/fuzz/fuzz.h"
 
 enum { LONGEST = 1 << 16, MOST_OVERRIDES = 8 };

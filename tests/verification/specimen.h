@@ -71,7 +71,8 @@ static inline double specimen_ends(const deck_case *c, long until) {
   return difference;
 }
 
-/* A deck of examples/ until `end_time` (as in a deck; NULL: its own end), with `count` more overrides;
+/* A deck of examples/ until `end_time` (as in a deck; NULL: its own end), with `count` more
+   overrides;
    the peak must have been passed by then. The asymmetry is looked at every 500 steps, and not a
    number where particles have no image. */
 static inline outcome specimen_run_with(const char *deck_name, const char *end_time,

@@ -1,4 +1,5 @@
-/* Lattices with edges = 'exact'. Theory: volumes add up to the body's; every particle has the stress
+/* Lattices with edges = 'exact'. Theory: volumes add up to the body's; every particle has the
+   stress
    of a uniform strain, wherever the outline cuts the lattice; inside nothing is other than without;
    a bar that is left to itself has nearly the stiffness E A/L, however its lattice is turned. */
 #include <setjmp.h>
@@ -318,8 +319,8 @@ static double strain_of(const sweep *w) {
   return (n * yu - y * u) / (n * yy - y * y);
 }
 
-/* A bar of 100 x 200 mm, 100 mm thick, drawn by its outermost two spacings, free sideways: load over
-   area and strain, over E, less 1. `form` is of the spacing in mm. */
+/* A bar of 100 x 200 mm, 100 mm thick, drawn by its outermost two spacings, free sideways: load
+   over area and strain, over E, less 1. `form` is of the spacing in mm. */
 static double off_by(const char *lattice, const char *edges, double s, bool space) {
   static const char
       plane[] =

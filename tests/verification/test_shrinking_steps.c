@@ -1,5 +1,5 @@
-/* Steps that shrink: a crack that cuts nodes off, a solid that stiffens, which both go wrong with the
-   step that they began with; blocks that meet late. */
+/* Steps that shrink: a crack that cuts nodes off, a solid that stiffens, which both go wrong with
+   the step that they began with; blocks that meet late. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* The state-based lattice gives the same bits for any number of threads, and after a checkpoint: a
-   prism at 15 degrees, pressed so fast that it yields, cracks and crushes within a millisecond, with
-   the lattice's edges and with exact ones. */
+   prism at 15 degrees, pressed so fast that it yields, cracks and crushes within a millisecond,
+   with the lattice's edges and with exact ones. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

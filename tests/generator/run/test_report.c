@@ -45,8 +45,8 @@ static void quasi_static_runs_count_increments(void **state) {
   expect(w, "run stop.nml", 0, "ended early at increment 4 of 8: moved was above 4e-07 m\n");
 }
 
-/* The block's upper particles lie at 20 mm and reach 5 mm further; maps of what stamps touch are not
-   magnified unless that is asked for. */
+/* The block's upper particles lie at 20 mm and reach 5 mm further; maps of what stamps touch are
+   not magnified unless that is asked for. */
 static void stamps_are_told(void **state) {
   workplace *w = *state;
   write_text(w, "stamp.nml",

@@ -1,6 +1,6 @@
 /* Loading in stages: a run that begins from another one's result. Two stages are one run to the
-   last bit where nothing changes, for laws of all kinds, bars, links and regions; and where a part that
-   was joined to nothing is cut out. */
+   last bit where nothing changes, for laws of all kinds, bars, links and regions; and where a part
+   that was joined to nothing is cut out. */
 #define _GNU_SOURCE /* nftw */
 #include <setjmp.h>
 #include <stdarg.h>

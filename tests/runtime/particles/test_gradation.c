@@ -119,7 +119,8 @@ static void what_cannot_be_is_said(void **state) {
                 "the most that can be stored", "times as large would do");
 }
 
-/* A spike between the places that were looked at: no particle is larger than four of the smallest. */
+/* A spike between the places that were looked at: no particle is larger than four of the smallest.
+   */
 static void sizes_are_bounded(void **state) {
   (void)state;
   enum { COUNT = 200 };

@@ -135,8 +135,8 @@ static void the_order_and_the_energy_are_kept_over_a_change(void **state) {
 
 /* --- a bond that stiffens --------------------------------------------------------------------- */
 
-/* A bar that is `stiffer` times as stiff beyond the stretch S_t: N = EA (x + (stiffer - 1) <x - S_t>),
-   W/s = EA (x^2 + (stiffer - 1) <x - S_t>^2)/2. */
+/* A bar that is `stiffer` times as stiff beyond the stretch S_t: N = EA (x + (stiffer - 1) <x -
+   S_t>), W/s = EA (x^2 + (stiffer - 1) <x - S_t>^2)/2. */
 static double stiffer = 25;
 
 static double beyond(const double *u, double stretch) {
