@@ -72,6 +72,7 @@ FIND(region, name, true)
 FIND(lattice, name, true)
 FIND(monitor, name, true)
 FIND(crack, name, true)
+FIND(contact, name, true)
 FIND(stamp, name, true)
 FIND(material, lattice, !k->materials[i].region && !k->materials[i].between[0])
 
@@ -82,9 +83,9 @@ const deck_material *deck_material_of(const deck *k, int lattice) {
 
 bool deck_misses_body(const deck *k, int lattice) {
   const deck_lattice *l = &k->lattices[lattice];
-  const bool needs_none = l->kind && (strcmp(l->kind, "particles") == 0 ||
-                                      strcmp(l->kind, "bar") == 0 || strcmp(l->kind, "link") == 0 ||
-                                      strcmp(l->kind, "mesh") == 0);
+  const bool needs_none =
+      l->kind && (strcmp(l->kind, "particles") == 0 || strcmp(l->kind, "bar") == 0 ||
+                  strcmp(l->kind, "link") == 0 || strcmp(l->kind, "mesh") == 0);
   if (deck_lacks(k, "body") || !l->name || needs_none) return false;
   for (int b = 0; b < k->body_count; b++)
     if (k->bodys[b].lattice && strcmp(k->bodys[b].lattice, l->name) == 0) return false;

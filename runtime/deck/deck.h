@@ -602,6 +602,7 @@ int deck_find_region(const deck *k, const char *name);
 int deck_find_lattice(const deck *k, const char *name);
 int deck_find_monitor(const deck *k, const char *name);
 int deck_find_crack(const deck *k, const char *name);
+int deck_find_contact(const deck *k, const char *name);
 int deck_find_stamp(const deck *k, const char *name);
 /* Index of the first &material of a lattice that is of the whole of it, or -1. */
 int deck_find_material(const deck *k, const char *lattice);
