@@ -478,6 +478,52 @@ static void a_blow_needs_short_steps_from_the_touch_on_alone(void **state) {
 
 /* --- bits ------------------------------------------------------------------------------------- */
 
+/* In a file that is whole otherwise. */
+static void numbers_that_no_run_can_reach_are_refused(void **state) {
+  (void)state;
+  static const char saved[] = "test_step_shrink.state";
+  const frame_mark none = {0, 0};
+  char error[200];
+  small_bodies from, to;
+  open_meeting(&from, 0.5, 50, 1);
+  open_meeting(&to, 0.5, 50, 1);
+  go_with_frames(from.run.simulation, simulation_step_count(from.run.simulation) - 1);
+  run_progress *at = &from.run.simulation->clock.at;
+  const run_progress good = *at;
+  assert_int_equal(good.change_count, 1);
+  struct {
+    int64_t *of, value;
+  } bad[] = {{&at->looked, -2},
+             {&at->looked, at->step + 1},
+             {&at->more, -1},
+             {&at->more, INT64_MAX},
+             {&at->doubted, 2},
+             {&at->touched, -1},
+             {&at->halvings, 2},
+             {&at->change_count, 0},
+             {&at->changes[0].step, -1},
+             {&at->changes[0].step, at->step + 1},
+             {&at->changes[0].halvings, 0},
+             {&at->changes[0].halvings, 2},
+             {&at->changes[0].cause, STEP_TOUCHED + 1},
+             {&at->changes[0].cause, -1},
+             {&at->changes[0].body, 2},
+             {&at->changes[0].body, -1}};
+  for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+    *bad[k].of = bad[k].value;
+    assert_true(simulation_save(from.run.simulation, saved, "one", &none, error, sizeof error));
+    if (simulation_restore(to.run.simulation, saved, "one", NULL, error, sizeof error))
+      fail_msg("number %zu is taken", k);
+    assert_non_null(strstr(error, "another size"));
+    *at = good;
+  }
+  assert_true(simulation_save(from.run.simulation, saved, "one", &none, error, sizeof error));
+  assert_true(simulation_restore(to.run.simulation, saved, "one", NULL, error, sizeof error));
+  small_bodies_close(&from);
+  small_bodies_close(&to);
+  unlink(saved);
+}
+
 static void threads_and_stops_change_no_bit(void **state) {
   (void)state;
   static const char saved[] = "test_step_shrink.state";
@@ -639,6 +685,7 @@ int main(void) {
       cmocka_unit_test(what_the_last_sample_finds_is_not_lost),
       cmocka_unit_test(a_blow_needs_short_steps_from_the_touch_on_alone),
       cmocka_unit_test(threads_and_stops_change_no_bit),
+      cmocka_unit_test(numbers_that_no_run_can_reach_are_refused),
       cmocka_unit_test(steps_out_of_time_do_not_shrink),
       cmocka_unit_test(a_look_alone_changes_no_bit),
       cmocka_unit_test(a_body_goes_on_as_with_shorter_steps),
