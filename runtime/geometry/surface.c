@@ -183,10 +183,14 @@ int surface_outline(const surface *s, double points[SURFACE_OUTLINE][2]) {
   return count;
 }
 
-double surface_extent(const surface *s, int dimensions) {
-  const double *h = s->half;
-  if (s->kind == SURFACE_BALL) return dimensions == 2 ? 2 * M_PI * h[0] : 4 * M_PI * h[0] * h[0];
-  if (s->kind == SURFACE_CYLINDER) return 2 * M_PI * h[1] * (2 * h[0] + h[1]);
-  if (dimensions == 2) return 4 * (h[0] + h[1]);
-  return 8 * (h[0] * h[1] + h[1] * h[2] + h[2] * h[0]);
+/* Steiner: of a convex body A + c out + 4 pi out^2, in the plane L + 2 pi out. */
+double surface_extent(const surface *s, int dimensions, double out) {
+  const double *h = s->half, round = 4 * M_PI * out * out;
+  if (s->kind == SURFACE_BALL)
+    return dimensions == 2 ? 2 * M_PI * (h[0] + out) : 4 * M_PI * (h[0] + out) * (h[0] + out);
+  if (s->kind == SURFACE_CYLINDER)
+    return 2 * M_PI * h[1] * (2 * h[0] + h[1]) + 2 * M_PI * (2 * h[0] + M_PI * h[1]) * out + round;
+  if (dimensions == 2) return 4 * (h[0] + h[1]) + 2 * M_PI * out;
+  return 8 * (h[0] * h[1] + h[1] * h[2] + h[2] * h[0]) + 4 * M_PI * (h[0] + h[1] + h[2]) * out +
+         round;
 }

@@ -27,7 +27,7 @@ double surface_distance(const surface *s, const double p[3], double out[3]);
    how many there are. */
 enum { SURFACE_OUTLINE = 180 };
 int surface_outline(const surface *s, double points[SURFACE_OUTLINE][2]);
-/* m^2, in the plane m. */
-double surface_extent(const surface *s, int dimensions);
+/* m^2, in the plane m: of all points that lie that far outside (m). */
+double surface_extent(const surface *s, int dimensions, double out);
 
 #endif

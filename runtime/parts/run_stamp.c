@@ -33,21 +33,37 @@ static bool find_stiffness(run_stamp *s, const deck *k, const run_body *bodies, 
   return true;
 }
 
-/* That touch it at most. */
+/* That touch it at most: balls of half a spacing. */
 static double most_touching(const run_stamp *s, const rows *g) {
   surface of;
   surface_open(&s->from->shape, &of);
-  const double each = g->dimensions == 2 ? g->spacing : g->spacing * g->spacing;
-  return pl_fmin(2 + surface_extent(&of, g->dimensions) / each, (double)g->particle_count);
+  const double each = g->dimensions == 2 ? g->spacing : g->spacing * g->spacing,
+               extent = surface_extent(&of, g->dimensions, 0.5 * g->spacing);
+  return pl_fmin(2 + extent / each, (double)g->particle_count);
+}
+
+static double critical(double stiffness, double mass) {
+  return 2 * sqrt(stiffness * mass);
+}
+
+/* Of a free stamp on the springs and dampers of all that may touch it. */
+static touch_rates own_rates(const run_stamp *s, const run_body *bodies) {
+  touch_rates own = {0, 0};
+  for (int n = 0; n < s->count && s->from->mass > 0; n++) {
+    const run_body *b = &bodies[s->of[n]];
+    const double part = most_touching(s, b->lattice_rows) / s->from->mass;
+    own.square += part * s->stiffness[n];
+    own.damping += part * s->damping * critical(s->stiffness[n], loads_heaviest(b->loads));
+  }
+  return own;
 }
 
 static void add_rates(const run_stamp *s, const run_body *bodies, touch_rates *touching) {
+  const touch_rates own = own_rates(s, bodies);
   for (int n = 0; n < s->count; n++) {
-    const rows *g = bodies[s->of[n]].lattice_rows;
-    const double k = s->stiffness[n], m = run_contact_lightest(g);
-    const double inverse = 1 / m + (s->from->mass > 0 ? most_touching(s, g) / s->from->mass : 0);
-    touching[s->of[n]].square += k * inverse;
-    touching[s->of[n]].damping += 2 * s->damping * sqrt(k * m) * inverse;
+    const double k = s->stiffness[n], m = run_contact_lightest(bodies[s->of[n]].lattice_rows);
+    touching[s->of[n]].square += k / m + own.square;
+    touching[s->of[n]].damping += s->damping * critical(k, m) / m + own.damping;
   }
 }
 
