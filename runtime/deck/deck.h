@@ -31,6 +31,7 @@ typedef struct deck_item { /* what every group has */
 
 /* Place of a key's value in the item, or of the group when the key was not written. */
 span deck_where(const deck_item *item, const char *key);
+bool deck_is_written(const deck_item *item, const char *key);
 
 /* What a link joins a bar to: all sites within reach, or the place in the cell that holds it. */
 enum link_to { LINK_TO_SITES, LINK_TO_PLACE };

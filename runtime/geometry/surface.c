@@ -111,6 +111,29 @@ bool surface_open(const deck_shape *shape, surface *s) {
   return true;
 }
 
+enum { LENGTHS = 1, AXES = LENGTHS + 6 };
+
+void surface_numbers(const surface *s, double numbers[SURFACE_NUMBERS]) {
+  numbers[0] = s->kind;
+  for (int c = 0; c < 3; c++) {
+    numbers[LENGTHS + c] = s->centre[c];
+    numbers[LENGTHS + 3 + c] = isinf(s->half[c]) ? 0 : s->half[c];
+    for (int a = 0; a < 3; a++)
+      numbers[AXES + 3 * a + c] = s->axes[a][c];
+  }
+}
+
+bool surface_is_alike(const double a[SURFACE_NUMBERS], const double b[SURFACE_NUMBERS]) {
+  const double rounding = 1e-9;
+  double size = 0;
+  bool alike = a[0] == b[0];
+  for (int k = LENGTHS; k < AXES; k++)
+    size = pl_fmax(size, fabs(a[k]));
+  for (int k = LENGTHS; k < SURFACE_NUMBERS; k++)
+    alike = alike && fabs(a[k] - b[k]) <= rounding * (k < AXES ? size : 1);
+  return alike;
+}
+
 /* --- distances -------------------------------------------------------------------------------- */
 
 /* Of a point x from the middle of a box with these half edges, in its own axes. Inside the nearest
