@@ -111,6 +111,20 @@ static double way_between(const time_function *f, bool placed, double from, doub
   return b > begin ? time_function_way(f, begin, b, 1) : 0;
 }
 
+/* m: at the end of an increment at t. What begins then comes in the next one. */
+static double way_settled(const run_stamps *s, const run_stamp *item, double t) {
+  const time_function *f = &item->from->motion;
+  if (t <= load_clock_just_after(clock_of(s), f->start)) return 0;
+  return way_between(f, item->from->is_displacement, -1, t);
+}
+
+/* Evenly from the beginning of an increment to its end. */
+static double way_in_increment(const run_stamps *s, const run_stamp *item, int64_t step) {
+  const load_clock *c = clock_of(s);
+  const double part = load_clock_part(c, (long)step);
+  return (1 - part) * way_settled(s, item, c->from) + part * way_settled(s, item, c->to);
+}
+
 /* m: along its direction, after so many steps, of which the last but one led to state.way. */
 static double way_after(const run_stamps *s, const run_stamp *item, int64_t step) {
   const time_function *f = &item->from->motion;
@@ -118,6 +132,7 @@ static double way_after(const run_stamps *s, const run_stamp *item, int64_t step
   if (step == 0) return 0;
   if (f->formula && !item->from->is_displacement)
     return item->state.way + way_between(f, false, time_of(s, step - 1), t);
+  if (clock_of(s)->ramp > 0) return way_in_increment(s, item, step);
   return way_between(f, item->from->is_displacement, -1, t);
 }
 

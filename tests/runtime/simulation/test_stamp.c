@@ -388,6 +388,38 @@ static void pressing_does_work(void **state) {
   small_bodies_close(&b);
 }
 
+#define UP(more)                                                                                   \
+  BLOCK "&stamp name = 'up' shape = 'rectangle' corner = -1, 0.07 size = 2, 1 direction = 0, 1 "   \
+        "displacement = 0.02 history = 'constant' " more " /\n"                                    \
+        "&monitor name = 'u' kind = 'displacement' stamp = 'up' component = 'y' /\n"
+
+/* A way of two spacings that begins all at once comes within the steps of its increment. */
+static void ways_come_evenly_in_an_increment(void **state) {
+  (void)state;
+  small_bodies b;
+  open_run(&b, &elastic_beam,
+           "&simulation end_time = 1 /\n&relaxation increments = 4 /\n" UP(
+               "start = 0.25 end = 0.75") "&output frames = 0 /\n");
+  assert_int_equal(small_go(&b.run), STEP_END);
+  const double *u = small_values(&b.run, "u");
+  assert_true(u[0] == 0 && u[1] == 0 && u[2] == 0.02 && u[3] == 0.02 && u[4] == 0.02);
+  small_bodies_close(&b);
+}
+
+/* No sample that would end the run well is taken after a stamp has gone too far. */
+static void a_stop_does_not_hide_a_stamp_that_went_too_far(void **state) {
+  (void)state;
+  small_bodies b;
+  open_run(
+      &b, &elastic_beam,
+      "&simulation end_time = 1e-4 /\n" UP("start = 5e-5") "&stop monitor = 'u' above = 0.015 /\n"
+                                                           "&output frames = 0 sample = 1e-9 /\n");
+  assert_int_equal(small_go(&b.run), STEP_BAD);
+  assert_null(simulation_stopped_by(b.run.simulation));
+  assert_true(simulation_stamp(b.run.simulation, 0).too_far);
+  small_bodies_close(&b);
+}
+
 /* --- the same bits ---------------------------------------------------------------------------- */
 
 static void open_many(small_bodies *b, int threads) {
@@ -439,6 +471,8 @@ int main(void) {
       cmocka_unit_test(blocks_slide_by_coulombs_law),
       cmocka_unit_test(stamps_go_where_the_deck_says),
       cmocka_unit_test(pressing_does_work),
+      cmocka_unit_test(ways_come_evenly_in_an_increment),
+      cmocka_unit_test(a_stop_does_not_hide_a_stamp_that_went_too_far),
       cmocka_unit_test(threads_and_stops_change_no_bit),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
