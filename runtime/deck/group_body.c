@@ -689,11 +689,15 @@ static void check_stamped(deck_reader *r, const deck_stamp *item) {
 static bool take_way(deck_reader *r, const namelist_group *from, deck_stamp *item) {
   double *v = item->direction;
   const double size = pl_hypot(pl_hypot(v[0], v[1]), v[2]);
-  const bool stands = item->motion.shape == TIME_CONSTANT && item->motion.value == 0;
-  if (!namelist_find(from, "direction") && stands && !item->guided) return true;
+  const bool stands = item->motion.shape == TIME_CONSTANT && item->motion.value == 0,
+             written = namelist_find(from, "direction");
+  if (!written && stands && !item->guided) return true;
   if (!(size > 0)) {
-    diag_report(r->d, namelist_find(from, "direction") ? DIAG_OUT_OF_BOUNDS : DIAG_MISSING_KEY,
-                deck_where(&item->item, "direction"), "this stamp moves, but has no `direction`");
+    diag_report(r->d, written ? DIAG_OUT_OF_BOUNDS : DIAG_MISSING_KEY,
+                deck_where(&item->item, "direction"),
+                written        ? "`direction` is 0 and points nowhere"
+                : item->guided ? "a stamp that is guided needs a `direction`"
+                               : "this stamp moves, but has no `direction`");
     diag_hint(r->d, "e.g. direction = 0, -1 in the plane, downward");
     return false;
   }
