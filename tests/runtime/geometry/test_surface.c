@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -110,6 +111,25 @@ static void extents_outside_are_those_of_layers(void **state) {
   }
 }
 
+/* Each number tells one from another; rounding does not. */
+static void numbers_tell_surfaces_apart(void **state) {
+  (void)state;
+  for (int n = 0; n < SOLIDS; n++) {
+    double own[SURFACE_NUMBERS], other[SURFACE_NUMBERS];
+    surface of;
+    surface_open(&solids[n].shape, &of);
+    surface_numbers(&of, own);
+    for (int k = 0; k < SURFACE_NUMBERS; k++) {
+      assert_true(isfinite(own[k]));
+      memcpy(other, own, sizeof own);
+      other[k] += 1e-6;
+      assert_false(surface_is_alike(own, other));
+      other[k] = own[k] * (1 + 1e-15);
+      assert_true(k == 0 || surface_is_alike(own, other));
+    }
+  }
+}
+
 static void others_have_none(void **state) {
   (void)state;
   const deck_shape segment = {.kind = SHAPE_SEGMENT, .to = {1, 0}};
@@ -122,6 +142,7 @@ int main(void) {
       cmocka_unit_test(distances_are_those_of_the_shape),
       cmocka_unit_test(the_way_out_is_how_it_grows),
       cmocka_unit_test(extents_outside_are_those_of_layers),
+      cmocka_unit_test(numbers_tell_surfaces_apart),
       cmocka_unit_test(others_have_none),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
