@@ -58,7 +58,7 @@ static const char *const causes[] = {[STEP_STIFFER] = "had become stiffer",
                                      [STEP_CRACKED] = "was cut by cracks",
                                      [STEP_TOUCHED] = "particles came near to touch"};
 
-/* "step       halved to 0.02417 us at t = 0.0001 ms, as particles came near to touch" */
+/* "shrinks    to 0.02417 us, 1/2 of the first, at t = 0.0001 ms: particles came near to touch" */
 static void conclude_changes(const run *r) {
   int count;
   const step_change *all = simulation_step_changes(r->simulation, &count);

@@ -8,10 +8,19 @@
 
 #include "dsl/base/name_index.h"
 
-span deck_where(const deck_item *item, const char *key) {
+static const deck_key *key_of(const deck_item *item, const char *key) {
   for (int i = 0; i < item->key_count; i++)
-    if (strcasecmp(item->keys[i].name, key) == 0) return item->keys[i].value_where;
-  return item->where;
+    if (strcasecmp(item->keys[i].name, key) == 0) return &item->keys[i];
+  return NULL;
+}
+
+span deck_where(const deck_item *item, const char *key) {
+  const deck_key *of = key_of(item, key);
+  return of ? of->value_where : item->where;
+}
+
+bool deck_is_written(const deck_item *item, const char *key) {
+  return key_of(item, key);
 }
 
 static const char *const group_names[DECK_GROUP_COUNT] = {
@@ -72,6 +81,7 @@ FIND(region, name, true)
 FIND(lattice, name, true)
 FIND(monitor, name, true)
 FIND(crack, name, true)
+FIND(contact, name, true)
 FIND(stamp, name, true)
 FIND(material, lattice, !k->materials[i].region && !k->materials[i].between[0])
 

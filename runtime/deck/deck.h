@@ -31,6 +31,7 @@ typedef struct deck_item { /* what every group has */
 
 /* Place of a key's value in the item, or of the group when the key was not written. */
 span deck_where(const deck_item *item, const char *key);
+bool deck_is_written(const deck_item *item, const char *key);
 
 /* What a link joins a bar to: all sites within reach, or the place in the cell that holds it. */
 enum link_to { LINK_TO_SITES, LINK_TO_PLACE };
@@ -602,6 +603,7 @@ int deck_find_region(const deck *k, const char *name);
 int deck_find_lattice(const deck *k, const char *name);
 int deck_find_monitor(const deck *k, const char *name);
 int deck_find_crack(const deck *k, const char *name);
+int deck_find_contact(const deck *k, const char *name);
 int deck_find_stamp(const deck *k, const char *name);
 /* Index of the first &material of a lattice that is of the whole of it, or -1. */
 int deck_find_material(const deck *k, const char *lattice);

@@ -10,6 +10,7 @@
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/group_load.h"
 #include "runtime/deck/group_mesh.h"
+#include "runtime/deck/group_monitor.h"
 #include "runtime/deck/lattice_kind.h"
 
 /* --- shapes ----------------------------------------------------------------------------------- */
@@ -651,22 +652,17 @@ static const deck_key_info stamp_keys[] = {
 
 /* Of a lattice, a contact or a stamp before this one: their energies stand side by side. */
 static const deck_item *part_of_name(const deck_reader *r, const char *name) {
-  const int lattice = deck_find_lattice(r->k, name), stamp = deck_find_stamp(r->k, name);
+  const int lattice = deck_find_lattice(r->k, name), contact = deck_find_contact(r->k, name),
+            stamp = deck_find_stamp(r->k, name);
   if (lattice >= 0) return &r->k->lattices[lattice].item;
-  for (int k = 0; k < r->k->contact_count; k++)
-    if (deck_same_name(r->k->contacts[k].name, name)) return &r->k->contacts[k].item;
+  if (contact >= 0) return &r->k->contacts[contact].item;
   return stamp < 0 ? NULL : &r->k->stamps[stamp].item;
 }
 
 static void check_stamp_name(deck_reader *r, const deck_stamp *item) {
-  const span where = deck_where(&item->item, "name");
+  deck_check_folder_name(r, "stamp", &item->item, item->name);
   deck_check_name(r, "lattice, contact or stamp", item->name, &item->item,
                   part_of_name(r, item->name));
-  if (strcmp(item->name, "energy") == 0)
-    diag_report(r->d, DIAG_RESERVED_NAME, where,
-                "a stamp cannot be called `energy`: the result has the sum of all energies there");
-  else if (strchr(item->name, '/'))
-    diag_report(r->d, DIAG_BAD_VALUE, where, "a stamp's name must not hold `/`");
 }
 
 /* Those that it names are lattices of particles. */
@@ -693,11 +689,15 @@ static void check_stamped(deck_reader *r, const deck_stamp *item) {
 static bool take_way(deck_reader *r, const namelist_group *from, deck_stamp *item) {
   double *v = item->direction;
   const double size = pl_hypot(pl_hypot(v[0], v[1]), v[2]);
-  const bool stands = item->motion.shape == TIME_CONSTANT && item->motion.value == 0;
-  if (!namelist_find(from, "direction") && stands && !item->guided) return true;
+  const bool stands = item->motion.shape == TIME_CONSTANT && item->motion.value == 0,
+             written = namelist_find(from, "direction");
+  if (!written && stands && !item->guided) return true;
   if (!(size > 0)) {
-    diag_report(r->d, namelist_find(from, "direction") ? DIAG_OUT_OF_BOUNDS : DIAG_MISSING_KEY,
-                deck_where(&item->item, "direction"), "this stamp moves, but has no `direction`");
+    diag_report(r->d, written ? DIAG_OUT_OF_BOUNDS : DIAG_MISSING_KEY,
+                deck_where(&item->item, "direction"),
+                written        ? "`direction` is 0 and points nowhere"
+                : item->guided ? "a stamp that is guided needs a `direction`"
+                               : "this stamp moves, but has no `direction`");
     diag_hint(r->d, "e.g. direction = 0, -1 in the plane, downward");
     return false;
   }

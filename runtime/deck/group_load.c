@@ -7,6 +7,7 @@
 #include "runtime/deck/deck_formula.h"
 #include "runtime/deck/deck_load.h"
 #include "runtime/deck/deck_value.h"
+#include "runtime/deck/group_monitor.h"
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/geometry/gmsh_mesh.h"
 
@@ -582,11 +583,9 @@ static const deck_key_info contact_keys[] = {
 
 /* That of a lattice, or of a contact before this one. */
 static const deck_item *other_of_name(const deck_reader *r, const char *name) {
-  const int lattice = deck_find_lattice(r->k, name);
+  const int lattice = deck_find_lattice(r->k, name), contact = deck_find_contact(r->k, name);
   if (lattice >= 0) return &r->k->lattices[lattice].item;
-  for (int k = 0; k < r->k->contact_count; k++)
-    if (deck_same_name(r->k->contacts[k].name, name)) return &r->k->contacts[k].item;
-  return NULL;
+  return contact < 0 ? NULL : &r->k->contacts[contact].item;
 }
 
 /* Of lattices that both let touch. */
@@ -610,6 +609,7 @@ static void check_contact(deck_reader *r, const namelist_group *from, void *into
   const span where = deck_where(&item->item, "lattices");
   (void)from;
   const deck_item *other = other_of_name(r, item->name);
+  deck_check_folder_name(r, "contact", &item->item, item->name);
   deck_check_name(r, "lattice or contact", item->name, &item->item, other);
   if (!some_lattice_touches(r->k))
     diag_report(r->d, DIAG_CONFLICT, item->item.where,

@@ -521,14 +521,9 @@ static bool has_points(deck_reader *r, deck_crack *item) {
 
 /* In results it is a folder of histories, and one beside the cracks of monitors. */
 static void check_crack_name(deck_reader *r, const deck_crack *item) {
-  const span where = deck_where(&item->item, "name");
   const int first = deck_find_crack(r->k, item->name),
             monitor = deck_find_monitor(r->k, item->name);
-  if (item->name && (deck_is_history_name(item->name) || strcmp(item->name, ".") == 0))
-    diag_report(r->d, DIAG_RESERVED_NAME, where,
-                "a crack cannot be called `%s`: the result has a history of that name", item->name);
-  else if (item->name && strchr(item->name, '/'))
-    diag_report(r->d, DIAG_BAD_VALUE, where, "a crack's name must not hold `/`");
+  deck_check_folder_name(r, "crack", &item->item, item->name);
   deck_check_name(r, "crack", item->name, &item->item,
                   first < 0 ? NULL : &r->k->cracks[first].item);
   deck_check_not_both(r, "crack", &item->item, "monitor", item->name,

@@ -261,15 +261,38 @@ static bool is_identifier(const char *name) {
   return good;
 }
 
-bool deck_is_history_name(const char *name) {
-  static const char *const taken[] = {"time", "energy", "relaxation_steps", "relaxation_unbalance",
-                                      "time_step"};
+bool deck_is_history_name(const deck *k, const char *name) {
+  static const char *const taken[] = {"time", "energy", "relaxation_steps", "relaxation_unbalance"};
+  if (strcmp(name, "time_step") == 0) return k->simulation.shrink_every > 0;
   return deck_is_one_of(name, taken, (int)(sizeof taken / sizeof *taken));
+}
+
+void deck_check_folder_name(deck_reader *r, const char *kind, const deck_item *item,
+                            const char *name) {
+  if (name && (deck_is_history_name(r->k, name) || strcmp(name, ".") == 0))
+    diag_report(r->d, DIAG_RESERVED_NAME, deck_where(item, "name"),
+                "a %s cannot be called `%s`: the result has a history of that name", kind, name);
+  else if (name && strchr(name, '/'))
+    diag_report(r->d, DIAG_BAD_VALUE, deck_where(item, "name"), "a %s's name must not hold `/`",
+                kind);
+}
+
+/* Cracks, contacts and stamps are folders of histories, beside those of monitors. */
+static void check_is_no_folder(deck_reader *r, const deck_monitor *item) {
+  const deck *k = r->k;
+  const int crack = deck_find_crack(k, item->name), contact = deck_find_contact(k, item->name),
+            stamp = deck_find_stamp(k, item->name);
+  deck_check_not_both(r, "monitor", &item->item, "crack", item->name,
+                      crack < 0 ? NULL : &k->cracks[crack].item);
+  deck_check_not_both(r, "monitor", &item->item, "contact", item->name,
+                      contact < 0 ? NULL : &k->contacts[contact].item);
+  deck_check_not_both(r, "monitor", &item->item, "stamp", item->name,
+                      stamp < 0 ? NULL : &k->stamps[stamp].item);
 }
 
 static void check_monitor_name(deck_reader *r, const deck_monitor *item) {
   span where = deck_where(&item->item, "name");
-  if (deck_is_history_name(item->name))
+  if (deck_is_history_name(r->k, item->name))
     diag_report(r->d, DIAG_RESERVED_NAME, where,
                 "a monitor cannot be called `%s`: the result has a history of that name",
                 item->name);
@@ -281,9 +304,7 @@ static void check_monitor_name(deck_reader *r, const deck_monitor *item) {
   int first = deck_find_monitor(r->k, item->name);
   deck_check_name(r, "monitor", item->name, &item->item,
                   first < 0 ? NULL : &r->k->monitors[first].item);
-  const int crack = deck_find_crack(r->k, item->name);
-  deck_check_not_both(r, "monitor", &item->item, "crack", item->name,
-                      crack < 0 ? NULL : &r->k->cracks[crack].item);
+  check_is_no_folder(r, item);
 }
 
 /* Regions overlap: whatever moves others of the same lattice may move particles of this one. */

@@ -111,6 +111,29 @@ bool surface_open(const deck_shape *shape, surface *s) {
   return true;
 }
 
+enum { LENGTHS = 1, AXES = LENGTHS + 6 };
+
+void surface_numbers(const surface *s, double numbers[SURFACE_NUMBERS]) {
+  numbers[0] = s->kind;
+  for (int c = 0; c < 3; c++) {
+    numbers[LENGTHS + c] = s->centre[c];
+    numbers[LENGTHS + 3 + c] = isinf(s->half[c]) ? 0 : s->half[c];
+    for (int a = 0; a < 3; a++)
+      numbers[AXES + 3 * a + c] = s->axes[a][c];
+  }
+}
+
+bool surface_is_alike(const double a[SURFACE_NUMBERS], const double b[SURFACE_NUMBERS]) {
+  const double rounding = 1e-9;
+  double size = 0;
+  bool alike = a[0] == b[0];
+  for (int k = LENGTHS; k < AXES; k++)
+    size = pl_fmax(size, fabs(a[k]));
+  for (int k = LENGTHS; k < SURFACE_NUMBERS; k++)
+    alike = alike && fabs(a[k] - b[k]) <= rounding * (k < AXES ? size : 1);
+  return alike;
+}
+
 /* --- distances -------------------------------------------------------------------------------- */
 
 /* Of a point x from the middle of a box with these half edges, in its own axes. Inside the nearest
@@ -183,10 +206,14 @@ int surface_outline(const surface *s, double points[SURFACE_OUTLINE][2]) {
   return count;
 }
 
-double surface_extent(const surface *s, int dimensions) {
-  const double *h = s->half;
-  if (s->kind == SURFACE_BALL) return dimensions == 2 ? 2 * M_PI * h[0] : 4 * M_PI * h[0] * h[0];
-  if (s->kind == SURFACE_CYLINDER) return 2 * M_PI * h[1] * (2 * h[0] + h[1]);
-  if (dimensions == 2) return 4 * (h[0] + h[1]);
-  return 8 * (h[0] * h[1] + h[1] * h[2] + h[2] * h[0]);
+/* Steiner: of a convex body A + c out + 4 pi out^2, in the plane L + 2 pi out. */
+double surface_extent(const surface *s, int dimensions, double out) {
+  const double *h = s->half, round = 4 * M_PI * out * out;
+  if (s->kind == SURFACE_BALL)
+    return dimensions == 2 ? 2 * M_PI * (h[0] + out) : 4 * M_PI * (h[0] + out) * (h[0] + out);
+  if (s->kind == SURFACE_CYLINDER)
+    return 2 * M_PI * h[1] * (2 * h[0] + h[1]) + 2 * M_PI * (2 * h[0] + M_PI * h[1]) * out + round;
+  if (dimensions == 2) return 4 * (h[0] + h[1]) + 2 * M_PI * out;
+  return 8 * (h[0] * h[1] + h[1] * h[2] + h[2] * h[0]) + 4 * M_PI * (h[0] + h[1] + h[2]) * out +
+         round;
 }

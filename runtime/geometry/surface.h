@@ -20,6 +20,11 @@ typedef struct surface {
 
 /* False for shapes of other kinds. */
 bool surface_open(const deck_shape *shape, surface *s);
+/* What it is in numbers: its kind, centre, half (infinite: 0) and axes. */
+enum { SURFACE_NUMBERS = 1 + 3 + 3 + 9 };
+void surface_numbers(const surface *s, double numbers[SURFACE_NUMBERS]);
+/* By these; up to rounding, as a part of the largest length. */
+bool surface_is_alike(const double a[SURFACE_NUMBERS], const double b[SURFACE_NUMBERS]);
 /* m: of a point from the surface, negative inside; the unit vector out of the shape at the nearest
    point of the surface. In the plane p[2] is 0. */
 double surface_distance(const surface *s, const double p[3], double out[3]);
@@ -27,7 +32,7 @@ double surface_distance(const surface *s, const double p[3], double out[3]);
    how many there are. */
 enum { SURFACE_OUTLINE = 180 };
 int surface_outline(const surface *s, double points[SURFACE_OUTLINE][2]);
-/* m^2, in the plane m. */
-double surface_extent(const surface *s, int dimensions);
+/* m^2, in the plane m: of all points that lie that far outside (m). */
+double surface_extent(const surface *s, int dimensions, double out);
 
 #endif

@@ -1,5 +1,6 @@
 #include "runtime/interaction/contact.h"
 
+#include <assert.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -131,6 +132,7 @@ void contact_free(contact *c) {
 }
 
 void contact_look_ahead(contact *c, double part) {
+  assert(part < CONTACT_MOST_AHEAD);
   c->ahead = part / skin_part * c->skin;
 }
 

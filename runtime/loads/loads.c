@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
 #include "runtime/lattice/placed_values.h"
 #include "runtime/lattice/rows_select.h"
 #include "runtime/loads/tributary.h"
@@ -349,6 +350,23 @@ void loads_point_masses(const loads *l, body *w) {
   }
 }
 
+double loads_heaviest(const loads *l) {
+  const rows *g = l->lattice;
+  double *mass = must_calloc((size_t)g->size + 1, sizeof *mass), most = 0;
+  for (long p = 0; p < g->particle_count; p++)
+    mass[g->particle_site[p]] = g->site_mass ? g->site_mass[g->particle_site[p]] : g->mass;
+  for (int i = 0; i < l->deck->point_mass_count; i++) {
+    const deck_point_mass *m = &l->deck->point_masss[i];
+    const region_sites *at = region_of(l, m->region);
+    for (long n = 0; at && n < at->count; n++)
+      mass[g->particle_site[at->particles[n]]] += mass_of_each(m, at);
+  }
+  for (long q = 0; q < g->size; q++)
+    most = pl_fmax(most, mass[q]);
+  free(mass);
+  return most;
+}
+
 double loads_point_mass_of(const loads *l, int index, long *particles) {
   const deck_point_mass *p = &l->deck->point_masss[index];
   const region_sites *at = region_of(l, p->region);
@@ -438,10 +456,8 @@ loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, 
   l->gives_way =
       deck_lattice_is_mesh(&k->lattices[lattice]) && k->newmark.motion == MOTION_VELOCITY_ONLY;
   l->regions = regions_select(k, k->lattices[lattice].name, w, d);
-  motions m = {.dof = dof,
-               .law = law,
-               .particle = deck_particle_word(&k->lattices[lattice]),
-               .said = d};
+  motions m = {
+      .dof = dof, .law = law, .particle = deck_particle_word(&k->lattices[lattice]), .said = d};
   m.holder = must_calloc((size_t)dof * (size_t)w->particle_count + 1, sizeof *m.holder);
   add_motions(l, &m);
   add_forces(l, lattice, &m);

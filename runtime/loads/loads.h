@@ -109,6 +109,8 @@ void loads_point_masses(const loads *l, body *w);
 /* kg: the deck's point mass of that number on all of its particles, and how many these are; 0 of
    another lattice's. */
 double loads_point_mass_of(const loads *l, int index, long *particles);
+/* kg: of the heaviest particle, with its point masses. */
+double loads_heaviest(const loads *l);
 
 /* Displacements and velocities that regions begin with. False with diagnostics where a velocity is
    too large for a step. */

@@ -244,19 +244,23 @@ static bool are_alike(const deck *k, const run_body *bodies, int count, diagnost
 }
 
 /* In the history a folder for the energies of each body stands beside the times, the monitors and
-   the energies of all. */
+   the energies of all; a body alone has none. */
 static bool has_own_name(const deck *k, int lattice, diagnostics *d) {
   const char *name = k->lattices[lattice].name;
   const int monitor = deck_find_monitor(k, name);
   if (monitor >= 0) {
     diag_report(d, DIAG_RESERVED_NAME, deck_where(&k->monitors[monitor].item, "name"),
-                "a monitor cannot be named as a lattice, `%s`, where there are several", name);
-    diag_note(d, deck_where(&k->lattices[lattice].item, "name"), "the lattice");
+                "a monitor cannot be named as a %s, `%s`, beside other bodies, contacts or stamps",
+                deck_lattice_word(&k->lattices[lattice]), name);
+    diag_note(d, deck_where(&k->lattices[lattice].item, "name"), "the %s",
+              deck_lattice_word(&k->lattices[lattice]));
     return false;
   }
-  if (!deck_is_history_name(name)) return true;
+  if (!deck_is_history_name(k, name)) return true;
   diag_report(d, DIAG_RESERVED_NAME, deck_where(&k->lattices[lattice].item, "name"),
-              "a result has another `%s`: one of several lattices cannot be named so", name);
+              "a result has another `%s`: a %s beside other bodies, contacts or stamps cannot be "
+              "named so",
+              name, deck_lattice_word(&k->lattices[lattice]));
   return false;
 }
 
@@ -306,7 +310,8 @@ static bool link_suits(const deck *k, const run_body *bodies, int link, diagnost
 
 bool bodies_fit(const deck *k, const run_body *bodies, int count, diagnostics *d) {
   bool good = are_alike(k, bodies, count, d) && laws_have_names(k, d);
-  for (int b = 0; b < count && count > 1; b++)
+  const bool apart = count + k->contact_count + k->stamp_count > 1;
+  for (int b = 0; b < count && apart; b++)
     good = has_own_name(k, b, d) && good;
   for (int b = 0; b < count && good; b++)
     good = !run_body_is_link(&bodies[b]) || link_suits(k, bodies, b, d);

@@ -33,22 +33,45 @@ static bool find_stiffness(run_stamp *s, const deck *k, const run_body *bodies, 
   return true;
 }
 
-/* That touch it at most. */
+/* That touch it at most: balls of half a spacing. */
 static double most_touching(const run_stamp *s, const rows *g) {
   surface of;
   surface_open(&s->from->shape, &of);
-  const double each = g->dimensions == 2 ? g->spacing : g->spacing * g->spacing;
-  return pl_fmin(2 + surface_extent(&of, g->dimensions) / each, (double)g->particle_count);
+  const double each = g->dimensions == 2 ? g->spacing : g->spacing * g->spacing,
+               extent = surface_extent(&of, g->dimensions, 0.5 * g->spacing);
+  return pl_fmin(2 + extent / each, (double)g->particle_count);
+}
+
+static double critical(double stiffness, double mass) {
+  return 2 * sqrt(stiffness * mass);
+}
+
+static bool is_by_size(const run_stamp *s, const rows *g) {
+  return run_contact_by_size(g, s->from->stiffness);
+}
+
+/* Of a free stamp on the springs and dampers of all that may touch it. */
+static touch_rates own_rates(const run_stamp *s, const run_body *bodies) {
+  touch_rates own = {0, 0};
+  for (int n = 0; n < s->count && s->from->mass > 0; n++) {
+    const run_body *b = &bodies[s->of[n]];
+    const rows *g = b->lattice_rows;
+    const double part = most_touching(s, g) / s->from->mass,
+                 larger = is_by_size(s, g) ? rows_largest_spacing(g) / g->spacing : 1,
+                 hardest = larger * s->stiffness[n];
+    own.square += part * hardest;
+    own.damping += part * s->damping * critical(hardest, loads_heaviest(b->loads));
+  }
+  return own;
 }
 
 static void add_rates(const run_stamp *s, const run_body *bodies, touch_rates *touching) {
+  const touch_rates own = own_rates(s, bodies);
   for (int n = 0; n < s->count; n++) {
     const rows *g = bodies[s->of[n]].lattice_rows;
-    const double k = s->stiffness[n],
-                 m = run_contact_lightest(g, run_contact_by_size(g, s->from->stiffness));
-    const double inverse = 1 / m + (s->from->mass > 0 ? most_touching(s, g) / s->from->mass : 0);
-    touching[s->of[n]].square += k * inverse;
-    touching[s->of[n]].damping += 2 * s->damping * sqrt(k * m) * inverse;
+    const double k = s->stiffness[n], m = run_contact_lightest(g, is_by_size(s, g));
+    touching[s->of[n]].square += k / m + own.square;
+    touching[s->of[n]].damping += s->damping * critical(k, m) / m + own.damping;
   }
 }
 
@@ -96,6 +119,20 @@ static double way_between(const time_function *f, bool placed, double from, doub
   return b > begin ? time_function_way(f, begin, b, 1) : 0;
 }
 
+/* m: at the end of an increment at t. What begins then comes in the next one. */
+static double way_settled(const run_stamps *s, const run_stamp *item, double t) {
+  const time_function *f = &item->from->motion;
+  if (t <= load_clock_just_after(clock_of(s), f->start)) return 0;
+  return way_between(f, item->from->is_displacement, -1, t);
+}
+
+/* Evenly from the beginning of an increment to its end. */
+static double way_in_increment(const run_stamps *s, const run_stamp *item, int64_t step) {
+  const load_clock *c = clock_of(s);
+  const double part = load_clock_part(c, (long)step);
+  return (1 - part) * way_settled(s, item, c->from) + part * way_settled(s, item, c->to);
+}
+
 /* m: along its direction, after so many steps, of which the last but one led to state.way. */
 static double way_after(const run_stamps *s, const run_stamp *item, int64_t step) {
   const time_function *f = &item->from->motion;
@@ -103,6 +140,7 @@ static double way_after(const run_stamps *s, const run_stamp *item, int64_t step
   if (step == 0) return 0;
   if (f->formula && !item->from->is_displacement)
     return item->state.way + way_between(f, false, time_of(s, step - 1), t);
+  if (clock_of(s)->ramp > 0) return way_in_increment(s, item, step);
   return way_between(f, item->from->is_displacement, -1, t);
 }
 

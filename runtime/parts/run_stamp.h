@@ -8,9 +8,11 @@
    sum it goes out. Gravity, and what moves a prescribed stamp, do work on it.
 
    The largest frequencies: with k |(u - x) n|^2 <= k ((1 + a) |u n|^2 + (1 + 1/a) |x n|^2), x the
-   motion of a stamp of mass M that at most N particles touch, the lightest of mass m, and a = N
-   m/M, each stamp adds k/m + N k/M to the square of a body's own, and its dampers c/m + N c/M. N is
-   the surface of the stamp over that of a particle, and no more than there are particles. */
+   motion of a stamp of mass M that at most N particles of a body touch, S the sum of N k/M over its
+   bodies, and a = S m/k for a particle of mass m, each stamp adds k/m + S to the square of a body's
+   own, of the lightest particle; its dampers c/m and the sum of N c/M likewise. c/m = 2 z sqrt(k/m)
+   is most of the lightest particle, c of the heaviest, with its point masses. N is the surface half
+   a spacing outside the stamp over that of a particle, and no more than there are particles. */
 #ifndef PERILAT_RUNTIME_RUN_STAMP_H
 #define PERILAT_RUNTIME_RUN_STAMP_H
 

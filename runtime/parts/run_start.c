@@ -1,5 +1,6 @@
 #include "runtime/parts/run_start.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -131,9 +132,19 @@ static state_field take_dragged(const run_stamp *of, int number, const run_body 
   return f;
 }
 
+static_assert((int)STATE_SURFACE == (int)SURFACE_NUMBERS, "a result has all that a surface is");
+
+/* Where it is drawn. */
+static void numbers_of(const run_stamp *of, double numbers[SURFACE_NUMBERS]) {
+  surface drawn;
+  surface_open(&of->from->shape, &drawn);
+  surface_numbers(&drawn, numbers);
+}
+
 static state_stamp take_stamp(const run_stamp *of, const run_body *bodies, bool at_rest) {
   state_stamp s = {.name = must_copy(of->from->name)};
   s.dragged = must_calloc((size_t)of->count + 1, sizeof *s.dragged);
+  numbers_of(of, s.surface);
   for (int c = 0; c < 3; c++) {
     s.place[c] = of->state.at.place[c];
     s.velocity[c] = at_rest ? 0 : of->state.at.velocity[c];
@@ -519,18 +530,46 @@ static void start_dragged(const starting *s, run_stamp *of, const state_stamp *f
   }
 }
 
-static void start_stamp(const starting *s, run_stamp *of) {
-  const state_stamp *from = NULL;
+static const state_stamp *former_stamp(const starting *s, const run_stamp *of) {
   for (int n = 0; n < s->from->stamp_count; n++)
-    if (strcmp(s->from->stamps[n].name, of->from->name) == 0) from = &s->from->stamps[n];
-  if (!from) return;
+    if (strcmp(s->from->stamps[n].name, of->from->name) == 0) return &s->from->stamps[n];
+  return NULL;
+}
+
+/* A guided one leaves what it had across its way; one that had been guided already keeps its
+   bits. */
+static void guide(run_stamp *of) {
+  double *v = of->state.at.velocity, along = 0, across = 0;
+  const double *way = of->from->direction;
+  for (int c = 0; c < 3; c++)
+    along += v[c] * way[c];
+  for (int c = 0; c < 3; c++)
+    across = pl_fmax(across, fabs(v[c] - along * way[c]));
+  for (int c = 0; c < 3 && across > 1e-12 * fabs(along); c++)
+    v[c] = along * way[c];
+}
+
+static void start_stamp(const starting *s, run_stamp *of, const state_stamp *from) {
   of->goes_on = true;
   of->former_step = s->from->step;
   for (int c = 0; c < 3; c++) {
     of->start[c] = of->state.at.place[c] = from->place[c];
     of->state.at.velocity[c] = from->velocity[c];
   }
+  if (of->from->guided) guide(of);
   start_dragged(s, of, from);
+}
+
+/* Its place counts from there. */
+static bool is_drawn_there(const starting *s, const run_stamp *of, const state_stamp *from) {
+  double now[SURFACE_NUMBERS];
+  numbers_of(of, now);
+  if (surface_is_alike(now, from->surface)) return true;
+  diag_report(s->d, DIAG_CONFLICT, deck_where(&of->from->item, "shape"),
+              "the stamp `%s` goes on from `%s`, where it is drawn with another shape or elsewhere",
+              of->from->name, name_of(s));
+  diag_hint(s->d, "draw it as there: it begins where it was at the end; or give it another name");
+  return false;
 }
 
 /* A stamp that goes on has the velocity that it has there. */
@@ -538,8 +577,11 @@ static bool stamps_go_on(const starting *s) {
   bool good = true;
   for (int n = 0; n < s->stamps->count; n++) {
     run_stamp *of = &s->stamps->items[n];
-    start_stamp(s, of);
-    if (!of->goes_on || of->from->mass == 0 || of->from->motion.value == 0) continue;
+    const state_stamp *from = former_stamp(s, of);
+    if (!from) continue;
+    good = is_drawn_there(s, of, from) && good;
+    start_stamp(s, of, from);
+    if (of->from->mass == 0 || !deck_is_written(&of->from->item, "velocity")) continue;
     diag_report(s->d, DIAG_CONFLICT, deck_where(&of->from->item, "velocity"),
                 "the stamp `%s` goes on from `%s` with the velocity that it has there",
                 of->from->name, name_of(s));

@@ -30,6 +30,13 @@ static bool read_place(result_file *f, const char *path, long *value) {
   return count == 1;
 }
 
+static bool are_finite(const double *values, long count) {
+  bool good = true;
+  for (long k = 0; k < count; k++)
+    good = good && isfinite(values[k]);
+  return good;
+}
+
 /* [count][dof]; NULL where the other table has another shape. */
 static double *read_motion(result_file *f, const char *group, const char *name, state_body *b) {
   char path[NAME];
@@ -41,10 +48,8 @@ static double *read_motion(result_file *f, const char *group, const char *name, 
     b->dof = dof;
     b->count = count;
   }
-  bool good = values && count == b->count && dof == b->dof;
-  for (long k = 0; good && k < count * dof; k++)
-    good = isfinite(values[k]);
-  if (good) return values;
+  if (values && count == b->count && dof == b->dof && are_finite(values, count * dof))
+    return values;
   free(values);
   return NULL;
 }
@@ -102,15 +107,12 @@ static bool read_law(result_file *f, const char *interaction, state_law *l) {
   return good;
 }
 
-static bool read_three(result_file *f, const char *path, double value[3]) {
+static bool read_numbers(result_file *f, const char *path, double *value, long wanted) {
   long count = 0;
   int columns;
   double *values = result_read_table(f, path, false, 1, 1, &count, &columns);
-  bool good = count == 3;
-  for (int c = 0; c < 3 && good; c++) {
-    value[c] = values[c];
-    good = isfinite(value[c]);
-  }
+  const bool good = count == wanted && are_finite(values, count);
+  if (good) memcpy(value, values, (size_t)count * sizeof *value);
   free(values);
   return good;
 }
@@ -133,7 +135,8 @@ static bool read_dragged(result_file *f, const char *group, const result_state *
     snprintf(path, sizeof path, "%s/%.200s", group, names.items[k]);
     field->name = must_copy(names.items[k]);
     field->values = result_read_table(f, path, false, 1, 3, &field->count, &field->columns);
-    good = field->values && of && field->count == of->count && field->columns == s->dimensions;
+    good = field->values && of && field->count == of->count && field->columns == s->dimensions &&
+           are_finite(field->values, field->count * field->columns);
   }
   result_names_free(&names);
   return good;
@@ -143,9 +146,11 @@ static bool read_stamp(result_file *f, const char *name, const result_state *s, 
   char path[NAME];
   into->name = must_copy(name);
   snprintf(path, sizeof path, RESULT_STATE "/stamps/%.200s/place", name);
-  bool good = read_three(f, path, into->place);
+  bool good = read_numbers(f, path, into->place, 3);
   snprintf(path, sizeof path, RESULT_STATE "/stamps/%.200s/velocity", name);
-  good = good && read_three(f, path, into->velocity);
+  good = good && read_numbers(f, path, into->velocity, 3);
+  snprintf(path, sizeof path, RESULT_STATE "/stamps/%.200s/surface", name);
+  good = good && read_numbers(f, path, into->surface, STATE_SURFACE);
   snprintf(path, sizeof path, RESULT_STATE "/stamps/%.200s/dragged", name);
   return good && read_dragged(f, path, s, into);
 }

@@ -10,6 +10,7 @@
                                      lost/<contact> [M, 1] m: distance at which a bond was lost, 0:
                                      it was not
      /state/stamps/<stamp>/          place [3] m, from where it is drawn; velocity [3] m/s;
+                                     surface [16] where it is drawn (surface_numbers);
                                      dragged/<lattice> [n, dimensions] m: of particles, along it */
 #ifndef PERILAT_RUNTIME_RESULT_STATE_H
 #define PERILAT_RUNTIME_RESULT_STATE_H
@@ -51,9 +52,11 @@ typedef struct state_law {
   long bond_count;
 } state_law;
 
+enum { STATE_SURFACE = 16 };
+
 typedef struct state_stamp {
   char *name;
-  double place[3], velocity[3];
+  double place[3], velocity[3], surface[STATE_SURFACE];
   state_field *dragged; /* [dragged_count] named as the lattices; [particles][dimensions] */
   int dragged_count;
 } state_stamp;

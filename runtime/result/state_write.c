@@ -58,11 +58,12 @@ static bool write_law(hid_t file, const state_law *l) {
 
 static bool write_stamp(hid_t file, const state_stamp *s) {
   char group[NAME / 2], path[NAME];
-  const hsize_t three[] = {3};
+  const hsize_t three[] = {3}, surface[] = {STATE_SURFACE};
   snprintf(group, sizeof group, RESULT_STATE "/stamps/%s", s->name);
   bool good = h5_make_group(file, group) &&
               h5_write_doubles(file, in(group, "place", path), s->place, 1, three, "m") &&
-              h5_write_doubles(file, in(group, "velocity", path), s->velocity, 1, three, "m/s");
+              h5_write_doubles(file, in(group, "velocity", path), s->velocity, 1, three, "m/s") &&
+              h5_write_doubles(file, in(group, "surface", path), s->surface, 1, surface, "m");
   snprintf(group, sizeof group, RESULT_STATE "/stamps/%s/dragged", s->name);
   good = good && (s->dragged_count == 0 || h5_make_group(file, group));
   for (int f = 0; good && f < s->dragged_count; f++)

@@ -156,18 +156,39 @@ bool simulation_save(const simulation *s, const char *path, const char *fingerpr
   return good;
 }
 
-/* Numbers that a run can have reached: array sizes and loops rely on them. Every sample takes at
-   least one multiple of the interval, the one at the end perhaps none. */
-static bool is_reachable(const simulation *s, const run_progress *at) {
-  if (at->begun != 0 && at->begun != 1) return false;
-  if (at->status < STEP_OK || at->status > STEP_BAD) return false;
-  if (at->stop < -1 || at->stop >= s->deck->stop_count) return false;
-  if (at->event != 0 && at->event != 1) return false;
-  if (at->step < 0 || at->step > s->clock.step_count || (!at->begun && at->step > 0)) return false;
+static bool is_truth(int64_t of) {
+  return of == 0 || of == 1;
+}
+
+/* The same of steps that have shrunk: each time at least by half. */
+static bool steps_are_reachable(const simulation *s, const run_progress *at) {
   if (at->halvings < 0 || at->halvings > RUN_MOST_HALVINGS) return false;
   if (at->part < 0 || at->part >= INT64_C(1) << at->halvings) return false;
   if (at->change_count < 0 || at->change_count > at->halvings) return false;
   if (at->halvings > 0 && s->deck->simulation.shrink_every == 0) return false;
+  if (at->looked < -1 || at->looked > at->step) return false;
+  if (!is_truth(at->doubted) || !is_truth(at->touched)) return false;
+  if (at->more < 0 || at->more >> RUN_MOST_HALVINGS > at->step) return false;
+  step_change last = {.step = 0, .halvings = 0};
+  for (int64_t k = 0; k < at->change_count; k++) {
+    const step_change *c = &at->changes[k];
+    if (c->step < last.step || c->step > at->step || c->halvings <= last.halvings ||
+        c->halvings > at->halvings || c->cause < STEP_STIFFER || c->cause > STEP_TOUCHED ||
+        c->body < 0 || c->body >= s->body_count)
+      return false;
+    last = *c;
+  }
+  return last.halvings == at->halvings;
+}
+
+/* Numbers that a run can have reached: array sizes and loops rely on them. Every sample takes at
+   least one multiple of the interval, the one at the end perhaps none. */
+static bool is_reachable(const simulation *s, const run_progress *at) {
+  if (!is_truth(at->begun) || !is_truth(at->event)) return false;
+  if (at->status < STEP_OK || at->status > STEP_BAD) return false;
+  if (at->stop < -1 || at->stop >= s->deck->stop_count) return false;
+  if (at->step < 0 || at->step > s->clock.step_count || (!at->begun && at->step > 0)) return false;
+  if (!steps_are_reachable(s, at)) return false;
   if (at->next_sample < 0 || at->next_sample > s->history.capacity) return false;
   if (at->samples < (at->step > 0) || at->samples > at->next_sample + 1) return false;
   if (at->samples > s->history.capacity - (at->step < s->clock.step_count)) return false;

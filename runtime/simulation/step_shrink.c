@@ -146,10 +146,10 @@ static int64_t halvings_for(const simulation *s, double limit) {
 }
 
 /* The energies of a sample were taken for those of steps that are too long; were they? */
-static void settle_doubt(simulation *s) {
+static void settle_doubt(simulation *s, bool too_long) {
   energies *now = must_calloc((size_t)s->body_count + 1, sizeof *now);
   observe(s);
-  if (!find_energies(s, now)) {
+  if (!find_energies(s, now) || too_long) {
     bad_search_energy(s->bad, BAD_ENERGY);
     s->clock.at.status = STEP_BAD;
   }
@@ -157,22 +157,32 @@ static void settle_doubt(simulation *s) {
   free(now);
 }
 
-static void fit_step(simulation *s) {
-  run_progress *at = &s->clock.at;
+/* *stiffer: the part of the longest stable step at rest that is left of it. */
+static ruling_body look_at_bodies(simulation *s, double *stiffer) {
   double rest;
   observe(s);
   watch_cells(s);
   const ruling_body now = shortest_limit(s, &rest);
   s->observed_step = -1;
-  const double stiffer = now.limit < rest ? now.limit / rest : 1;
-  if (s->contacts.near) at->touched = 1;
+  *stiffer = now.limit < rest ? now.limit / rest : 1;
+  return now;
+}
+
+static void fit_step(simulation *s) {
+  run_progress *at = &s->clock.at;
+  double stiffer;
+  const ruling_body now = look_at_bodies(s, &stiffer);
+  const bool meet = s->contacts.near && !at->touched;
+  if (meet) at->touched = 1;
   const int64_t alone = halvings_for(s, stiffer * s->limit.limit),
                 all = at->touched ? halvings_for(s, stiffer * s->touching) : alone;
   if (all > RUN_MOST_HALVINGS) {
     bad_search_step(s->bad, now.body);
     at->status = STEP_BAD;
   } else if (all > at->halvings) {
-    const step_cause cause = alone < all ? STEP_TOUCHED : now.cracked ? STEP_CRACKED : STEP_STIFFER;
+    const step_cause cause = meet && alone < all ? STEP_TOUCHED
+                             : now.cracked       ? STEP_CRACKED
+                                                 : STEP_STIFFER;
     step_shrink_to(s, all, cause, now.body);
   }
 }
@@ -180,5 +190,13 @@ static void fit_step(simulation *s) {
 void step_shrink_look(simulation *s) {
   fit_step(s);
   s->clock.at.looked = s->clock.at.step;
-  if (s->clock.at.doubted && s->clock.at.status == STEP_OK) settle_doubt(s);
+  if (s->clock.at.doubted && s->clock.at.status == STEP_OK) settle_doubt(s, false);
+}
+
+void step_shrink_settle(simulation *s) {
+  double stiffer;
+  if (!s->clock.at.doubted || s->clock.at.status == STEP_BAD) return;
+  look_at_bodies(s, &stiffer);
+  settle_doubt(s, run_clock_step(&s->clock) >
+                      stiffer * (s->clock.at.touched ? s->touching : s->limit.limit));
 }

@@ -23,6 +23,9 @@ bool step_shrink_due(const simulation *s);
 /* A look, on one thread outside of the loop. The run goes bad where the step would be 2^-11 of that
    planned or less. */
 void step_shrink_look(simulation *s);
+/* At the end of a run, after which no look comes: it goes bad where the last sample found energies
+   of no stable step, and steps were too long for the bodies as they are now. */
+void step_shrink_settle(simulation *s);
 /* From the present state on each planned step is done in 2^halvings parts. */
 void step_shrink_to(simulation *s, int64_t halvings, step_cause cause, int number);
 /* After the clock was read from a checkpoint: all else that the step is known by. */

@@ -83,7 +83,7 @@ static void sample_energies(simulation *s) {
                           history_energies_of(&s->history, s->body_count + k));
   }
   for (int k = 0; k < s->stamps.count; k++) {
-    const stamp_energies e = run_stamp_energies(&s->stamps, k, s->clock.at.step);
+    const stamp_energies e = run_stamp_energies(&s->stamps, k, parts_done(s));
     ledger_sample_stamp(&s->stamps.items[k].state.ledger, &e,
                         history_energies_of(&s->history, s->body_count + s->contacts.count + k));
   }
@@ -209,7 +209,9 @@ static bool goes_on(const simulation *s) {
 static void after_step(simulation *s) {
   const bool whole = s->clock.at.part == 0;
   find_contacts(s);
-  s->go_on = (!whole || goes_on(s)) && s->clock.at.status == STEP_OK;
+  s->go_on = s->clock.at.status == STEP_OK && (!whole || goes_on(s));
+  s->observe = false;
+  if (s->clock.at.status != STEP_OK) return;
   if (s->relaxation) {
     s->observe = relaxation_due(s->relaxation, s->clock.at.step);
     return;
@@ -439,6 +441,10 @@ static bool is_held_up(const simulation *s, int64_t event) {
          !(s->interrupted && *s->interrupted);
 }
 
+static bool has_ended(const simulation *s) {
+  return s->clock.at.step == s->clock.step_count || s->clock.at.status == STEP_STOPPED;
+}
+
 step_status time_loop_run(simulation *s, long steps, const volatile sig_atomic_t *interrupted) {
   if (s->clock.at.status != STEP_OK) return (step_status)s->clock.at.status;
   s->until = next_stop(s, steps);
@@ -457,11 +463,11 @@ step_status time_loop_run(simulation *s, long steps, const volatile sig_atomic_t
     run_team(s);
   }
   if (solved && s->clock.at.event == event) stand_on(s);
+  if (has_ended(s)) step_shrink_settle(s);
   if (s->profile) {
     s->profile->elapsed += monotonic_seconds() - begun;
     profile_sum(s->profile, s->bodies, s->body_count, s->blocks);
   }
-  if (s->clock.at.status == STEP_OK && s->clock.at.step == s->clock.step_count)
-    s->clock.at.status = STEP_END;
+  if (s->clock.at.status == STEP_OK && has_ended(s)) s->clock.at.status = STEP_END;
   return (step_status)s->clock.at.status;
 }

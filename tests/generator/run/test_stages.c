@@ -116,6 +116,25 @@ static void stamps_go_on(void **state) {
               "= '24 mm', '-7.5 mm'  size = '12 mm', '5 mm'  mass = '20 g'  direction = 0, 1  "
               "velocity = 1  /\n");
   expect(w, "check second.nml", 1, "goes on from `first.h5` with the velocity that it has there");
+  write_stage(w, "second", BLOCK(HEXAGON, "model = 'mplm_bilinear'", BEAM), "0.35 ms",
+              "&start  result = 'first.h5'  /\n&stamp  name = 'loose'  shape = 'rectangle'  corner "
+              "= '24 mm', '-7.5 mm'  size = '12 mm', '5 mm'  mass = '20 g'  velocity = 0  /\n");
+  expect(w, "check second.nml", 1, "goes on from `first.h5` with the velocity that it has there");
+  write_stage(w, "second", BLOCK(HEXAGON, "model = 'mplm_bilinear'", BEAM), "0.35 ms",
+              "&start  result = 'first.h5'  /\n&stamp  name = 'loose'  shape = 'rectangle'  corner "
+              "= '24 mm', '-7.6 mm'  size = '12 mm', '5 mm'  mass = '20 g'  /\n");
+  expect(w, "check second.nml", 1, "where it is drawn with another shape or elsewhere");
+  /* guided to the left and down from now on: so are its velocity and its way */
+  write_stage(w, "second", BLOCK(HEXAGON, "model = 'mplm_bilinear'", BEAM), "0.25 us",
+              "&start  result = 'first.h5'  /\n&stamp  name = 'loose'  shape = 'rectangle'  corner "
+              "= '24 mm', '-7.5 mm'  size = '12 mm', '5 mm'  mass = '20 g'  guided = T  direction "
+              "= -3, -4  /\n");
+  run_stage(w, "second");
+  result_state *before = state_of(w, "first"), *after = state_of(w, "second");
+  const double *was = before->stamps[1].place, *is = after->stamps[0].place;
+  assert_true(is[1] < was[1] && fabs((is[0] - was[0]) / (is[1] - was[1]) - 0.75) < 1e-6);
+  result_state_free(before);
+  result_state_free(after);
 }
 
 /* Of two blocks that are not joined one is cut out: the other one moves as if it had always been

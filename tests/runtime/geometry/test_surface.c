@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -43,7 +44,7 @@ static void distances_are_those_of_the_shape(void **state) {
     const solid *s = &solids[n];
     surface of;
     assert_true(surface_open(&s->shape, &of));
-    assert_true(fabs(surface_extent(&of, s->dimensions) / s->extent - 1) < 1e-12);
+    assert_true(fabs(surface_extent(&of, s->dimensions, 0) / s->extent - 1) < 1e-12);
     const int count = s->dimensions == 3 ? PLACES * PLACES * PLACES : PLACES * PLACES;
     for (int k = 0; k < count; k++) {
       double p[3], out[3];
@@ -84,6 +85,51 @@ static void the_way_out_is_how_it_grows(void **state) {
   }
 }
 
+/* The layer of what lies between 0.1 and 0.2 outside, on a grid. */
+static void extents_outside_are_those_of_layers(void **state) {
+  (void)state;
+  const double near = 0.1, far = 0.2, middle = 0.15, h = 0.02, room = 1;
+  for (int n = 0; n < SOLIDS; n++) {
+    const solid *s = &solids[n];
+    const long side = lround(2 * room / h),
+               count = s->dimensions == 3 ? side * side * side : side * side;
+    long inside = 0;
+    surface of;
+    surface_open(&s->shape, &of);
+    for (long k = 0; k < count; k++) {
+      double p[3] = {h * ((double)(k % side) + 0.5) - room,
+                     h * ((double)(k / side % side) + 0.5) - room, 0},
+             out[3];
+      if (s->dimensions == 3) p[2] = h * ((double)(k / side / side) + 0.5) - room;
+      const double d = surface_distance(&of, p, out);
+      inside += d > near && d < far;
+    }
+    const double layer = (double)inside * pow(h, s->dimensions) / (far - near),
+                 is = surface_extent(&of, s->dimensions, middle);
+    print_message("extent %.4f, of the layer %.4f\n", is, layer);
+    assert_true(fabs(is / layer - 1) < 0.02);
+  }
+}
+
+/* Each number tells one from another; rounding does not. */
+static void numbers_tell_surfaces_apart(void **state) {
+  (void)state;
+  for (int n = 0; n < SOLIDS; n++) {
+    double own[SURFACE_NUMBERS], other[SURFACE_NUMBERS];
+    surface of;
+    surface_open(&solids[n].shape, &of);
+    surface_numbers(&of, own);
+    for (int k = 0; k < SURFACE_NUMBERS; k++) {
+      assert_true(isfinite(own[k]));
+      memcpy(other, own, sizeof own);
+      other[k] += 1e-6;
+      assert_false(surface_is_alike(own, other));
+      other[k] = own[k] * (1 + 1e-15);
+      assert_true(k == 0 || surface_is_alike(own, other));
+    }
+  }
+}
+
 static void others_have_none(void **state) {
   (void)state;
   const deck_shape segment = {.kind = SHAPE_SEGMENT, .to = {1, 0}};
@@ -95,6 +141,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(distances_are_those_of_the_shape),
       cmocka_unit_test(the_way_out_is_how_it_grows),
+      cmocka_unit_test(extents_outside_are_those_of_layers),
+      cmocka_unit_test(numbers_tell_surfaces_apart),
       cmocka_unit_test(others_have_none),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

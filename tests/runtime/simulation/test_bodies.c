@@ -505,6 +505,13 @@ static void names_may_not_clash(void **state) {
   must_refuse(PAIR("one", "energy", ""), bars, "'energy'", "a result has another `energy`");
   must_refuse(PAIR("one", "two", "&monitor name = 'two' kind = 'damaged' /\n"), bars, "'two'",
               "cannot be named as a lattice");
+  must_refuse("&simulation end_time = 1e-4 /\n" OF_BODY(
+                  "one", "'hexagonal' spacing = 0.01",
+                  "") "&body lattice = 'one' shape = 'rectangle' corner = 0, 0 size = 0.1, 0.1 /\n"
+                      "&monitor name = 'one' kind = 'damaged' /\n"
+                      "&stamp name = 'wall' shape = 'disc' centre = 1, 1 radius = 0.1 "
+                      "velocity = 0 /\n",
+              bars, "'one'", "cannot be named as a lattice");
 }
 
 int main(void) {

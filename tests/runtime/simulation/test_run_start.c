@@ -205,11 +205,47 @@ static void a_made_up_state_is_refused(void **state) {
   unlink(path);
 }
 
+static void made_up_stamps_are_refused(void **state) {
+  (void)state;
+  static const char damaged[] = "is damaged: the state at its end cannot be read",
+                    other[] = "where it is drawn with another shape or elsewhere",
+                    with[] = BODY("&start result = 'test_run_start.h5' /\n"
+                                  "&stamp name = 'ball' shape = 'disc' centre = 1, 0 radius = 0.1 "
+                                  "mass = 1 /\n");
+  small_run first;
+  open_run(&first, FIRST);
+  const simulation *s = first.simulation;
+  result_state *left = run_state_take(s->bodies, 1, &s->contacts, &s->stamps, s->deck, 1e-7);
+  const long count = left->bodies[0].count;
+  char lattice[] = "c", name[] = "ball";
+  state_field dragged = {.name = lattice, .unit = "m", .count = count, .columns = 2};
+  dragged.values = must_calloc(2 * (size_t)count, sizeof(double));
+  state_stamp ball = {.name = name, .dragged = &dragged, .dragged_count = 1}, *own = left->stamps;
+  left->stamps = &ball;
+  left->stamp_count = 1;
+  refused(s, left, with, other);
+  dragged.values[3] = NAN;
+  refused(s, left, with, damaged);
+  dragged.values[3] = 0;
+  ball.surface[2] = INFINITY;
+  refused(s, left, with, damaged);
+  ball.surface[2] = 0;
+  ball.velocity[0] = NAN;
+  refused(s, left, with, damaged);
+  left->stamps = own;
+  left->stamp_count = 0;
+  free(dragged.values);
+  result_state_free(left);
+  small_close(&first);
+  unlink(path);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_state_is_that_of_the_arrays),
       cmocka_unit_test(both_ends_keep_their_values),
       cmocka_unit_test(a_made_up_state_is_refused),
+      cmocka_unit_test(made_up_stamps_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

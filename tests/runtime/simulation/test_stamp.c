@@ -236,10 +236,45 @@ static void light_stamps_shorten_the_step(void **state) {
   }
   print_message("longest step %.4g us, %.4g us, damped %.4g us\n", 1e6 * limit[0], 1e6 * limit[1],
                 1e6 * limit[2]);
-  /* k/m + N k/M with N = 2 + 6 particles */
-  const double k = 30e9 * sqrt(3) / 2 * THICKNESS, alone = pow(2 / limit[0], 2);
-  assert_true(fabs(pow(2 / limit[1], 2) / (alone + k / mass() + 8 * k / 0.05) - 1) < 1e-3);
+  /* k/m + N k/M; N: 2, and as many as the surface half a spacing outside has spacings */
+  const double k = 30e9 * sqrt(3) / 2 * THICKNESS, alone = pow(2 / limit[0], 2), N = 2 + 6 + PI;
+  assert_true(fabs(pow(2 / limit[1], 2) / (alone + k / mass() + N * k / 0.05) - 1) < 1e-3);
   assert_true(limit[2] < 0.8 * limit[1]);
+}
+
+#define COLUMN_OF(name, x)                                                                         \
+  "&lattice name = '" name "' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 rotation = 90 "    \
+  "origin = " x ", 0 /\n&material lattice = '" name "' model = 'm' /\n&body lattice = '" name      \
+  "' shape = 'segment' from = " x ", -0.001 to = " x ", 0.011 /\n"
+
+static double limit_of_columns(const char *bodies, const char *masses, double damping, double M) {
+  small_bodies b;
+  open_run(&b, &elastic_bar,
+           "&simulation end_time = 1e-6 /\n%s%s"
+           "&stamp name = 'dust' shape = 'rectangle' corner = 0.0051, -0.001 size = 0.01, 0.01 "
+           "mass = %.17g direction = -1, 0 stiffness = 1e9 damping = %.17g /\n"
+           "&output frames = 0 /\n",
+           bodies, masses, M, damping);
+  const double limit = simulation_step_limit(b.run.simulation)->limit;
+  small_bodies_close(&b);
+  return limit;
+}
+
+/* A stamp that is light is all that moves: omega^2 = N k/M and c = N c/M of all that touch it, the
+   heaviest particles' dampers with their point masses. */
+static void light_stamps_feel_all_that_touch_them(void **state) {
+  (void)state;
+  static const char second[] = COLUMN_OF("a", "0") COLUMN_OF("b", "0.03");
+  char heavy[100];
+  snprintf(heavy, sizeof heavy, "&point_mass region = 'all' mass = %.17g /\n", 99 * mass());
+  const double M = 1e-8, k = 1e9, one = pow(2 / limit_of_columns(COLUMN, "", 0, M), 2),
+               two = pow(2 / limit_of_columns(second, "", 0, M), 2);
+  assert_true(fabs(one / (2 * k / M) - 1) < 1e-4 && fabs(two / (4 * k / M) - 1) < 1e-4);
+  for (int n = 0; n < 2; n++) {
+    const double p = 2 / limit_of_columns(COLUMN, n ? heavy : "", 0.1, M),
+                 c = 2 * 0.2 * sqrt(k * mass() * (n ? 100 : 1)) / M;
+    assert_true(fabs((p - 2 * k / M / p) / c - 1) < 1e-3); /* p^2 = omega^2 + p c */
+  }
 }
 
 /* --- friction --------------------------------------------------------------------------------- */
@@ -353,6 +388,38 @@ static void pressing_does_work(void **state) {
   small_bodies_close(&b);
 }
 
+#define UP(more)                                                                                   \
+  BLOCK "&stamp name = 'up' shape = 'rectangle' corner = -1, 0.07 size = 2, 1 direction = 0, 1 "   \
+        "displacement = 0.02 history = 'constant' " more " /\n"                                    \
+        "&monitor name = 'u' kind = 'displacement' stamp = 'up' component = 'y' /\n"
+
+/* A way of two spacings that begins all at once comes within the steps of its increment. */
+static void ways_come_evenly_in_an_increment(void **state) {
+  (void)state;
+  small_bodies b;
+  open_run(&b, &elastic_beam,
+           "&simulation end_time = 1 /\n&relaxation increments = 4 /\n" UP(
+               "start = 0.25 end = 0.75") "&output frames = 0 /\n");
+  assert_int_equal(small_go(&b.run), STEP_END);
+  const double *u = small_values(&b.run, "u");
+  assert_true(u[0] == 0 && u[1] == 0 && u[2] == 0.02 && u[3] == 0.02 && u[4] == 0.02);
+  small_bodies_close(&b);
+}
+
+/* No sample that would end the run well is taken after a stamp has gone too far. */
+static void a_stop_does_not_hide_a_stamp_that_went_too_far(void **state) {
+  (void)state;
+  small_bodies b;
+  open_run(
+      &b, &elastic_beam,
+      "&simulation end_time = 1e-4 /\n" UP("start = 5e-5") "&stop monitor = 'u' above = 0.015 /\n"
+                                                           "&output frames = 0 sample = 1e-9 /\n");
+  assert_int_equal(small_go(&b.run), STEP_BAD);
+  assert_null(simulation_stopped_by(b.run.simulation));
+  assert_true(simulation_stamp(b.run.simulation, 0).too_far);
+  small_bodies_close(&b);
+}
+
 /* --- the same bits ---------------------------------------------------------------------------- */
 
 static void open_many(small_bodies *b, int threads) {
@@ -400,9 +467,12 @@ int main(void) {
       cmocka_unit_test(damping_sets_the_restitution),
       cmocka_unit_test(a_stamp_hits_a_block),
       cmocka_unit_test(light_stamps_shorten_the_step),
+      cmocka_unit_test(light_stamps_feel_all_that_touch_them),
       cmocka_unit_test(blocks_slide_by_coulombs_law),
       cmocka_unit_test(stamps_go_where_the_deck_says),
       cmocka_unit_test(pressing_does_work),
+      cmocka_unit_test(ways_come_evenly_in_an_increment),
+      cmocka_unit_test(a_stop_does_not_hide_a_stamp_that_went_too_far),
       cmocka_unit_test(threads_and_stops_change_no_bit),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -259,10 +259,10 @@ static double stretched(double t) {
   return place_on(&paths[k], t);
 }
 
-static void open_stretched(small_run *r, const pl_law *law, double part, int every) {
+static void open_pulled(small_run *r, const pl_law *law, const char *steps, const char *more) {
   char text[4096];
   snprintf(text, sizeof text,
-           "&simulation end_time = %.17g step_safety = %.17g shrink_every = %d /\n"
+           "&simulation %s /\n"
            "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 /\n"
            "&material lattice = 'c' model = 'm' S_t = 1e-5 /\n"
            "&body lattice = 'c' shape = 'rectangle' corner = 0, -0.001 size = 0.01, 0.002 /\n"
@@ -270,11 +270,18 @@ static void open_stretched(small_run *r, const pl_law *law, double part, int eve
            "&region name = 'right' shape = 'point' at = 0.01, 0 /\n" FIXED
            "&force region = 'right' component = 'x' total = %.17g history = 'ramp' rise = %.17g /\n"
            "&monitor name = 'u' kind = 'displacement' region = 'right' component = 'x' /\n"
-           "&output frames = 0 sample = 1e-9 /\n",
-           duration(), part, every, peak, duration());
+           "&output frames = 0 sample = 1e-9 /\n%s",
+           steps, peak, duration(), more);
   small_open(r, law, text);
   if (!r->simulation) small_print(r);
   assert_non_null(r->simulation);
+}
+
+static void open_stretched(small_run *r, const pl_law *law, double part, int every) {
+  char steps[200];
+  snprintf(steps, sizeof steps, "end_time = %.17g step_safety = %.17g shrink_every = %d",
+           duration(), part, every);
+  open_pulled(r, law, steps, "");
 }
 
 /* The largest error over the largest way; runs that go bad have none. */
@@ -348,6 +355,39 @@ static void steps_do_not_shrink_without_end(void **state) {
   assert_true(r.simulation->clock.at.step < r.simulation->clock.step_count / 4);
   small_close(&r);
   stiffer = 25;
+}
+
+static void pull_until(const pl_law *law, double end, double step, const char *more) {
+  char steps[200];
+  small_run r;
+  snprintf(steps, sizeof steps, "end_time = %.17g step = %.17g shrink_every = 1000000000", end,
+           step);
+  open_pulled(&r, law, steps, more);
+  const step_status status = small_go(&r);
+  print_message("%s: status %d after %ld steps\n", *more ? "a stop" : "the end", status,
+                (long)r.simulation->clock.at.step);
+  assert_int_equal(status, STEP_BAD);
+  assert_string_equal(simulation_bad(r.simulation).what, BAD_ENERGY);
+  small_close(&r);
+}
+
+/* Where the last sample is the first that finds energies of steps that are too long no look comes
+   any more. */
+static void what_the_last_sample_finds_is_not_lost(void **state) {
+  (void)state;
+  small_run r;
+  char stop[200];
+  const pl_law law = stiffening_bar();
+  periods = 32;
+  open_stretched(&r, &law, 0.9, 0);
+  assert_int_equal(small_go(&r), STEP_BAD);
+  const long steps = (long)r.simulation->clock.at.step;
+  const double step = r.simulation->limit.step;
+  small_close(&r);
+  pull_until(&law, (double)steps * step, step, "");
+  snprintf(stop, sizeof stop, "&stop monitor = 'u' above = 0 after = %.17g /\n",
+           ((double)steps - 0.5) * step);
+  pull_until(&law, 1.5 * (double)steps * step, step, stop);
 }
 
 /* --- contact ---------------------------------------------------------------------------------- */
@@ -437,6 +477,52 @@ static void a_blow_needs_short_steps_from_the_touch_on_alone(void **state) {
 }
 
 /* --- bits ------------------------------------------------------------------------------------- */
+
+/* In a file that is whole otherwise. */
+static void numbers_that_no_run_can_reach_are_refused(void **state) {
+  (void)state;
+  static const char saved[] = "test_step_shrink.state";
+  const frame_mark none = {0, 0};
+  char error[200];
+  small_bodies from, to;
+  open_meeting(&from, 0.5, 50, 1);
+  open_meeting(&to, 0.5, 50, 1);
+  go_with_frames(from.run.simulation, simulation_step_count(from.run.simulation) - 1);
+  run_progress *at = &from.run.simulation->clock.at;
+  const run_progress good = *at;
+  assert_int_equal(good.change_count, 1);
+  struct {
+    int64_t *of, value;
+  } bad[] = {{&at->looked, -2},
+             {&at->looked, at->step + 1},
+             {&at->more, -1},
+             {&at->more, INT64_MAX},
+             {&at->doubted, 2},
+             {&at->touched, -1},
+             {&at->halvings, 2},
+             {&at->change_count, 0},
+             {&at->changes[0].step, -1},
+             {&at->changes[0].step, at->step + 1},
+             {&at->changes[0].halvings, 0},
+             {&at->changes[0].halvings, 2},
+             {&at->changes[0].cause, STEP_TOUCHED + 1},
+             {&at->changes[0].cause, -1},
+             {&at->changes[0].body, 2},
+             {&at->changes[0].body, -1}};
+  for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+    *bad[k].of = bad[k].value;
+    assert_true(simulation_save(from.run.simulation, saved, "one", &none, error, sizeof error));
+    if (simulation_restore(to.run.simulation, saved, "one", NULL, error, sizeof error))
+      fail_msg("number %zu is taken", k);
+    assert_non_null(strstr(error, "another size"));
+    *at = good;
+  }
+  assert_true(simulation_save(from.run.simulation, saved, "one", &none, error, sizeof error));
+  assert_true(simulation_restore(to.run.simulation, saved, "one", NULL, error, sizeof error));
+  small_bodies_close(&from);
+  small_bodies_close(&to);
+  unlink(saved);
+}
 
 static void threads_and_stops_change_no_bit(void **state) {
   (void)state;
@@ -596,8 +682,10 @@ int main(void) {
       cmocka_unit_test(a_bond_may_stiffen),
       cmocka_unit_test(a_bond_that_stiffens_is_followed),
       cmocka_unit_test(steps_do_not_shrink_without_end),
+      cmocka_unit_test(what_the_last_sample_finds_is_not_lost),
       cmocka_unit_test(a_blow_needs_short_steps_from_the_touch_on_alone),
       cmocka_unit_test(threads_and_stops_change_no_bit),
+      cmocka_unit_test(numbers_that_no_run_can_reach_are_refused),
       cmocka_unit_test(steps_out_of_time_do_not_shrink),
       cmocka_unit_test(a_look_alone_changes_no_bit),
       cmocka_unit_test(a_body_goes_on_as_with_shorter_steps),
