@@ -349,9 +349,11 @@ static bool is_outside(const run_stamps *s, const run_stamp *item, diagnostics *
               item->from->name, of->name, in.count, in.count == 1 ? "" : "s",
               in.count == 1 ? "that" : "the deepest",
               rows_place_text(of->body->dimensions, at, text), 1e3 * in.depth);
-  diag_hint(d,
-            "move it out by as much: a particle reaches half a spacing, %.4g mm, beyond its place",
-            0.5e3 * rows_spacing(of->lattice_rows, in.site));
+  diag_hint(
+      d,
+      "move it out by as much, or further where it lies deep: a particle reaches half a spacing, "
+      "%.4g mm, beyond its place",
+      0.5e3 * rows_spacing(of->lattice_rows, in.site));
   return false;
 }
 
