@@ -205,7 +205,8 @@ bond_kinematics kinematics_bond(ir *g, bool rotations, bool twists) {
   k.s = ir_input(g, IR_FROM_QUANTITY, QUANTITY_S, "s", ON_BODY);
   const chord_motion m = motion_of_chord(g, k.s);
   find_length(g, &k, &m, rotations);
-  const ir_node half_per_square = ir_div(g, ir_constant(g, 0.5), ir_mul(g, k.s, k.s));
+  const ir_node below = ir_mul(g, k.s, k.s);
+  const ir_node half_per_square = ir_div(g, ir_constant(g, 0.5), below);
   k.stretch = named(g, stretch_of(g, k.s, half_per_square, k.length, m.growth), "stretch");
   vector e = {ir_mul(g, m.now.x, k.per_length), ir_mul(g, m.now.y, k.per_length)};
   k.e_x = named(g, e.x, "e_x");
