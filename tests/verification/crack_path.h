@@ -70,8 +70,8 @@ typedef struct plates {   /* of one kind */
 } plates;
 
 static const plates all_plates[] = {
-    {"examples/kalthoff/hexagon.nml", "| hexagonal, turned by", "rotation", 0, 6, 0.25},
-    {"examples/kalthoff/square.nml", "| square, turned by", "rotation", 0, 9, 0.5},
+    {"examples/kalthoff/hexagon.nml", "| hexagonal, turned by 0,", "rotation", 0, 6, 0.25},
+    {"examples/kalthoff/square.nml", "| square, turned by 0,", "rotation", 0, 9, 0.5},
     {"examples/kalthoff/blue_noise.nml", "| blue noise, seeds", "seed", 1, 1, -1}};
 
 static inline double angle_at(const plates *p, int n, double spacing) {
