@@ -118,14 +118,16 @@ static void announce_frequencies(const run *r) {
   }
 }
 
-/* "0.3061 us: 0.25 of the stable step 1.224 us (rotation mode rules)" */
+/* "0.3061 us: 0.25 of the stable step 1.224 us (rotation mode rules)", or "(contact rules)" */
 static void announce_step(const run *r) {
   const step_limit *limit = simulation_step_limit(r->simulation);
-  printf("%.4g us: %.3g of the stable step %.4g us (%s mode%s", 1e6 * limit->step,
-         limit->step / limit->limit, 1e6 * limit->limit, limit->mode,
-         limit->at_surface ? " at a surface" : "");
-  if (r->deck->lattice_count > 1)
-    printf(" of %s", r->deck->lattices[simulation_ruling_body(r->simulation)].name);
+  printf("%.4g us: %.3g of the stable step %.4g us (%s", 1e6 * limit->step,
+         limit->step / limit->limit, 1e6 * limit->limit, limit->mode);
+  if (!limit->between) {
+    printf(" mode%s", limit->at_surface ? " at a surface" : "");
+    if (r->deck->lattice_count > 1)
+      printf(" of %s", r->deck->lattices[simulation_ruling_body(r->simulation)].name);
+  }
   puts(" rules)");
 }
 

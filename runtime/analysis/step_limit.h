@@ -9,7 +9,8 @@ typedef struct step_limit {
   double step;          /* s: chosen */
   double omega_max;     /* rad/s */
   double damping_ratio; /* of the ruling mode */
-  const char *mode;     /* "translation" or "rotation" */
+  const char *mode;     /* what rules: "translation" or "rotation", a body's mode */
+  bool between;         /* instead, between bodies: "contact" or "a link" is faster than they are */
   bool at_surface;      /* the body as it stands has a faster mode than any wave of its lattice */
   double least; /* smallest eigenvalue of the virgin body over the largest; 0: none is negative */
 } step_limit;

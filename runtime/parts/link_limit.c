@@ -109,6 +109,8 @@ void link_limit(const run_body *bodies, int count, const touch_rates *touching, 
   *ruling = fastest;
   *limit = bodies[fastest].limit;
   limit->limit = together;
+  limit->between = contact.square + links.square > alone.square;
+  if (limit->between) limit->mode = contact.square > links.square ? "contact" : "a link";
   limit->omega_max = sqrt(all.square);
   limit->damping_ratio = all.damping / (2 * limit->omega_max);
 }

@@ -63,6 +63,9 @@ static void stamps_are_told(void **state) {
   expect(w, "run stamp.nml", 0,
          "  stamp      ball: 0.5 kg at 3 m/s along (0, -1), 5 mm from `c`\n");
   assert_non_null(strstr(w->said, "  stamp      anvil: its motion is prescribed, 0 nm from `c`\n"));
+  assert_non_null(strstr(w->said, " (translation mode rules)\n"));
+  expect(w, "run stamp.nml --set 'stamp[1].mass=1 mg' --set output.result=light.h5", 0,
+         " (contact rules)\n");
   expect(w, "plot stamp.h5 --map velocity -o stamp.svg", 0, "written");
   expect(w, "plot stamp.h5 --map velocity --factor 7 -o seven.svg", 0, "written");
 }

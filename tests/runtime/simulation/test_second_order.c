@@ -8,35 +8,9 @@
 #include <cmocka.h>
 
 #include "runtime/interaction/sweep.h"
-#include "tests/runtime/simulation/pair.h"
+#include "tests/runtime/simulation/pair_motions.h"
 
 /* --- forces ----------------------------------------------------------------------------------- */
-
-static const double force = 100; /* N */
-static const double rate = 3e4;  /* 1/s */
-
-static double pushed(double t, double start) {
-  return t < start ? 0 : force / stiffness() * (1 - cos(frequency() * (t - start)));
-}
-
-static double pushed_velocity(double t, double start) {
-  return t < start ? 0 : force / stiffness() * frequency() * sin(frequency() * (t - start));
-}
-
-/* The support carries what the spring does. */
-static double pushed_support(double t, double start) {
-  return -stiffness() * pushed(t, start);
-}
-
-/* Damped from the beginning on. */
-static double pushed_damped(double t, double start) {
-  const double d = rate / 2, w = sqrt(frequency() * frequency() - d * d), since = t - start;
-  return t < start ? 0
-                   : force / stiffness() *
-                         (1 - exp(-d * since) * (cos(w * since) + d / w * sin(w * since)));
-}
-
-#define PUSH FIXED "&force region = 'right' component = 'x' total = 100 start = %.17g /\n"
 
 /* The same by two forces on one particle. */
 #define TWO_PUSH                                                                                   \
@@ -103,10 +77,6 @@ static void a_body_falls_five_centimetres_in_one_step(void **state) {
   small_close(&r);
 }
 
-static double fallen(double t, double start) {
-  return t < start ? 0 : 10 / (frequency() * frequency()) * (1 - cos(frequency() * (t - start)));
-}
-
 static double fallen_damped(double t, double start) {
   const double d = rate / 2, w = sqrt(frequency() * frequency() - d * d), since = t - start;
   const double part = exp(-d * since) * (cos(w * since) + d / w * sin(w * since));
@@ -117,7 +87,6 @@ static void gravity_may_begin_at_any_time(void **state) {
   (void)state;
   static const double starts[] = {0, 40, 40.3, 40.8};
   const double u = 20 / (frequency() * frequency());
-#define WEIGHT FIXED "&gravity acceleration = 10, 0 start = %.17g /\n"
   for (size_t k = 0; k < sizeof starts / sizeof *starts; k++) {
     falls_with_the_square(&(motion){WEIGHT, starts[k], "u", fallen, u});
     falls_with_the_square(

@@ -13,37 +13,11 @@
 #include "runtime/simulation/simulation_save.h"
 #include "runtime/simulation/step_shrink.h"
 #include "tests/runtime/same_runs.h"
-#include "tests/runtime/simulation/pair.h"
+#include "tests/runtime/simulation/pair_motions.h"
 #include "tests/runtime/simulation/watch_all.h"
 #include "tests/runtime/small_bodies.h"
 
 /* --- over a change ---------------------------------------------------------------------------- */
-
-static const double force = 100; /* N */
-static const double rate = 3e4;  /* 1/s */
-
-static double pushed(double t, double start) {
-  return t < start ? 0 : force / stiffness() * (1 - cos(frequency() * (t - start)));
-}
-
-static double pushed_velocity(double t, double start) {
-  return t < start ? 0 : force / stiffness() * frequency() * sin(frequency() * (t - start));
-}
-
-static double pushed_support(double t, double start) {
-  return -stiffness() * pushed(t, start);
-}
-
-static double pushed_damped(double t, double start) {
-  const double d = rate / 2, w = sqrt(frequency() * frequency() - d * d), since = t - start;
-  return t < start ? 0
-                   : force / stiffness() *
-                         (1 - exp(-d * since) * (cos(w * since) + d / w * sin(w * since)));
-}
-
-static double fallen(double t, double start) {
-  return t < start ? 0 : 10 / (frequency() * frequency()) * (1 - cos(frequency() * (t - start)));
-}
 
 /* The left end goes off by a speed that rises within the run. */
 static const double speed = 0.5; /* m/s */
@@ -57,8 +31,6 @@ static double driven_reaction(double t, double start) {
   return mass() * a + stiffness() * (0.5 * a * t * t - driven(t, start));
 }
 
-#define PUSH   FIXED "&force region = 'right' component = 'x' total = 100 start = %.17g /\n"
-#define WEIGHT FIXED "&gravity acceleration = 10, 0 start = %.17g /\n"
 #define DRIVEN                                                                                     \
   "&drive region = 'left' component = 'x' velocity = 0.5 rise = %.17g /\n" /* `start`: the end */
 
