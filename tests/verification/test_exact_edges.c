@@ -338,7 +338,7 @@ static double off_by(const char *lattice, const char *edges, double s, bool spac
               "'120 mm', '%g mm', '120 mm' /\n"
               "&region name = 'top' shape = 'box' corner = '-60 mm', '%g mm', '-60 mm' size = "
               "'120 mm', '20 mm', '120 mm' /\n";
-  char more[2048], text[4096];
+  char more[2048], text[256];
   const int n = snprintf(more, sizeof more, space ? box : plane, 10 + 1.8 * s, 100 - 1.8 * s);
   snprintf(more + n, sizeof more - (size_t)n,
            "&relaxation increments = 1 tolerance = 1e-6 /\n"
