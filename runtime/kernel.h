@@ -37,11 +37,11 @@
 
 #include <stdint.h>
 
-#define PL_KERNEL_ABI 17
+#define PL_KERNEL_ABI 18
 #define PL_MAX_DOF    6
 #define PL_MAX_PLANES 12 /* force planes a bond */
 #define PL_STATE_INPUTS                                                                            \
-  5 /* of a state: stretch, stretch_rate (1/s), theta_i, theta_j (rad), length (m) */
+  6 /* of a state: stretch, stretch_rate (1/s), theta_i, theta_j (rad), length (m), dt (s) */
 #define PL_STATE_RESULTS 3 /* N (N), M_i, M_j (N m; 0 for central laws) */
 #define PL_STATE_RATES   4 /* inputs that the tangent is by: the first ones */
 #define PL_TANGENTS      (PL_STATE_RESULTS * PL_STATE_RATES)
@@ -138,6 +138,9 @@ typedef struct pl_strip {
   /* Of rows_observe: [1 + output_count][count], written: stored energy (J), then each output. */
   double *const *observed;
   double time, time_step; /* s: of the deformation, and to the next one; no law reads `time` yet */
+  /* s: `dt` of laws, by which the host's time has gone on from the state that `field` is of to this
+     deformation; 0 in the first step, which finds how quickly states begin to change */
+  double advance;
 } pl_strip;
 
 /* Single states of a law of bonds. */
@@ -160,6 +163,16 @@ typedef void (*pl_states_function)(const struct pl_law *law, const double *unifo
 /* uniforms: [uniform_count], as `prepare` wrote them for the bonds of this direction */
 typedef void (*pl_strip_function)(const struct pl_law *law, const double *uniforms,
                                   const pl_strip *strip);
+
+/* What particles with lists have in common toward their neighbours of one number. */
+typedef struct pl_way {
+  int64_t to;              /* sites from each to its neighbour */
+  double length, chord[3]; /* m */
+} pl_way;
+enum {
+  PL_OWN_WAYS = -1, /* each has a way of its own */
+  PL_NO_WAY = -2    /* none has such a neighbour */
+};
 
 #define PL_MAX_DIRECTIONS           64 /* pairs of opposite neighbours of a family */
 #define PL_SHAPE_VALUES(dimensions) ((dimensions) == 2 ? 6 : 21)
@@ -272,6 +285,12 @@ typedef struct pl_family {
   /* [count] of laws that read it (pl_law.reads_own_size): spacing of each particle over that of the
      bond class, and so its horizon over that. */
   const double *own_size;
+  /* Of lists, unless NULL: [count/PL_LANES][neighbours]: of each PL_LANES particles toward neighbour
+     k PL_OWN_WAYS, PL_NO_WAY, or which way all of these go that have it; from those that have none
+     that way leads to a site, too. */
+  const int32_t *alike;
+  const pl_way *way;
+  double advance; /* s, as of a strip: from the state that old_field is of */
 } pl_family;
 
 /* uniforms: rows: [neighbours][uniform_count], as `prepare` wrote them for the bond class of each
@@ -328,6 +347,7 @@ typedef struct pl_points {
      way strain_rate time_step that led here (ledger.h): laws with fields read rates for it, too */
   double *const *lost;
   double time, time_step; /* s */
+  double advance;         /* s, as of a strip: from the state that old_field is of */
 } pl_points;
 
 /* uniforms: [uniform_count], as `prepare` wrote them for any bond class */
@@ -517,6 +537,11 @@ typedef struct pl_law {
   /* Of laws of families: `spacing` and `horizon` of the law are a particle's own, those of the bond
      class times pl_family.own_size. */
   int reads_own_size;
+
+  /* Parameters that the law declares as `field`: a host may let them change in time. Those among
+     `varying` stand in arrays, like all of these. */
+  int given_count;
+  const int32_t *given; /* [given_count] their places in `parameters` */
 } pl_law;
 
 /* The one symbol that a compiled kernel exports. */

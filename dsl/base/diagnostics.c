@@ -44,14 +44,26 @@ void diag_begin(diagnostics *d, source_set *sources) {
   *d = (diagnostics){.sources = sources};
 }
 
-void diag_clear(diagnostics *d) {
-  for (int i = 0; i < d->count; i++) {
-    free(d->items[i].message);
-    free(d->items[i].note);
-    free(d->items[i].hint);
+static void clear_list(diagnostic *items, int count) {
+  for (int i = 0; i < count; i++) {
+    free(items[i].message);
+    free(items[i].note);
+    free(items[i].hint);
   }
-  free(d->items);
+  free(items);
+}
+
+void diag_clear(diagnostics *d) {
+  clear_list(d->items, d->count);
+  clear_list(d->accepted, d->accepted_count);
   *d = (diagnostics){.sources = d->sources};
+}
+
+/* Room is the power of two at or above the count. */
+static void append(diagnostic **items, int *count, diagnostic one) {
+  if ((*count & (*count - 1)) == 0)
+    *items = must_realloc(*items, (*count ? 2 * (size_t)*count : 1) * sizeof **items);
+  (*items)[(*count)++] = one;
 }
 
 void diag_report(diagnostics *d, diag_code code, span where, const char *format, ...) {
@@ -59,10 +71,23 @@ void diag_report(diagnostics *d, diag_code code, span where, const char *format,
   va_start(values, format);
   char *message = format_text(format, values);
   va_end(values);
-  if ((d->count & (d->count - 1)) == 0) /* room is the power of two at or above the count */
-    d->items = must_realloc(d->items, (d->count ? 2 * (size_t)d->count : 1) * sizeof(diagnostic));
-  d->items[d->count++] = (diagnostic){.code = code, .where = where, .message = message};
+  append(&d->items, &d->count, (diagnostic){.code = code, .where = where, .message = message});
   if (diag_severity(code) == SEVERITY_ERROR) d->errors++;
+}
+
+/* The compiler's own faults (`tangent`) are none of a law's. */
+bool diag_may_be_accepted(diag_code code) {
+  return code == DIAG_DAMAGE_RANGE || code == DIAG_DIVISION_BY_ZERO || code == DIAG_DOMAIN ||
+         (code >= DIAG_EXCHANGE && code <= DIAG_STRESS_STATE && code != DIAG_TANGENT);
+}
+
+void diag_accept(diagnostics *d, int k, const char *why) {
+  diagnostic one = d->items[k];
+  one.accepted = why;
+  if (diag_severity(one.code) == SEVERITY_ERROR) d->errors--;
+  memmove(&d->items[k], &d->items[k + 1], (size_t)(d->count - k - 1) * sizeof *d->items);
+  d->count--;
+  append(&d->accepted, &d->accepted_count, one);
 }
 
 void diag_note(diagnostics *d, span where, const char *format, ...) {
@@ -161,8 +186,11 @@ static void print_place(const diagnostics *d, span where, FILE *out) {
 static const struct {
   const char *word;
   terminal_paint paint;
-} kinds[] = {{"error", PAINT_ERROR}, {"warning", PAINT_WARNING}, {"note", PAINT_NOTE}};
-enum { NOTE = SEVERITY_WARNING + 1 };
+} kinds[] = {{"error", PAINT_ERROR},
+             {"warning", PAINT_WARNING},
+             {"note", PAINT_NOTE},
+             {"accepted", PAINT_NOTE}};
+enum { NOTE = SEVERITY_WARNING + 1, ACCEPTED };
 
 static void print_one(const diagnostics *d, span where, int kind, const char *message,
                       const char *name, FILE *out) {
@@ -205,6 +233,12 @@ void diag_print(const diagnostics *d, FILE *out) {
   }
   if (d->count > MOST_PRINTED) fprintf(out, "and %d more like these\n", d->count - MOST_PRINTED);
   free(order);
+  for (int i = 0; i < d->accepted_count; i++) {
+    const diagnostic *one = &d->accepted[i];
+    print_one(d, one->where, ACCEPTED, one->message, diag_name(one->code), out);
+    print_painted(out, PAINT_NOTE, "  because");
+    fprintf(out, ": %s\n", one->accepted);
+  }
 }
 
 void diag_print_topics(FILE *out) {

@@ -26,7 +26,8 @@ typedef struct diagnostic {
   char *message; /* one sentence, no full stop, in the user's words */
   char *note;    /* NULL, or a sentence about note_where (e.g. "first declared here") */
   span note_where;
-  char *hint; /* NULL, or how to mend it (e.g. "did you mean `alpha2`?") */
+  char *hint;           /* NULL, or how to mend it (e.g. "did you mean `alpha2`?") */
+  const char *accepted; /* NULL, or why the law means it */
 } diagnostic;
 
 typedef struct diagnostics {
@@ -34,6 +35,8 @@ typedef struct diagnostics {
   diagnostic *items;
   int count;
   int errors;
+  diagnostic *accepted; /* set apart: neither errors nor warnings */
+  int accepted_count;
 } diagnostics;
 
 void diag_begin(diagnostics *d, source_set *sources);
@@ -48,10 +51,15 @@ void diag_hint(diagnostics *d, const char *format, ...) __attribute__((format(pr
 /* Adds the hint "did you mean `x`?" when one of the candidates is close enough to `name`. */
 void diag_suggest(diagnostics *d, const char *name, const char *const *candidates, int count);
 
+/* Whether it is about mechanics or ranges, so that a law may say that it means what is found. */
+bool diag_may_be_accepted(diag_code code);
+/* Sets item k apart, with the reason, which is not copied. */
+void diag_accept(diagnostics *d, int k, const char *why);
+
 const char *diag_name(diag_code code); /* e.g. "unknown-name" */
 severity diag_severity(diag_code code);
 
-/* Prints all, sorted by place:
+/* Prints all, sorted by place, and then what is accepted:
      law.plm:7:12: error: there is no quantity `alfa2` [unknown-name]
        7 |   x = alfa2*stretch
          |       ^~~~~

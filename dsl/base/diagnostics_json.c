@@ -40,23 +40,27 @@ static void put_note(json *w, const diagnostics *d, const diagnostic *one) {
   json_object_end(w);
 }
 
+static void put_one(json *w, const diagnostics *d, const diagnostic *one, const char *kind) {
+  json_object(w);
+  json_put_text(w, "code", diag_name(one->code));
+  json_put_text(w, "severity", kind);
+  json_put_text(w, "message", one->message);
+  put_where(w, d->sources, one->where);
+  json_put_text(w, "hint", one->accepted ? one->accepted : one->hint);
+  put_note(w, d, one);
+  json_object_end(w);
+}
+
 void diag_json_add(diag_json *j, const diagnostics *d) {
-  json *w = j->document;
   const diagnostic **sorted = diag_sorted(d);
   for (int i = 0; i < d->count; i++) {
-    const diagnostic *one = sorted[i];
-    bool error = diag_severity(one->code) == SEVERITY_ERROR;
+    const bool error = diag_severity(sorted[i]->code) == SEVERITY_ERROR;
     *(error ? &j->errors : &j->warnings) += 1;
-    json_object(w);
-    json_put_text(w, "code", diag_name(one->code));
-    json_put_text(w, "severity", error ? "error" : "warning");
-    json_put_text(w, "message", one->message);
-    put_where(w, d->sources, one->where);
-    json_put_text(w, "hint", one->hint);
-    put_note(w, d, one);
-    json_object_end(w);
+    put_one(j->document, d, sorted[i], error ? "error" : "warning");
   }
   free(sorted);
+  for (int i = 0; i < d->accepted_count; i++)
+    put_one(j->document, d, &d->accepted[i], "accepted");
 }
 
 void diag_json_end(diag_json *j, bool accepted) {

@@ -7,8 +7,9 @@
    written out where it is meant; it rounds once on every machine, in hardware or not. Largest
    errors measured against 64-bit-mantissa references, in ulp of the result:
 
-     exp 1.0, log 0.9, pow 1.0, cbrt 0.5, inverse_root 1.0, hypot 1.2, sin and cos 0.8, tan 2.2,
-     tanh 1.7, atan2 1.3 (0.5 for angles up to 1e-6 rad);
+     exp 1.0, log 0.9, log10 0.9, pow 1.0, cbrt 0.5, inverse_root 1.0, hypot 1.2, sin and cos 0.8,
+     tan 2.2, asin 1.2, acos 0.8, sinh 1.1, cosh 1.0, tanh 1.7, atan2 1.3 (0.5 for angles up
+     to 1e-6 rad);
      wrap_angle 5e-16 rad for |x| <= 1e4 rad, exact for |x| <= pi.
 
    Ranges: all finite arguments, subnormal ones included, and infinities and NaN as in C's library,
@@ -41,6 +42,10 @@
 #define PL_LN2_LO      0x1.abc9e3b39803fp-56
 #define PL_LN2_SHORT   0x1.62e42fefa3800p-1 /* 42 bits: exact when multiplied by an exponent */
 #define PL_LN2_REST    0x1.ef35793c76730p-45
+#define PL_LG2_SHORT   0x1.34413509f7800p-2 /* of log10(2): 43 bits */
+#define PL_LG2_REST    0x1.fef311f12b358p-46
+#define PL_LGE_HI      0x1.bcb7b1526e50ep-2 /* of log10(e) */
+#define PL_LGE_LO      0x1.95355baaafad3p-57
 #define PL_HALF_PI_HI  0x1.921fb54442d18p+0
 #define PL_HALF_PI_LO  0x1.1a62633145c07p-54
 #define PL_HALF_PI_LO2 (-0x1.f1976b7ed8fbcp-110)
@@ -168,10 +173,9 @@ PL_ELEMENTARY pl_parts pl_take_apart(double x) {
   return parts;
 }
 
-/* log(1 + f) = 2 atanh(s), s = f/(2 + f); fit of (atanh(s)/s - 1)/s^2 in s^2. */
-PL_ELEMENTARY double pl_log(double x) {
-  const pl_parts parts = pl_take_apart(x);
-  const double f = parts.fraction;
+/* f - log(1 + f), where log(1 + f) = 2 atanh(s), s = f/(2 + f); fit of (atanh(s)/s - 1)/s^2 in s^2.
+ */
+PL_ELEMENTARY double pl_log_less(double f) {
   const double s = f / (2.0 + f);
   const double z = s * s;
   double p = 0x1.0c11348cee62ap-4;
@@ -182,11 +186,32 @@ PL_ELEMENTARY double pl_log(double x) {
   p = pl_fma(p, z, 0x1.2492492476692p-3);
   p = pl_fma(p, z, 0x1.9999999999a3ap-3);
   p = pl_fma(p, z, 0x1.5555555555555p-2);
-  const double less = s * (f - 2.0 * z * p); /* f - log(1 + f) */
-  const double sum =
-      parts.exponent * PL_LN2_SHORT + (f - pl_fma(-parts.exponent, PL_LN2_REST, less));
+  return s * (f - 2.0 * z * p);
+}
+
+/* A logarithm of x whose value is `sum` where x is positive and finite. */
+PL_ELEMENTARY double pl_log_ends(double x, double sum) {
   const double at_end = x == 0.0 ? -PL_INFINITY : (x < 0.0 ? PL_NAN : x);
   return x > 0.0 ? (x < PL_INFINITY ? sum : x) : at_end;
+}
+
+PL_ELEMENTARY double pl_log(double x) {
+  const pl_parts parts = pl_take_apart(x);
+  const double f = parts.fraction, less = pl_log_less(f);
+  return pl_log_ends(x, parts.exponent * PL_LN2_SHORT +
+                            (f - pl_fma(-parts.exponent, PL_LN2_REST, less)));
+}
+
+/* log(1 + f) as a sum of two doubles, times log10(e). Of powers of ten it is whole. */
+PL_ELEMENTARY double pl_log10(double x) {
+  const pl_parts parts = pl_take_apart(x);
+  const double f = parts.fraction, less = pl_log_less(f);
+  const double l = f - less, l_tail = (f - l) - less;
+  const double g = l * PL_LGE_HI;
+  const double g_tail = pl_fma(l, PL_LGE_HI, -g) + pl_fma(l, PL_LGE_LO, l_tail * PL_LGE_HI);
+  const double whole = parts.exponent * PL_LG2_SHORT; /* exact */
+  const double sum = whole + g, tail = (whole - sum) + g;
+  return pl_log_ends(x, sum + (tail + pl_fma(parts.exponent, PL_LG2_REST, g_tail)));
 }
 
 /* x^y for x > 0: the logarithm as a sum of two doubles (relative error 2^-65), times y, then exp.
@@ -359,6 +384,46 @@ PL_ELEMENTARY double pl_tan(double x) {
   return x == 0.0 ? x : y;
 }
 
+/* Half of exp(x) as a sum of two doubles, for x >= 0; infinite from 711 on. */
+typedef struct pl_grown {
+  double half, tail;
+} pl_grown;
+
+PL_ELEMENTARY pl_grown pl_half_exp(double x) {
+  const double held = x > 711.0 ? 711.0 : x;
+  const double k = (held * 0x1.71547652b82fep+0 + PL_ROUNDER) - PL_ROUNDER;
+  const double r = pl_fma(-k, PL_LN2_LO, pl_fma(-k, PL_LN2_HI, held));
+  const double q = pl_exp_reduced(r), one = 1.0 + q, one_tail = q - (one - 1.0);
+  const double first = k * 0.5 + PL_ROUNDER;
+  const double rest = (k - 1.0 - (first - PL_ROUNDER)) + PL_ROUNDER;
+  const double scale = pl_two_to(first), more = pl_two_to(rest);
+  pl_grown grown;
+  grown.half = one * scale * more;
+  grown.tail = one_tail * scale * more;
+  return grown;
+}
+
+/* Up to |x| = 1 a fit of (sinh(x)/x - 1)/x^2 in x^2; beyond, e - 1/(4 e) with e = exp(|x|)/2. */
+PL_ELEMENTARY double pl_sinh(double x) {
+  const double size = pl_abs(x), z = x * x;
+  double p = 0x1.b4c75a357a601p-41;
+  p = pl_fma(p, z, 0x1.611a561f36ba1p-33);
+  p = pl_fma(p, z, 0x1.ae64671b14757p-26);
+  p = pl_fma(p, z, 0x1.71de3a465b241p-19);
+  p = pl_fma(p, z, 0x1.a01a01a02899dp-13);
+  p = pl_fma(p, z, 0x1.11111111110a6p-7);
+  p = pl_fma(p, z, 0x1.5555555555556p-3);
+  const double near = pl_fma(x * z, p, x);
+  const pl_grown e = pl_half_exp(size);
+  const double far = e.half + (e.tail - 0.25 / e.half);
+  return size <= 1.0 ? near : pl_copy_sign(far, x);
+}
+
+PL_ELEMENTARY double pl_cosh(double x) {
+  const pl_grown e = pl_half_exp(pl_abs(x));
+  return e.half + (e.tail + 0.25 / e.half);
+}
+
 /* t/(t + 2) with t = exp(2|x|) - 1; 1 from |x| = 22 on. */
 PL_ELEMENTARY double pl_tanh(double x) {
   const double size = pl_abs(x);
@@ -420,6 +485,59 @@ PL_ELEMENTARY double pl_atan2(double y, double x) {
   const double turn = steep ? -side : side;
   const double arc = pl_fma(quarters, 0.5 * PL_HALF_PI_LO, turn * (t + arc_tail));
   return pl_copy_sign(pl_fma(quarters, 0.5 * PL_HALF_PI_HI, arc), y);
+}
+
+/* asin(r) = r + r z P(z), z = r^2, of r = |x| up to 1/2, and beyond it of r = sqrt((1 - |x|)/2), as
+   r + rest: then asin|x| = pi/2 - 2 (r + rest). Fit of (asin(r)/r - 1)/r^2 in r^2. NaN for
+   |x| > 1. */
+typedef struct pl_arc {
+  double r, rest;
+  int folded;
+} pl_arc;
+
+PL_ELEMENTARY pl_arc pl_arc_sine(double x) {
+  const double size = pl_abs(x);
+  const int folded = size > 0.5;
+  const double z = folded ? 0.5 * (1.0 - size) : x * x; /* exact where it is folded */
+  const double r = folded ? pl_sqrt(z) : size;
+  const double left = folded ? pl_fma(-r, r, z) : 0.0;
+  const double tail = left / (2.0 * (r > 0.0 ? r : 1.0));
+  double p = 0x1.0b4abd1c08af5p-5;
+  p = pl_fma(p, z, -0x1.580b058e1966bp-6);
+  p = pl_fma(p, z, 0x1.63a69db8b2212p-6);
+  p = pl_fma(p, z, 0x1.e5d1cbd888482p-9);
+  p = pl_fma(p, z, 0x1.613f179f0c481p-7);
+  p = pl_fma(p, z, 0x1.75850bb687461p-7);
+  p = pl_fma(p, z, 0x1.ca1f9e4c44745p-7);
+  p = pl_fma(p, z, 0x1.1c49ef94f8477p-6);
+  p = pl_fma(p, z, 0x1.6e8bdeecd6434p-6);
+  p = pl_fma(p, z, 0x1.f1c71a946e2fap-6);
+  p = pl_fma(p, z, 0x1.6db6db721412bp-5);
+  p = pl_fma(p, z, 0x1.333333332e103p-4);
+  p = pl_fma(p, z, 0x1.5555555555577p-3);
+  pl_arc arc;
+  arc.r = r;
+  arc.rest = pl_fma(r * z, p, tail);
+  arc.folded = folded;
+  return arc;
+}
+
+PL_ELEMENTARY double pl_asin(double x) {
+  const pl_arc arc = pl_arc_sine(x);
+  const double near = arc.r + arc.rest;
+  const double far = PL_HALF_PI_HI - (2.0 * arc.r - (PL_HALF_PI_LO - 2.0 * arc.rest));
+  return x != x ? x : pl_copy_sign(arc.folded ? far : near, x);
+}
+
+/* pi/2 - asin(x); near 1 twice the folded angle itself, so that small angles keep their digits. */
+PL_ELEMENTARY double pl_acos(double x) {
+  const pl_arc arc = pl_arc_sine(x);
+  const double r = pl_copy_sign(arc.r, x), rest = pl_copy_sign(1.0, x) * arc.rest;
+  const double near = PL_HALF_PI_HI - (r - (PL_HALF_PI_LO - rest));
+  const double twice = 2.0 * (arc.r + arc.rest);
+  const double back = 2.0 * (PL_HALF_PI_HI - (arc.r - (PL_HALF_PI_LO - arc.rest)));
+  const double far = x > 0.0 ? twice : back;
+  return x != x ? x : (arc.folded ? far : near);
 }
 
 /* Where a search for the root of a rising function is: at z, the root between low and high, by a

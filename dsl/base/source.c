@@ -37,11 +37,19 @@ static void index_text(source *s) {
   }
 }
 
+/* Where lines end in a carriage return alone it is a line end. */
+static void end_lines(source *s) {
+  if (memchr(s->text, '\n', s->length)) return;
+  for (size_t i = 0; i < s->length; i++)
+    if (s->text[i] == '\r') s->text[i] = '\n';
+}
+
 int source_add(source_set *set, const char *name, const char *text, size_t length) {
   size_t count = (size_t)set->count + 1;
   set->items = must_realloc(set->items, count * sizeof(source));
   source *s = &set->items[set->count];
   *s = (source){.name = must_copy(name), .text = copy_text(text, length), .length = length};
+  end_lines(s);
   index_text(s);
   return set->count++;
 }

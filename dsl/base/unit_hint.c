@@ -37,7 +37,7 @@ static size_t product_splits_at(const char *text, size_t length) {
   return 0;
 }
 
-/* sqrt(m), the root sign, or the end of m^1/2. */
+/* sqrt m, the root sign, or the end of m^1/2. */
 static bool is_root(const char *text, size_t length) {
   static const char word[] = "sqrt", sign[] = "\xe2\x88\x9a";
   bool digits = true;
@@ -51,7 +51,8 @@ static bool is_root(const char *text, size_t length) {
 bool unit_hint(diagnostics *d, const char *text, size_t length) {
   if (length == 0 || length > LONGEST) return false;
   if (is_root(text, length)) {
-    diag_hint(d, "a root of a unit is an exponent in parentheses: `m^(1/2)`");
+    diag_hint(d,
+              "a root of a unit is written `sqrt(m)`, or as an exponent in parentheses: `m^(1/2)`");
     return true;
   }
   size_t power = power_begins_at(text, length), product = product_splits_at(text, length);

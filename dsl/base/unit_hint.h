@@ -4,8 +4,8 @@
 
 #include "dsl/base/diagnostics.h"
 
-/* Attaches a hint to the last diagnostic: "write `m^2`" for m2, "write `N*m`" for Nm, `m^(1/2)`
-   for sqrt(m), "did you mean `MPa`?" for Mpa. False when nothing comes near the text. */
+/* Attaches a hint to the last diagnostic: "write `m^2`" for m2, "write `N*m`" for Nm, `sqrt(m)`
+   for m^1/2, "did you mean `MPa`?" for Mpa. False when nothing comes near the text. */
 bool unit_hint(diagnostics *d, const char *text, size_t length);
 
 #endif

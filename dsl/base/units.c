@@ -111,7 +111,7 @@ static const struct {
     DIMENSION_WORDS(X)
 #undef X
     /* the only common quantity with a fractional exponent */
-    {"a fracture toughness", "Pa*m^(1/2)", {{-6, 12, -24, 0}}},
+    {"a fracture toughness", "Pa*sqrt(m)", {{-6, 12, -24, 0}}},
 };
 
 enum {
@@ -238,13 +238,27 @@ static bool read_symbol(reader *r, unit *result) {
   return fail(r, begin, length ? r->at : r->end);
 }
 
+/* What stands behind an open parenthesis, with the closing one. */
+static bool read_in_parentheses(reader *r, const char *begin, unit *result) {
+  if (++r->depth > DEEPEST_PARENTHESIS) return fail(r, begin, r->end);
+  if (!read_product(r, result)) return false;
+  if (!take(r, ")")) return fail(r, begin, r->end);
+  r->depth--;
+  return true;
+}
+
+static bool take_root(reader *r, const char *begin, unit *result) {
+  if (!dim_pow(result->dim, 1, 2, &result->dim)) return fail(r, begin, r->at);
+  result->factor = sqrt(result->factor);
+  return true;
+}
+
 static bool read_factor(reader *r, unit *result) {
   const char *begin = r->at;
-  if (take(r, "(")) {
-    if (++r->depth > DEEPEST_PARENTHESIS) return fail(r, begin, r->end);
-    if (!read_product(r, result)) return false;
-    if (!take(r, ")")) return fail(r, begin, r->end);
-    r->depth--;
+  if (take(r, "sqrt(")) {
+    if (!read_in_parentheses(r, begin, result) || !take_root(r, begin, result)) return false;
+  } else if (take(r, "(")) {
+    if (!read_in_parentheses(r, begin, result)) return false;
   } else if (!read_symbol(r, result)) {
     return false;
   }
@@ -317,7 +331,7 @@ static size_t append(char *text, size_t size, size_t used, const char *part) {
   return used + length;
 }
 
-/* "m", "m^2" or "m^(1/2)" for a positive exponent. */
+/* "m", "m^2", "m^(3/2)" or "sqrt(m)" for a positive exponent. */
 static void power_text(const char *base, int twelfths, char *text, size_t size) {
   int denominator = 12;
   for (int divisor = 12; divisor > 1; divisor--)
@@ -325,7 +339,9 @@ static void power_text(const char *base, int twelfths, char *text, size_t size) 
       twelfths /= divisor;
       denominator /= divisor;
     }
-  if (denominator > 1)
+  if (denominator == 2 && twelfths == 1)
+    snprintf(text, size, "sqrt(%s)", base);
+  else if (denominator > 1)
     snprintf(text, size, "%s^(%d/%d)", base, twelfths, denominator);
   else if (twelfths > 1)
     snprintf(text, size, "%s^%d", base, twelfths);

@@ -29,8 +29,8 @@ dimension dim_div(dimension a, dimension b);
 /* a ** (numerator/denominator); false when the exponent is not exact in twelfths or overflows. */
 bool dim_pow(dimension a, int numerator, int denominator, dimension *result);
 
-/* Reads a unit expression such as "kg/m^3", "N*m", "1/s", "mm", "kN/m", "m**2", "MPa*m^0.5".
-   On failure returns false, and *bad / *bad_length name the offending part of `text`. */
+/* Reads a unit expression such as "kg/m^3", "N*m", "1/s", "mm", "kN/m", "m**2", "MPa*m^0.5",
+   "MPa*sqrt(m)". On failure returns false, and *bad / *bad_length name the offending part. */
 bool unit_parse(const char *text, size_t length, unit *result, const char **bad,
                 size_t *bad_length);
 

@@ -172,14 +172,21 @@ static void put_default(const page *p, const stmt *s) {
   fputc('$', p->out);
 }
 
-static void put_parameters(const page *p) {
+/* Parameters, or the fields that a deck gives in place and time. */
+static void put_parameters(const page *p, const char *title, bool fields) {
   static const char *const titles[] = {"symbol", "name", "unit", "default", "bounds", "meaning"};
   const symbol_list *list = &p->law->parameters;
-  if (list->count == 0) return;
-  put_heading(p, "Parameters");
+  int count = 0;
+  for (int i = 0; i < list->count; i++)
+    count += symbol_is_field(list->items[i]) == fields;
+  if (count == 0) return;
+  put_heading(p, title);
   begin_table(p, titles, 6);
   for (int i = 0; i < list->count; i++) {
     const symbol *s = list->items[i];
+    if (symbol_is_field(s) != fields) continue;
+    if (s->component > 0) continue;
+    if (s->component_of) s = s->component_of;
     put_name_cells(p, s->name);
     put_dimension_cell(p, s->dim);
     put_default(p, s->declared);
@@ -244,7 +251,7 @@ static void put_fields(const page *p) {
   begin_table(p, titles, 6);
   for (int i = 0; i < list->count; i++) {
     const symbol *s = list->items[i];
-    if (s->component > 0) continue;
+    if (s->component > 0 || s->rate_of) continue;
     if (s->component_of) s = s->component_of;
     put_name_cells(p, s->name);
     put_dimension_cell(p, s->dim);
@@ -253,6 +260,7 @@ static void put_fields(const page *p) {
     fprintf(p->out,
             s->deviator                ? "deviator %g"
             : s->shape == SHAPE_TENSOR ? "tensor %g"
+            : s->shape == SHAPE_VECTOR ? "vector %g"
                                        : "%g",
             s->kind == SYMBOL_DAMAGE ? 0.0 : s->initial);
     next_cell(p);
@@ -273,6 +281,7 @@ static void put_quantities(const page *p) {
     quantities_read(resolved(p, s->value), read);
     quantities_read(resolved(p, s->when), read);
   }
+  read[QUANTITY_PI] = false; /* a number */
   for (int q = 0; q < QUANTITY_COUNT; q++)
     any |= read[q];
   if (!any) return;
@@ -337,12 +346,22 @@ static void put_flow(const page *p, const stmt *s) {
   fputs(" \\\\ 0 & \\text{otherwise} \\end{cases}", p->out);
 }
 
+/* A differential equation. What it reads of the state is the state itself. */
+static void put_rate(const page *p, const stmt *s) {
+  fputs("\\frac{\\mathrm{d}}{\\mathrm{d}t}\\,", p->out);
+  put_letters(p, s, NO_STEP);
+  fputs(" = ", p->out);
+  put_math(p, s->value);
+}
+
 static void put_equation(const page *p, const stmt *s) {
   const symbol *target = s->symbol;
   if (s->kind == STMT_FUNCTION) {
     put_function(p, s);
   } else if (s->kind == STMT_FLOW) {
     put_flow(p, s);
+  } else if (s->kind == STMT_RATE) {
+    put_rate(p, s);
   } else if (target && target->kind == SYMBOL_DAMAGE) {
     put_damage(p, s);
   } else {
@@ -376,9 +395,11 @@ static void put_statement(const page *p, const stmt *s) {
 static bool is_rule(const stmt *s) {
   switch (s->kind) {
   case STMT_PARAMETER:
+  case STMT_FIELD:
   case STMT_OPTION:
   case STMT_STATE:
   case STMT_NONCONSERVATIVE:
+  case STMT_ACCEPT:
   case STMT_INCLUDE:
     return false;
   default:
@@ -445,7 +466,8 @@ void explain_law(const law *l, explain_form form, const law_choice *choices, int
                  FILE *out) {
   page p = {l, choices, choice_count, form == EXPLAIN_LATEX, out};
   put_head(&p);
-  put_parameters(&p);
+  put_parameters(&p, "Parameters", false);
+  put_parameters(&p, "Fields in place and time", true);
   put_sizes(&p);
   put_options(&p);
   put_fields(&p);
@@ -453,9 +475,10 @@ void explain_law(const law *l, explain_form form, const law_choice *choices, int
   put_section(&p, "Fixed", true);
   put_section(&p, "In each step, in this order", false);
   put_steps(&p);
-  if (l->nonconservative) {
-    fputs("\nNot conservative: ", out);
-    put_text(&p, l->nonconservative);
+  const char *check, *why;
+  for (int k = 0; law_says(l, k, &check, &why); k++) {
+    fprintf(out, "\nAccepted, %s: ", check);
+    put_text(&p, why);
     fputs("\n", out);
   }
   if (p.latex) fputs("\\end{document}\n", out);

@@ -173,12 +173,27 @@ static const char *put_exponent(const char *at, FILE *out) {
   return at;
 }
 
-void math_unit(const char *unit_text, FILE *out) {
-  for (const char *at = unit_text; *at;) {
+static void put_unit(const char *at, const char *end, FILE *out);
+
+/* Behind `sqrt(`; returns what stands behind its end. */
+static const char *put_unit_root(const char *at, const char *end, FILE *out) {
+  const char *to = at;
+  for (int depth = 1; to < end && (depth -= *to == ')') > 0; to++)
+    depth += *to == '(';
+  fputs("\\sqrt{", out);
+  put_unit(at, to, out);
+  fputc('}', out);
+  return to < end ? to + 1 : end;
+}
+
+static void put_unit(const char *at, const char *end, FILE *out) {
+  while (at < end) {
     size_t letters = 0;
     while (isalpha((unsigned char)at[letters]))
       letters++;
-    if (letters > 0) {
+    if (strncmp(at, "sqrt(", 5) == 0) {
+      at = put_unit_root(at + 5, end, out);
+    } else if (letters > 0) {
       fprintf(out, "\\mathrm{%.*s}", (int)letters, at);
       at += letters;
     } else if (strncmp(at, "**", 2) == 0) {
@@ -198,6 +213,10 @@ void math_unit(const char *unit_text, FILE *out) {
       at++;
     }
   }
+}
+
+void math_unit(const char *unit_text, FILE *out) {
+  put_unit(unit_text, unit_text + strlen(unit_text), out);
 }
 
 static bool is_small(double number) {
@@ -241,12 +260,16 @@ typedef enum level {
   HOLDS_ATOM
 } level;
 
+static bool is_call_of(const expr *e, int function) {
+  return e->kind == EXPR_CALL && e->builtin == function;
+}
+
 static level level_of(const expr *e) {
   switch (e->kind) {
   case EXPR_NUMBER:
     return e->unit_text || e->number >= 1e6 || is_small(e->number) ? HOLDS_PRODUCT : HOLDS_ATOM;
   case EXPR_UNARY:
-    return e->unary == OP_COMPONENT ? HOLDS_ATOM : e->unary == OP_NOT ? HOLDS_NOT : HOLDS_SIGN;
+    return e->unary >= OP_COMPONENT ? HOLDS_ATOM : e->unary == OP_NOT ? HOLDS_NOT : HOLDS_SIGN;
   case EXPR_BINARY:
     switch (e->binary) {
     case OP_OR:
@@ -267,6 +290,8 @@ static level level_of(const expr *e) {
     }
   case EXPR_CASES:
     return HOLDS_OR;
+  case EXPR_CALL:
+    return is_call_of(e, FUNCTION_DOT) || is_call_of(e, FUNCTION_CROSS) ? HOLDS_SIGN : HOLDS_ATOM;
   default:
     return HOLDS_ATOM;
   }
@@ -291,8 +316,10 @@ static void put_name(const law *l, const expr *e, FILE *out) {
     return;
   }
   const bool flows = math_has_step(s) && s->rule && s->rule->returned;
+  const bool in_time = math_has_step(s) && s->rule && s->rule->kind == STMT_RATE;
   step_index step = !math_has_step(s) ? NO_STEP
                     : !e->reads_old   ? STEP_NEW
+                    : in_time         ? NO_STEP
                     : flows           ? STEP_FLOWING
                                       : STEP_OLD;
   math_symbol(l, e->name, step, e->indexed, e->primed, out);
@@ -350,10 +377,6 @@ static void put_product(const law *l, const expr *e, FILE *out) {
     }
     at = next;
   }
-}
-
-static bool is_call_of(const expr *e, int function) {
-  return e->kind == EXPR_CALL && e->builtin == function;
 }
 
 /* A base that is a letter alone, or has its own brackets. */
@@ -460,12 +483,22 @@ static void put_derivative(const law *l, const expr *e, FILE *out) {
   put_in_brackets(l, e->arguments[0].value, out);
 }
 
+static void put_vector_product(const law *l, const expr *e, FILE *out) {
+  put(l, e->arguments[0].value, HOLDS_ATOM, out);
+  fputs(is_call_of(e, FUNCTION_DOT) ? " \\cdot " : " \\times ", out);
+  put(l, e->arguments[1].value, HOLDS_ATOM, out);
+}
+
 static void put_call(const law *l, const expr *e, FILE *out) {
   const expr *first = e->argument_count ? e->arguments[0].value : NULL;
   if (is_call_of(e, FUNCTION_PREVIOUS) && first && first->kind == EXPR_NAME) {
     math_symbol(l, first->name, STEP_OLD, first->indexed, first->primed, out);
   } else if (is_call_of(e, FUNCTION_DIFF) && e->argument_count == 2) {
     put_derivative(l, e, out);
+  } else if (is_call_of(e, FUNCTION_VECTOR)) {
+    put_arguments(l, e, out);
+  } else if (is_call_of(e, FUNCTION_DOT) || is_call_of(e, FUNCTION_CROSS)) {
+    put_vector_product(l, e, out);
   } else {
     put_function(l, e, out);
   }
@@ -474,7 +507,10 @@ static void put_call(const law *l, const expr *e, FILE *out) {
 static void put_component(const law *l, const expr *e, FILE *out) {
   fputs("{", out);
   put(l, e->left, HOLDS_ATOM, out);
-  fprintf(out, "}_{%c%c}", tensor_axis(e->component, 0), tensor_axis(e->component, 1));
+  if (e->unary == OP_AXIS)
+    fprintf(out, "}_{%c}", vector_axis(e->component));
+  else
+    fprintf(out, "}_{%c%c}", tensor_axis(e->component, 0), tensor_axis(e->component, 1));
 }
 
 static void put_bare(const law *l, const expr *e, FILE *out) {
@@ -487,7 +523,7 @@ static void put_bare(const law *l, const expr *e, FILE *out) {
     put_name(l, e, out);
     break;
   case EXPR_UNARY:
-    if (e->unary == OP_COMPONENT) {
+    if (e->unary >= OP_COMPONENT) {
       put_component(l, e, out);
       break;
     }

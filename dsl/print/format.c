@@ -278,6 +278,7 @@ static void align_marks(layout *f, mark *marks, int count) {
 typedef enum table_kind {
   NO_TABLE,
   PARAMETERS,
+  GIVEN_FIELDS,
   CONSTANTS,
   OPTIONS,
   FIELDS,
@@ -291,6 +292,8 @@ static table_kind table_of(int code) {
   switch (code) {
   case T_PARAMETER:
     return PARAMETERS;
+  case T_FIELD:
+    return GIVEN_FIELDS;
   case T_CONSTANT:
     return CONSTANTS;
   case T_OPTION:

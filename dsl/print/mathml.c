@@ -67,6 +67,10 @@ static void put_items(reader *r, const char *const *stops, FILE *out);
   X("sin", "mi", "sin")                                                                            \
   X("cos", "mi", "cos")                                                                            \
   X("tan", "mi", "tan")                                                                            \
+  X("arcsin", "mi", "arcsin")                                                                      \
+  X("arccos", "mi", "arccos")                                                                      \
+  X("sinh", "mi", "sinh")                                                                          \
+  X("cosh", "mi", "cosh")                                                                          \
   X("tanh", "mi", "tanh")                                                                          \
   X("sum", "mo", "∑")                                                                              \
   X("cdot", "mo", "·")                                                                             \

@@ -74,6 +74,55 @@ static void hint_unit(checker *ck, const expr *a, const expr *b, value va, value
     diag_hint(ck->d, "give the number its unit: `%g [%s]`", bare->number, text);
 }
 
+/* --- the parameter without a unit ------------------------------------------------------------- */
+
+/* What an expression is made of, by names: the first parameter of a large bare number. */
+typedef struct cause {
+  entry *parameter;
+  bool said; /* it is one that has been blamed */
+  int looks;
+} cause;
+
+static void look_for_cause(const expr *e, cause *c) {
+  enum { MOST_LOOKS = 1000 };
+  static const double large = 1e3;
+  if (!e || c->parameter || c->looks++ > MOST_LOOKS) return;
+  const symbol *s = e->kind == EXPR_NAME ? e->symbol : NULL;
+  if (s && s->kind == SYMBOL_PARAMETER) {
+    const expr *given = s->declared->value;
+    if (!given || given->kind != EXPR_NUMBER || given->unit_text || !(given->number >= large))
+      return;
+    c->parameter = entry_of(s);
+    c->said = c->parameter->blamed;
+  }
+  if (s && (s->kind == SYMBOL_CONSTANT || s->kind == SYMBOL_DEFINED) && s->rule)
+    look_for_cause(s->rule->value, c);
+  look_for_cause(e->left, c);
+  look_for_cause(e->right, c);
+  for (int k = 0; k < e->argument_count; k++)
+    look_for_cause(e->arguments[k].value, c);
+  for (int k = 0; k < e->case_count; k++)
+    look_for_cause(e->cases[k].value, c);
+}
+
+/* Where a unit of stress is missing in `e`, and a parameter in it is a large bare number, the
+   parameter is named, once, and not what it makes wrong. */
+static bool blame(checker *ck, const expr *e, dimension has, dimension needs) {
+  const dimension stress = dimension_of("Pa");
+  cause c = {NULL, false, 0};
+  if (!dim_equal(dim_div(needs, has), stress)) return false;
+  look_for_cause(e, &c);
+  if (!c.parameter || c.said) return c.said;
+  const symbol *s = &c.parameter->symbol;
+  c.parameter->blamed = true;
+  complain(ck, DIAG_UNITS, s->declared->value->where,
+           "`%s` has no unit, and what is made of it lacks that of a stress", s->name);
+  diag_hint(ck->d, "give the number its unit: `%s [Pa]`, and its bounds theirs",
+            written(ck, s->declared->value, "..."));
+  diag_note(ck->d, e->where, "it is missed here");
+  return true;
+}
+
 value agree(checker *ck, span where, expr *a, value va, expr *b, value vb, const char *deed) {
   if (va.broken || vb.broken) return BROKEN;
   if (va.zero || va.unknown) {
@@ -92,6 +141,7 @@ value agree(checker *ck, span where, expr *a, value va, expr *b, value vb, const
     return BROKEN;
   }
   if (va.shape != SHAPE_LOGICAL && !dim_equal(va.dim, vb.dim)) {
+    if (blame(ck, a, va.dim, vb.dim) || blame(ck, b, vb.dim, va.dim)) return BROKEN;
     complain(ck, DIAG_UNITS, where, "%s is %s but %s is %s, so they cannot be %s", first,
              describe(ck, va.dim), second, describe(ck, vb.dim), deed);
     hint_unit(ck, a, b, va, vb);
@@ -112,10 +162,12 @@ bool expect(checker *ck, expr *e, value v, dimension dim, shape s, const char *w
     complain(ck, DIAG_SHAPE, e->where, "%s must be %s, but this is %s", what, shape_words(s),
              shape_words(v.shape));
     if (s == SHAPE_SCALAR && (v.shape == SHAPE_BENDING || v.shape == SHAPE_VECTOR))
-      diag_hint(ck->d, "take its magnitude: `norm(...)`");
+      diag_hint(ck->d, "take its magnitude: `norm(...)`%s",
+                v.shape == SHAPE_VECTOR ? ", a component, such as `v[x]`, or `dot(v, w)`" : "");
     return false;
   }
   if (dim_equal(v.dim, dim)) return true;
+  if (blame(ck, e, v.dim, dim)) return false;
   complain(ck, DIAG_UNITS, e->where, "%s must be %s, but this is %s", what, describe(ck, dim),
            describe(ck, v.dim));
   if (is_bare_number(e)) hint_unit(ck, e, e, (value){.dim = dim}, (value){.dim = dim});

@@ -43,10 +43,14 @@ const char *builtin_laws(int kinds) {
     return "but slip";
   case IN_LATTICE | IN_CRACK:
     return "but slip, crack";
+  case IN_ALL:
+    return "all";
   case IN_CONTINUUM:
     return "continuum";
   case IN_CRACK:
     return "crack";
+  case IN_ANY | IN_CONTINUUM:
+    return "but crack";
   default:
     return "lattice";
   }

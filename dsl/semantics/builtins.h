@@ -18,7 +18,8 @@ enum {
   IN_CRACK = 32,
   IN_BOND = IN_CENTRAL | IN_MICROPOLAR | IN_SLIP,
   IN_LATTICE = IN_CENTRAL | IN_MICROPOLAR | IN_STATE,
-  IN_ANY = 15
+  IN_ANY = 15, /* bonds and families */
+  IN_ALL = IN_ANY | IN_CONTINUUM | IN_CRACK
 };
 
 /* Whether it is the same at all times. */
@@ -28,6 +29,8 @@ enum { MOVES, FIXED };
 /* X(code, name, unit, shape, place, laws that may read it, does it change in time,
      a line of a law that reads it, meaning) */
 #define BUILTIN_QUANTITIES(X)                                                                      \
+  X(PI, "pi", "1", SCALAR, NOTHING, IN_ALL, FIXED, "x = sin(pi*stretch)",                          \
+    "circumference of a circle over its diameter: 3.141592653589793")                              \
   X(STRETCH, "stretch", "1", SCALAR, BOND, IN_LATTICE, MOVES, "x = stretch**2",                    \
     "change of bond length over reference length")                                                 \
   X(STRETCH_RATE, "stretch_rate", "1/s", SCALAR, BOND, IN_LATTICE, MOVES,                          \
@@ -73,6 +76,8 @@ enum { MOVES, FIXED };
     "how far the place has moved across the bar, as its tangent is now")                           \
   X(SLIP_RATE, "slip_rate", "m/s", SCALAR, BOND, IN_SLIP, MOVES, "x = slip_rate/1 [m/s]",          \
     "time derivative of the slip while the gap is small against s")                                \
+  X(DT, "dt", "s", SCALAR, BODY, IN_ANY | IN_CONTINUUM, MOVES, "x = dt/1 [s]",                     \
+    "by how much the time of the deck has gone on since the last step")                            \
   X(STRAIN, "strain", "1", TENSOR, POINT, IN_CONTINUUM, MOVES, "x = trace(strain)",                \
     "small strain of the point; in plane stress the third one leaves no stress")                   \
   X(STRAIN_RATE, "strain_rate", "1/s", TENSOR, POINT, IN_CONTINUUM, MOVES,                         \
@@ -80,9 +85,9 @@ enum { MOVES, FIXED };
   X(CELL_SIZE, "h", "m", SCALAR, POINT, IN_CONTINUUM, FIXED, "x = h/1 [mm]",                       \
     "size of the cell that the point stands for: in the plane the root of its area, of 3 "         \
     "nodes of twice that")                                                                         \
-  X(K_I, "K_I", "Pa*m^(1/2)", SCALAR, TIP, IN_CRACK, MOVES, "x = K_I/K_Ic",                        \
+  X(K_I, "K_I", "Pa*sqrt(m)", SCALAR, TIP, IN_CRACK, MOVES, "x = K_I/K_Ic",                        \
     "stress intensity factor of mode I: opening")                                                  \
-  X(K_II, "K_II", "Pa*m^(1/2)", SCALAR, TIP, IN_CRACK, MOVES, "x = K_II/K_Ic",                     \
+  X(K_II, "K_II", "Pa*sqrt(m)", SCALAR, TIP, IN_CRACK, MOVES, "x = K_II/K_Ic",                     \
     "stress intensity factor of mode II: sliding")                                                 \
   X(ENERGY_RELEASE, "energy_release", "N/m", SCALAR, TIP, IN_CRACK, MOVES,                         \
     "x = energy_release/80 [N/m]", "energy release rate of the tip as it runs")                    \
@@ -111,9 +116,18 @@ enum { MOVES, FIXED };
     "exponential of a pure number")                                                                \
   X(LOG, "log", 1, 1, pure, ONE(pl_log), "\\ln", "x = log(1 + stretch)",                           \
     "natural logarithm of a pure number")                                                          \
+  X(LOG10, "log10", 1, 1, pure, ONE(pl_log10), "\\log_{10}", "x = log10(1 + stretch)",             \
+    "logarithm of a pure number to the base 10")                                                   \
   X(SIN, "sin", 1, 1, pure, ONE(pl_sin), "\\sin", "x = sin(norm(theta_i))", "sine")                \
   X(COS, "cos", 1, 1, pure, ONE(pl_cos), "\\cos", "x = cos(30 [deg])", "cosine")                   \
   X(TAN, "tan", 1, 1, pure, ONE(pl_tan), "\\tan", "x = tan(30 [deg])", "tangent")                  \
+  X(ASIN, "asin", 1, 1, pure, ONE(pl_asin), "\\arcsin", "x = asin(min(stretch, 1))",               \
+    "angle from -pi/2 to pi/2 whose sine is the argument")                                         \
+  X(ACOS, "acos", 1, 1, pure, ONE(pl_acos), "\\arccos", "x = acos(min(stretch, 1))",               \
+    "angle from 0 to pi whose cosine is the argument")                                             \
+  X(SINH, "sinh", 1, 1, pure, ONE(pl_sinh), "\\sinh", "x = sinh(stretch/S_t)", "hyperbolic sine")  \
+  X(COSH, "cosh", 1, 1, pure, ONE(pl_cosh), "\\cosh", "x = cosh(stretch/S_t)",                     \
+    "hyperbolic cosine")                                                                           \
   X(TANH, "tanh", 1, 1, pure, ONE(pl_tanh), "\\tanh", "x = tanh(stretch/S_t)",                     \
     "hyperbolic tangent")                                                                          \
   X(ATAN2, "atan2", 2, 2, arctangent, NO_VALUE, "\\operatorname{atan2}",                           \
@@ -170,6 +184,15 @@ enum { MOVES, FIXED };
   X(PRODUCT, "product", 2, 2, product, NO_VALUE, "\\operatorname{product}",                        \
     "x = trace(product(fit(stretch), fit(stretch)))",                                              \
     "symmetric product (a b + b a)/2 of two tensors")                                              \
+  X(VECTOR, LAW_VECTOR, 2, 3, vector_of_components, NO_VALUE, "", "x = norm(vector(1, 0, 0))",      \
+    "vector of its components x, y and, where it is not 0, z; `(1, 0, 0)` is the same")             \
+  X(DOT, "dot", 2, 2, dot, NO_VALUE, "", "x = dot(direction, (1, 0, 0))",                          \
+    "scalar product of two vectors")                                                               \
+  X(CROSS, "cross", 2, 2, cross, NO_VALUE, "", "x = norm(cross(direction, (1, 0, 0)))",            \
+    "vector product of two vectors")                                                               \
+  X(DYAD, "dyad", 2, 2, dyad, NO_VALUE, "\\operatorname{dyad}",                                    \
+    "x = trace(dyad((1, 0), (0, 1)))",                                                             \
+    "symmetric tensor (a b + b a)/2 of two vectors")                                               \
   X(TENSOR, "tensor", 4, 6, tensor_of_components, NO_VALUE, "\\operatorname{tensor}",              \
     "x = trace(tensor(1, 1, 1, 0))",                                                               \
     "symmetric tensor of its components xx, yy, zz, xy and, where they are not 0, yz, xz")

@@ -258,12 +258,19 @@ static bool needs_state_law(checker *ck, const expr *e) {
 
 static value family_argument(checker *ck, expr *e, bool indexed_too) {
   if (!needs_state_law(ck, e)) return BROKEN;
+  const char *outer = ck->of_whole_family;
+  ck->of_whole_family = operand(e, 0) && operand(e, 0)->kind != EXPR_NAME ? e->name : NULL;
   value v = check_family(ck, operand(e, 0));
+  const bool unnamed = ck->of_whole_family != NULL;
+  ck->of_whole_family = outer;
   if (v.broken || v.unknown) return v;
   if (v.whole || (indexed_too && varies_in_family(v))) return v;
   complain(ck, DIAG_PLACEMENT, operand(e, 0)->where, "`%s` takes a family's values as a whole",
            e->name);
-  diag_hint(ck->d, "write the name without [j]");
+  if (unnamed)
+    diag_hint(ck->d, HINT_NAME_THE_FAMILY, e->name);
+  else
+    diag_hint(ck->d, "write the name without [j]");
   return BROKEN;
 }
 
@@ -419,6 +426,58 @@ static value tensor_of_components(checker *ck, expr *e) {
   return all;
 }
 
+/* --- vectors ---------------------------------------------------------------------------------- */
+
+/* x, y and, where it is not 0, z. */
+static value vector_of_components(checker *ck, expr *e) {
+  value all = {.zero = true};
+  for (int i = 0; i < e->argument_count; i++) {
+    const value v = check_number(ck, operand(e, i));
+    all = agree(ck, operand(e, i)->where, operand(e, 0), all, operand(e, i), v,
+                "components of one vector");
+    if (all.broken) return BROKEN;
+    if (v.zero || v.unknown || v.shape == SHAPE_SCALAR) continue;
+    complain(ck, DIAG_SHAPE, operand(e, i)->where,
+             "a component of a vector must be a number, but this is %s", shape_words(v.shape));
+    return BROKEN;
+  }
+  return with_shape(all, all.dim, SHAPE_VECTOR);
+}
+
+/* Argument `i`, which must be a vector. */
+static value vector_argument(checker *ck, expr *e, int i) {
+  expr *of = operand(e, i);
+  const value v = check_number(ck, of);
+  if (v.broken || v.unknown || v.shape == SHAPE_VECTOR) return v;
+  complain(ck, DIAG_SHAPE, of->where, "`%s` takes two vectors, but %s is %s", e->name,
+           quoted(ck, of, "this"), shape_words(v.shape));
+  if (v.shape == SHAPE_SCALAR)
+    diag_hint(ck->d, "a vector is a parameter such as `fibre = (1, 0, 0)`, `direction`, or "
+                     "`(x, y, z)` of three numbers");
+  else if (e->builtin == FUNCTION_DOT)
+    diag_hint(ck->d, "for the scalar product of tensors or bending quantities write `a : b`");
+  return BROKEN;
+}
+
+static value of_two_vectors(checker *ck, expr *e, shape s) {
+  const value a = vector_argument(ck, e, 0), b = vector_argument(ck, e, 1);
+  if (a.broken || b.broken) return BROKEN;
+  value v = {.place = place_join(ck, a.place, b.place), .unknown = a.unknown || b.unknown};
+  return v.unknown ? v : with_shape(v, dim_mul(a.dim, b.dim), s);
+}
+
+static value dot(checker *ck, expr *e) {
+  return of_two_vectors(ck, e, SHAPE_SCALAR);
+}
+
+static value cross(checker *ck, expr *e) {
+  return of_two_vectors(ck, e, SHAPE_VECTOR);
+}
+
+static value dyad(checker *ck, expr *e) {
+  return has_tensors(ck, e) ? of_two_vectors(ck, e, SHAPE_TENSOR) : BROKEN;
+}
+
 static value (*const calls[FUNCTION_COUNT])(checker *ck, expr *e) = {
 #define X(code, name, least, most, check, ...) check,
     BUILTIN_FUNCTIONS(X)
@@ -506,16 +565,22 @@ static value check_own_function(checker *ck, expr *e, entry *function) {
 /* What people call functions elsewhere, and how the same is written here. X(name, hint) */
 #define FOREIGN_FUNCTIONS(X)                                                                       \
   X("ln", "the natural logarithm is `log(x)`")                                                     \
-  X("log10", "write `log(x)/log(10)`")                                                             \
   X("pow", "powers are written `x**p`")                                                            \
   X("fabs", "the absolute value is `abs(x)`")                                                      \
   X("macaulay", "write `positive_part(x)`")                                                        \
   X("sgn", "write `sign(x)`")                                                                      \
   X("atan", "write `atan2(x, 1)`")                                                                 \
+  X("arctan", "write `atan2(x, 1)`")                                                               \
+  X("arcsin", "write `asin(x)`")                                                                   \
+  X("arccos", "write `acos(x)`")                                                                   \
+  X("asinh", "write `log(x + sqrt(x**2 + 1))`")                                                    \
+  X("acosh", "write `log(x + sqrt(x**2 - 1))`")                                                    \
+  X("atanh", "write `log((1 + x)/(1 - x))/2`")                                                     \
+  X("log2", "write `log(x)/log(2)`")                                                               \
   X("if", "choose with cases: | value when guard | value otherwise")                               \
   X("heaviside", "choose with cases: | 1 when x > 0 | 0 otherwise")                                \
   X("old", "write `previous(x)`")                                                                  \
-  X("dot", "write `a : b`") X("clamp", "write `min(max(x, low), high)`")
+  X("clamp", "write `min(max(x, low), high)`")
 
 static const char *hint_for_foreign(const char *name) {
 #define X(foreign, hint)                                                                           \

@@ -26,11 +26,14 @@ typedef struct entry {
   int declared_at; /* position of the statement; -1 for built-ins */
   int rule_at;     /* STATE, DAMAGE: position of the rule; -1 without one */
   value type;
-  bool known;              /* type is valid */
-  bool infer;              /* STATE from a bare 0: unit and shape come from its rule */
-  bool in_use;             /* FUNCTION: its body is being checked */
-  bool in_cycle;           /* a cycle through it was reported */
-  bool refused;            /* a result that this kind of law does not have */
+  bool known;    /* type is valid */
+  bool infer;    /* STATE from a bare 0: unit and shape come from its rule */
+  bool in_use;   /* FUNCTION: its body is being checked */
+  bool in_cycle; /* a cycle through it was reported */
+  bool refused;  /* a result that this kind of law does not have */
+  /* QUANTITY: the law declares its name; PARAMETER: it lacks its unit. Said once: of what reads it
+     nothing more is said. */
+  bool blamed;
   struct entry *arguments; /* FUNCTION: [declared->word_count] */
   struct entry *next;      /* of the same hash */
   int visited;             /* mark of the last search */
@@ -76,10 +79,15 @@ typedef struct checker {
   bool reads_poisson; /* stress or strain of a family: its third direction follows from `nu` */
   span call_where;    /* the outermost call */
   int depth, expansions, searches, search_mark;
+  int rest_at;                 /* the line `rest stretch`, where law->rest is given */
+  const char *of_whole_family; /* the function of a family's values whose argument is no name */
   bool too_deep, in_reduction;
   bool holes;          /* some `?` was met */
   bool result_refused; /* some result was, so say nothing about missing ones */
 } checker;
+/* %s: the function. */
+#define HINT_NAME_THE_FAMILY                                                                       \
+  "give what stands in the brackets a name of its own above, `x[j] = ...`, and write `%s(x)`"
 
 static inline entry *entry_of(const symbol *s) {
   return (entry *)(void *)(symbol *)(size_t)s;

@@ -8,18 +8,21 @@
 /* Words of the deck's material group, which a law's parameters and options stand beside. */
 static const char *const deck_words[] = {"name", "model", "lattice"};
 
+/* All that the law makes of the name afterwards is not looked at. */
 static bool refuse_reserved(checker *ck, const char *name, span where) {
   if (strcmp(name, "j") == 0) {
     complain(ck, DIAG_RESERVED_NAME, where, "`j` is reserved for the neighbour, as in x[j]");
     return true;
   }
-  const entry *found = names_find(ck, SPACE_QUANTITIES, name);
+  entry *found = names_find(ck, SPACE_QUANTITIES, name);
   if (!found || found->declared_at >= 0) return false;
+  found->blamed = true;
   if (found->symbol.kind == SYMBOL_QUANTITY)
     complain(ck, DIAG_RESERVED_NAME, where, "`%s` is built in: %s", name, found->symbol.doc);
   else
     complain(ck, DIAG_RESERVED_NAME, where, "`%s` is built in: a setting of the lattice", name);
-  diag_hint(ck->d, "choose another name");
+  const bool pi = found->symbol.kind == SYMBOL_QUANTITY && found->symbol.index == QUANTITY_PI;
+  diag_hint(ck->d, pi ? "leave this line out, or choose another name" : "choose another name");
   return true;
 }
 
@@ -57,8 +60,9 @@ static void append(checker *ck, symbol_list *list, entry *e) {
   list->items[list->count++] = &e->symbol;
 }
 
-/* Namelists do not know case, so names a deck sets must differ in more than case. */
-static void declare_in_deck(checker *ck, const stmt *s) {
+/* Namelists do not know case, so names a deck sets must differ in more than case. Enters `what`;
+   NULL after a message. */
+static entry *declare_in_deck(checker *ck, const stmt *s, symbol what) {
   char *key = arena_text(ck->memory, s->name, strlen(s->name));
   for (char *c = key; *c; c++)
     *c = (char)tolower((unsigned char)*c);
@@ -69,29 +73,77 @@ static void declare_in_deck(checker *ck, const stmt *s) {
       diag_hint(ck->d, "choose another name: decks do not know case");
     }
   const entry *first = names_find(ck, SPACE_DECK, key);
-  if (first) {
+  if (first && first->symbol.component_of) {
+    complain(ck, DIAG_DUPLICATE_NAME, s->name_where, "`%s` is the component %c of the vector `%s`",
+             s->name, vector_axis(first->symbol.component), first->symbol.component_of->name);
+    diag_note(ck->d, first->symbol.where, "`%s` is declared here",
+              first->symbol.component_of->name);
+  } else if (first) {
     complain(ck, DIAG_DUPLICATE_NAME, s->name_where, "`%s` and `%s` differ only in case", s->name,
              first->symbol.name);
     diag_note(ck->d, first->symbol.where, "`%s` is declared here", first->symbol.name);
     diag_hint(ck->d, "choose another name: decks do not know case");
   } else {
-    names_add(ck, SPACE_DECK, key, (symbol){.name = s->name, .where = s->name_where});
+    return names_add(ck, SPACE_DECK, key, what);
+  }
+  return NULL;
+}
+
+/* A line of its own for what the deck calls fibre_x. */
+static stmt *component_line(checker *ck, const stmt *s, int k) {
+  stmt *line = arena_alloc(ck->memory, sizeof *line);
+  expr *zero = arena_alloc(ck->memory, sizeof *zero);
+  *zero = (expr){.kind = EXPR_NUMBER, .where = s->value->where, .builtin = -1};
+  *line = *s;
+  line->name = arena_printf(ck->memory, "%s_%c", s->name, vector_axis(k));
+  line->value = k < s->value->argument_count ? s->value->arguments[k].value : zero;
+  line->next = NULL;
+  return line;
+}
+
+/* Decks, kernels and checks know numbers only: the components of a vector are parameters of their
+   own. The name itself keeps the index of the first. */
+static void declare_components(checker *ck, const stmt *s, entry *whole) {
+  whole->symbol.index = ck->law->parameters.count;
+  for (int k = 0; k < VECTOR_COMPONENT_COUNT; k++) {
+    stmt *line = component_line(ck, s, k);
+    const char *doc = whole->symbol.doc;
+    const symbol what = {.kind = SYMBOL_PARAMETER,
+                         .name = line->name,
+                         .where = s->name_where,
+                         .declared = line,
+                         .component_of = &whole->symbol,
+                         .component = k,
+                         .doc =
+                             doc ? arena_printf(ck->memory, "%s, %c", doc, vector_axis(k)) : NULL};
+    entry *e = declare_in_deck(ck, line, what);
+    if (!e) { /* the law is refused */
+      e = arena_alloc(ck->memory, sizeof *e);
+      *e = (entry){.symbol = what, .key = line->name, .declared_at = ck->now, .rule_at = -1};
+    }
+    line->symbol = &e->symbol;
+    append(ck, &ck->law->parameters, e);
   }
 }
 
 static void declare_parameter(checker *ck, stmt *s) {
   entry *e = declare(ck, SYMBOL_PARAMETER, s);
   if (!e) return;
+  if (expr_is_vector(s->value)) {
+    declare_in_deck(ck, s, (symbol){.name = s->name, .where = s->name_where});
+    declare_components(ck, s, e);
+    return;
+  }
   append(ck, &ck->law->parameters, e);
   if (strcmp(s->name, "rho") == 0) ck->law->rho = &e->symbol;
-  declare_in_deck(ck, s);
+  declare_in_deck(ck, s, (symbol){.name = s->name, .where = s->name_where});
 }
 
 static void declare_option(checker *ck, stmt *s) {
   entry *e = declare(ck, SYMBOL_OPTION, s);
   if (!e) return;
   append(ck, &ck->law->options, e);
-  declare_in_deck(ck, s);
+  declare_in_deck(ck, s, (symbol){.name = s->name, .where = s->name_where});
   for (int i = 0; i < s->word_count; i++) {
     if (names_find_choice(ck, &e->symbol, s->words[i]))
       complain(ck, DIAG_OPTION, s->word_where[i], "option `%s` has the choice `%s` twice", s->name,
@@ -185,6 +237,8 @@ static void set_rule(checker *ck, stmt *s, entry *field) {
     if (field->symbol.rule->kind == STMT_DAMAGE)
       diag_hint(ck->d, "a damage starts at 0: declare it without a value, `damage %s on ...`",
                 s->name);
+    else if ((field->symbol.rule->kind == STMT_RATE) != (s->kind == STMT_RATE))
+      diag_hint(ck->d, "a state has a rate or a rule, not both: remove the one or the other");
     else
       diag_hint(ck->d, "join them in one rule with cases: | value when guard");
     return;
@@ -206,7 +260,52 @@ static void declare_flow(checker *ck, stmt *s) {
             is_single(ck) ? placement_name(natural_place(ck)) : "neighbour");
 }
 
+/* Of bonds and families; a crack has no stretch, and what slips is measured by its slip. */
+static bool may_have_rest(checker *ck, const stmt *s) {
+  const law_kind kind = ck->tree->law;
+  const bool here = (builtin_quantities[QUANTITY_STRETCH].kinds & (1 << kind)) != 0;
+  const bool named = here && strcmp(s->rest_of, LAW_RESTING) == 0;
+  if (named && (is_single(ck) || s->indexed)) return true;
+  if (!here)
+    complain(ck, DIAG_LAW_KIND, s->name_where, "a %s law has no `rest stretch`", law_word(ck));
+  else if (named)
+    complain(ck, DIAG_PLACEMENT, s->name_where, "each neighbour has a rest stretch");
+  else
+    complain(ck, DIAG_LAW_KIND, s->name_where, "there is a rest state of `%s` alone, not of `%s`",
+             LAW_RESTING, s->rest_of);
+  if (here) diag_hint(ck->d, "its form is `rest stretch%s = ...`", is_single(ck) ? "" : "[j]");
+  return false;
+}
+
+static void declare_rate(checker *ck, stmt *s) {
+  entry *field = s->name ? names_find(ck, SPACE_QUANTITIES, s->name) : NULL;
+  const symbol_kind kind = field ? field->symbol.kind : SYMBOL_DEFINED;
+  const bool refused = ck->tree->law == LAW_CRACK || kind == SYMBOL_DAMAGE;
+  if (field && refused && !field->symbol.rule) { /* say no more of it */
+    field->symbol.rule = s;
+    field->rule_at = ck->now;
+  }
+  if (ck->tree->law == LAW_CRACK) {
+    complain(ck, DIAG_LAW_KIND, s->name_where, "the states of a tip have no rates");
+    diag_hint(ck->d, "a tip is looked at now and then: write its rule, `%s = ...`", s->name);
+  } else if (kind == SYMBOL_STATE) {
+    set_rule(ck, s, field);
+  } else if (kind == SYMBOL_DAMAGE) {
+    complain(ck, DIAG_LAW_KIND, s->name_where, "`%s` is a damage, which has no rate", s->name);
+    diag_hint(ck->d,
+              "let a state have the rate, and make the damage of it: `rate x = ...`, then "
+              "`damage %s = x`",
+              s->name);
+  } else {
+    complain(ck, DIAG_UNKNOWN_NAME, s->name_where, "rate needs a state, but `%s` is not one",
+             s->name);
+    diag_hint(ck->d, "declare it above: `state %s on %s = 0`", s->name,
+              is_single(ck) ? placement_name(natural_place(ck)) : "neighbour");
+  }
+}
+
 static void declare_definition(checker *ck, stmt *s) {
+  if (s->rest_of && !may_have_rest(ck, s)) return;
   entry *found = s->name ? names_find(ck, SPACE_QUANTITIES, s->name) : NULL;
   if (found && (found->symbol.kind == SYMBOL_STATE || found->symbol.kind == SYMBOL_DAMAGE)) {
     set_rule(ck, s, found);
@@ -215,6 +314,7 @@ static void declare_definition(checker *ck, stmt *s) {
   entry *e = declare(ck, SYMBOL_DEFINED, s);
   if (e) {
     e->symbol.rule = s;
+    if (s->rest_of) ck->law->rest = &e->symbol, ck->rest_at = ck->now;
   } else if (found && found->symbol.kind == SYMBOL_DEFINED) {
     diag_hint(ck->d, "a name has one rule: join them with cases, | value when guard");
   }
@@ -400,6 +500,52 @@ static void declare_nonconservative(checker *ck, stmt *s) {
   ck->law->nonconservative = s->text ? s->text : "";
 }
 
+static bool find_check(const char *name, diag_code *code) {
+  for (int k = 0; k < DIAG_COUNT; k++)
+    if (strcmp(name, diag_name((diag_code)k)) == 0) {
+      *code = (diag_code)k;
+      return true;
+    }
+  return false;
+}
+
+static void refuse_accepted(checker *ck, const stmt *s, bool found) {
+  const char *checks[DIAG_COUNT];
+  int count = 0;
+  for (int k = 0; k < DIAG_COUNT; k++)
+    if (diag_may_be_accepted((diag_code)k)) checks[count++] = diag_name((diag_code)k);
+  if (found)
+    complain(ck, DIAG_LAW_KIND, s->name_where,
+             "`%s` is no check of mechanics: what it finds cannot be accepted", s->name);
+  else
+    complain(ck, DIAG_LAW_KIND, s->name_where, "there is no check `%s`", s->name);
+  const char *nearest = found ? NULL : nearest_name(s->name, checks, count);
+  if (nearest)
+    diag_hint(ck->d, "did you mean `%s`?", nearest);
+  else
+    diag_hint(ck->d, "the code in brackets behind a message of mechanics, such as `patch`");
+}
+
+/* accept CHECK "why" */
+static void declare_accepted(checker *ck, stmt *s) {
+  diag_code code = DIAG_COUNT;
+  if (strcmp(s->name, "nonconservative") == 0) {
+    declare_nonconservative(ck, s);
+    return;
+  }
+  const bool found = find_check(s->name, &code);
+  if (!found || !diag_may_be_accepted(code)) {
+    refuse_accepted(ck, s, found);
+    return;
+  }
+  law *l = ck->law;
+  if (law_accepts(l, code)) {
+    complain(ck, DIAG_DUPLICATE_NAME, s->name_where, "`%s` is accepted twice", s->name);
+    return;
+  }
+  l->waivers[l->waiver_count++] = (law_waiver){code, s->text, s->where};
+}
+
 /* What a deck sets has its bounds in its own line; of what it does not, only cells have a size. */
 static void declare_required(checker *ck, const stmt *s) {
   if (!s->name) return;
@@ -422,6 +568,7 @@ static void declare_required(checker *ck, const stmt *s) {
 static void declare_one(checker *ck, stmt *s) {
   switch (s->kind) {
   case STMT_PARAMETER:
+  case STMT_FIELD:
     declare_parameter(ck, s);
     break;
   case STMT_OPTION:
@@ -439,6 +586,9 @@ static void declare_one(checker *ck, stmt *s) {
     break;
   case STMT_FLOW:
     declare_flow(ck, s);
+    break;
+  case STMT_RATE:
+    declare_rate(ck, s);
     break;
   case STMT_FORCE:
   case STMT_FORCE_STATE:
@@ -462,6 +612,9 @@ static void declare_one(checker *ck, stmt *s) {
     break;
   case STMT_NONCONSERVATIVE:
     declare_nonconservative(ck, s);
+    break;
+  case STMT_ACCEPT:
+    declare_accepted(ck, s);
     break;
   case STMT_REQUIRE:
     declare_required(ck, s);

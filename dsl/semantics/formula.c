@@ -18,9 +18,11 @@ enum { MOST_STEPS = 500, LARGEST_EXPONENT = 16 };
   X(ADD, a + b)                                                                                    \
   X(SUB, a - b)                                                                                    \
   X(MUL, a *b)                                                                                     \
-  X(DIV, a / b) X(POW, pl_pow(a, b)) X(NEG, -a) X(ONE, s->of_one(a)) X(TWO, s->of_two(a, b))       \
-      X(LT, a < b) X(LE, a <= b) X(EQ, a == b) X(AND, (a != 0) & (b != 0))                         \
-          X(OR, (a != 0) | (b != 0)) X(NOT, a == 0) X(SELECT, a != 0 ? b : c)
+  X(DIV, a / b)                                                                                    \
+  X(POW, pl_pow(a, b))                                                                             \
+  X(NEG, -a) X(ONE, s->of_one(a)) X(TWO, s->of_two(a, b)) X(LT, a < b) X(LE, a <= b) X(EQ, a == b) \
+      X(AND, (a != 0) & (b != 0)) X(OR, (a != 0) | (b != 0)) X(NOT, a == 0)                        \
+          X(SELECT, a != 0 ? b : c)
 
 typedef enum step_code {
 #define X(code, value) STEP_##code,
@@ -181,6 +183,7 @@ static int flatten_number(flattening *t, const expr *e) {
 }
 
 static int flatten_name(flattening *t, const expr *e) {
+  if (e->symbol->kind == SYMBOL_QUANTITY) return number(t, 2 * PL_HALF_PI_HI); /* pi */
   t->f->reads |= 1u << e->symbol->index;
   return add_step(t, (step){.code = STEP_VARIABLE, .a = e->symbol->index});
 }
@@ -293,6 +296,9 @@ static bool stands_alone(checker *ck, const expr *e) {
 /* --- reading ---------------------------------------------------------------------------------- */
 
 static void enter_variables(checker *ck, const formula_scope *scope) {
+  ck->now = -1; /* above the formula */
+  names_add_quantity(ck, QUANTITY_PI);
+  ck->now = 0;
   for (int k = 0; k < scope->count; k++) {
     const formula_variable *v = &scope->variables[k];
     if (!*v->name) continue;

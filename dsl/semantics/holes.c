@@ -136,6 +136,7 @@ static void spread_call(settling *t, const expr *e) {
     want(t, first, e->dim, e->shape);
     return;
   case FUNCTION_TENSOR:
+  case FUNCTION_VECTOR:
     want_all(t, e, e->dim, SHAPE_SCALAR);
     return;
   case FUNCTION_PRINCIPAL:
@@ -146,9 +147,14 @@ static void spread_call(settling *t, const expr *e) {
     return;
   case FUNCTION_EXP:
   case FUNCTION_LOG:
+  case FUNCTION_LOG10:
   case FUNCTION_SIN:
   case FUNCTION_COS:
   case FUNCTION_TAN:
+  case FUNCTION_ASIN:
+  case FUNCTION_ACOS:
+  case FUNCTION_SINH:
+  case FUNCTION_COSH:
   case FUNCTION_TANH:
     want_all(t, e, DIMENSIONLESS, SHAPE_SCALAR);
     return;
@@ -165,7 +171,10 @@ static void spread(settling *t, expr *e) {
   case EXPR_HOLE:
     return;
   case EXPR_UNARY:
-    want(t, e->left, e->dim, e->unary == OP_COMPONENT ? SHAPE_TENSOR : e->shape);
+    want(t, e->left, e->dim,
+         e->unary == OP_COMPONENT ? SHAPE_TENSOR
+         : e->unary == OP_AXIS    ? SHAPE_VECTOR
+                                  : e->shape);
     return;
   case EXPR_BINARY:
     spread_binary(t, e);
@@ -197,7 +206,8 @@ static void settle_statement(settling *t, stmt *s) {
   const value *v = s->symbol ? &entry_of(s->symbol)->type : NULL;
   const bool direction = s->kind == STMT_FLOW && s->returned;
   if (v && !v->unknown && !v->broken && s->kind != STMT_FUNCTION && !direction) {
-    want(t, s->value, v->dim, v->shape);
+    const bool rate = s->kind == STMT_RATE;
+    want(t, s->value, rate ? dim_div(v->dim, dimension_of("s")) : v->dim, v->shape);
     want(t, s->in.lower, v->dim, v->shape);
     want(t, s->in.upper, v->dim, v->shape);
   }
@@ -232,6 +242,8 @@ static const char *rule_words(checker *ck, const stmt *s) {
 static const char *statement_words(checker *ck, const stmt *s) {
   const char *name = s->name ? s->name : "";
   switch (s->kind) {
+  case STMT_FIELD:
+    return arena_printf(ck->memory, "the default of the field `%s`", name);
   case STMT_PARAMETER:
     return arena_printf(ck->memory, "the default of the parameter `%s`", name);
   case STMT_STATE:
@@ -244,6 +256,8 @@ static const char *statement_words(checker *ck, const stmt *s) {
     return arena_printf(ck->memory, "the yield function `%s`", name);
   case STMT_FLOW:
     return arena_printf(ck->memory, "the flow of `%s`", name);
+  case STMT_RATE:
+    return arena_printf(ck->memory, "the rate of the state `%s`", name);
   case STMT_DAMAGE:
   case STMT_DEFINITION:
     return rule_words(ck, s);

@@ -47,6 +47,33 @@ int law_field_of(const symbol *tensor, int k) {
   return k == TENSOR_TRACED ? -1 : tensor->index + k - (k > TENSOR_TRACED);
 }
 
+const law_waiver *law_accepts(const law *l, diag_code check) {
+  for (int k = 0; k < l->waiver_count; k++)
+    if (l->waivers[k].check == check) return &l->waivers[k];
+  return NULL;
+}
+
+bool law_says(const law *l, int k, const char **check, const char **why) {
+  const int first = l->nonconservative != NULL;
+  if (k >= first + l->waiver_count) return false;
+  *check = k < first ? "nonconservative" : diag_name(l->waivers[k - first].check);
+  *why = k < first ? l->nonconservative : l->waivers[k - first].why;
+  return true;
+}
+
+void law_waive(const law *l, diagnostics *d, int from) {
+  for (int k = d->count - 1; k >= from; k--) {
+    const law_waiver *w = law_accepts(l, d->items[k].code);
+    if (w) diag_accept(d, k, w->why);
+  }
+}
+
+int law_rate_field(const law *l, int k) {
+  for (int n = l->fields.count - 1; n > k; n--)
+    if (l->fields.items[n]->rate_of == l->fields.items[k]) return n;
+  return -1;
+}
+
 const stmt *law_force_state(const law *l) {
   for (int k = 0; k < l->rule_count; k++)
     if (l->rules[k]->kind == STMT_FORCE_STATE) return l->rules[k];

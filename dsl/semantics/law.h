@@ -12,10 +12,10 @@
 C_LINKAGE_BEGIN
 
 typedef enum symbol_kind {
-  SYMBOL_QUANTITY, /* built in: stretch, s, ... */
-  SYMBOL_PARAMETER,
-  SYMBOL_CONSTANT, /* does not change in time */
-  SYMBOL_DEFINED,  /* plain definition, yield, stress, strain */
+  SYMBOL_QUANTITY,  /* built in: stretch, s, ... */
+  SYMBOL_PARAMETER, /* and `field`, a value that may differ in place and time */
+  SYMBOL_CONSTANT,  /* does not change in time */
+  SYMBOL_DEFINED,   /* plain definition, yield, stress, strain */
   SYMBOL_STATE,
   SYMBOL_DAMAGE,
   SYMBOL_RESULT, /* force N, V, moment M_i, M_j, T, energy W, force state F */
@@ -41,12 +41,19 @@ typedef struct symbol {
   double initial;                    /* PARAMETER: default, STATE: initial value; SI */
   bool has_default;                  /* PARAMETER */
   struct symbol *option;             /* CHOICE: its option (NULL for settings) */
-  const struct symbol *component_of; /* STATE: the tensor that it is a component of, or NULL */
+  /* STATE: the tensor, PARAMETER: the vector that it is a component of, or NULL */
+  const struct symbol *component_of;
   int component;
+  const struct symbol *rate_of; /* STATE: the field whose rate it keeps, or NULL */
   bool deviator;    /* STATE: a tensor of trace 0, which is kept without its component zz */
   bool old_is_read; /* STATE, DAMAGE: some rule reads the value of the last step */
   bool used;        /* a force or an output depends on it */
 } symbol;
+
+/* Of a parameter: declared by `field`. */
+static inline bool symbol_is_field(const symbol *s) {
+  return s->kind == SYMBOL_PARAMETER && s->declared->kind == STMT_FIELD;
+}
 
 typedef struct symbol_list {
   symbol **items;
@@ -81,6 +88,14 @@ typedef enum law_setting {
 #undef X
 } law_setting;
 
+/* accept CHECK "why": what this check finds is meant. */
+typedef struct law_waiver {
+  diag_code check;
+  const char *why;
+  span where;
+} law_waiver;
+enum { LAW_WAIVERS_MOST = DIAG_COUNT }; /* each once */
+
 typedef struct law {
   struct tree *tree;
   law_setting setting; /* first that the law names; may be changed before it is lowered */
@@ -93,7 +108,7 @@ typedef struct law {
   bool bends_in_space;
   arena *memory; /* not owned */
   const source_set *sources;
-  symbol_list parameters;
+  symbol_list parameters; /* of vectors the components x, y, z, one after the other */
   symbol_list fields; /* states and damages, in the order declared; of tensors the components */
   symbol_list outputs;
   symbol_list options;
@@ -101,10 +116,13 @@ typedef struct law {
   const symbol *results[RESULT_COUNT];
   const symbol *rho;    /* the parameter `rho`, or NULL */
   const stmt *sized;    /* `require h in ...`, or NULL */
+  const symbol *rest;   /* `rest_stretch`, the stretch from which `stretch` is measured, or NULL */
   const symbol *failed; /* the damage of `failed when`, or NULL */
   const stmt **rules;   /* statements to evaluate each step, in order (constants first) */
   int rule_count;
   const char *nonconservative; /* reason, or NULL */
+  law_waiver waivers[LAW_WAIVERS_MOST];
+  int waiver_count;
 } law;
 
 const char *law_setting_name(law_setting setting);
@@ -116,9 +134,17 @@ bool law_is_for(const law *l, law_setting setting);
 /* That of a lattice with 2 or 3 dimensions: the first of these that the law names; plane stress or
    space where it names none. */
 law_setting law_setting_in(const law *l, int dimensions);
-/* Of a state that is a tensor, the field that keeps component k; -1 of zz of a deviator, which is
+/* Of a state that is a tensor or vector, the field that keeps component k; -1 of zz of a deviator, which is
    -(xx + yy). */
 int law_field_of(const symbol *tensor, int k);
+/* The line by which the law accepts what a check finds; NULL without one. */
+const law_waiver *law_accepts(const law *l, diag_code check);
+/* The k-th of all that it says about its mechanics, `nonconservative` first; false behind the last. */
+bool law_says(const law *l, int k, const char **check, const char **why);
+/* Of the messages from number `from` on those that the law accepts are set apart. */
+void law_waive(const law *l, diagnostics *d, int from);
+/* The field that keeps the rate of field k; -1 of one that has none. */
+int law_rate_field(const law *l, int k);
 /* The line `force state` of a law of families; NULL without one. */
 const stmt *law_force_state(const law *l);
 

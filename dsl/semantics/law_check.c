@@ -86,16 +86,21 @@ static bool check_family_rule(checker *ck, const stmt *s, value *v) {
   return true;
 }
 
+/* Of a state, as its declaration says. */
+static shape declared_shape(const stmt *declared) {
+  return declared->tensor ? SHAPE_TENSOR : declared->vector ? SHAPE_VECTOR : SHAPE_SCALAR;
+}
+
 /* What begins at a number stays one. */
-static bool refuse_tensor(checker *ck, const stmt *s, const entry *field) {
+static bool refuse_components(checker *ck, const stmt *s, const entry *field, shape found) {
   const stmt *declared = field->symbol.declared;
-  if (declared->tensor) return false;
-  complain(ck, DIAG_SHAPE, s->value->where, "the %s `%s` is one number, but this is a tensor",
-           field->symbol.kind == SYMBOL_STATE ? "state" : "damage", s->name);
+  if (declared_shape(declared) != SHAPE_SCALAR) return false;
+  complain(ck, DIAG_SHAPE, s->value->where, "the %s `%s` is one number, but this is %s",
+           field->symbol.kind == SYMBOL_STATE ? "state" : "damage", s->name, shape_words(found));
   diag_note(ck->d, declared->name_where, "it is declared here");
   if (field->symbol.kind == SYMBOL_STATE)
-    diag_hint(ck->d, "declare it `state %s on %s = tensor 0`", s->name,
-              placement_name(field->symbol.place));
+    diag_hint(ck->d, "declare it `state %s on %s = %s 0`", s->name,
+              placement_name(field->symbol.place), found == SHAPE_VECTOR ? LAW_VECTOR : "tensor");
   return true;
 }
 
@@ -141,7 +146,8 @@ static void check_field_rule(checker *ck, stmt *s, entry *field, value v) {
     if (v.unknown) return; /* perhaps in the next pass */
     value as = v;
     as.zero = false;
-    if (field->symbol.declared->tensor) as.shape = SHAPE_TENSOR; /* a rule that is not is refused */
+    if (declared_shape(field->symbol.declared) != SHAPE_SCALAR) /* another rule is refused */
+      as.shape = declared_shape(field->symbol.declared);
     as.deviator = field->symbol.declared->deviator;
     as.place = field->symbol.place;
     field->type = as;
@@ -150,7 +156,9 @@ static void check_field_rule(checker *ck, stmt *s, entry *field, value v) {
   if (field->type.broken || field->type.unknown) return;
   if (v.shape == SHAPE_TENSOR && refuse_trace(ck, s, field, v)) return;
   if (s->kind == STMT_FLOW) return;
-  if (v.shape == SHAPE_TENSOR && !v.zero && refuse_tensor(ck, s, field)) return;
+  const bool parts = v.shape == SHAPE_TENSOR || v.shape == SHAPE_VECTOR;
+  if (parts && !v.zero && refuse_components(ck, s, field, v.shape)) return;
+  if (s->kind == STMT_RATE) return;
   if (!expect(ck, s->value, v, field->type.dim, field->type.shape, what)) return;
 }
 
@@ -167,8 +175,12 @@ static void set_type(const stmt *s, value v) {
 
 static void check_definition(checker *ck, stmt *s) {
   entry *e = s->symbol ? entry_of(s->symbol) : NULL;
+  if (s->rest_of && !e) return; /* it has been refused */
   bool field = e && (e->symbol.kind == SYMBOL_STATE || e->symbol.kind == SYMBOL_DAMAGE);
   value v = check_value(ck, s->value);
+  if (s->rest_of && !v.broken && !v.unknown &&
+      !expect(ck, s->value, v, dimension_of("1"), SHAPE_SCALAR, "the rest stretch"))
+    v = BROKEN;
   if (field)
     check_field_rule(ck, s, e, v);
   else
@@ -179,6 +191,7 @@ static void check_constant(checker *ck, stmt *s) {
   ck->context = IN_CONSTANT;
   value v = check_value(ck, s->value);
   ck->context = IN_RULE;
+  if (s->indexed && !v.broken && !check_family_rule(ck, s, &v)) v = BROKEN;
   set_type(s, v);
 }
 
@@ -291,6 +304,22 @@ static void check_flow(checker *ck, stmt *s) {
   expect(ck, s->value, v, field->type.dim, field->type.shape, what);
 }
 
+/* What a state becomes in time: of its unit per second. */
+static void check_rate(checker *ck, stmt *s) {
+  const dimension second = dimension_of("s");
+  value v = check_number(ck, s->value), of_state = v;
+  entry *field = s->symbol ? entry_of(s->symbol) : NULL;
+  if (!field || v.broken) return;
+  if (!v.zero) of_state.dim = dim_mul(v.dim, second);
+  check_field_rule(ck, s, field, of_state);
+  if (!field->known || field->type.broken || field->type.unknown) return;
+  const char *what = arena_printf(ck->memory, "the rate of the state `%s`", s->name);
+  const dimension wanted = dim_div(field->type.dim, second);
+  if (!expect(ck, s->value, v, wanted, field->type.shape, what) && !v.zero &&
+      v.shape == field->type.shape && dim_equal(v.dim, field->type.dim))
+    diag_hint(ck->d, "a rate is per second: divide by a time");
+}
+
 static void check_output(checker *ck, stmt *s) {
   value v = check_number(ck, s->value);
   if (!v.broken && !is_single(ck) && !s->indexed && v.place > ON_PARTICLE) {
@@ -310,6 +339,9 @@ static void check_statement(checker *ck, stmt *s) {
   switch (s->kind) {
   case STMT_PARAMETER:
     check_parameter(ck, s);
+    break;
+  case STMT_FIELD:
+    check_field(ck, s);
     break;
   case STMT_CONSTANT:
     check_constant(ck, s);
@@ -346,12 +378,16 @@ static void check_statement(checker *ck, stmt *s) {
   case STMT_FLOW:
     check_flow(ck, s);
     break;
+  case STMT_RATE:
+    check_rate(ck, s);
+    break;
   case STMT_OUTPUT:
     check_output(ck, s);
     break;
   case STMT_STATE:
   case STMT_OPTION:
   case STMT_NONCONSERVATIVE:
+  case STMT_ACCEPT:
   case STMT_REQUIRE:
   case STMT_INCLUDE:
   case STMT_COUNT:
@@ -407,11 +443,13 @@ static void infer_states(checker *ck) {
   }
   ck->d = reported;
   ck->searches = 0;
+  for (int i = 0; i < ck->law->parameters.count; i++)
+    entry_of(ck->law->parameters.items[i])->blamed = false; /* in silence */
   for (int i = 0; i < ck->law->fields.count; i++) {
     entry *e = entry_of(ck->law->fields.items[i]);
     if (e->known) continue;
     e->type = scalar_of(DIMENSIONLESS, e->symbol.place);
-    if (e->symbol.declared->tensor) e->type.shape = SHAPE_TENSOR;
+    e->type.shape = declared_shape(e->symbol.declared);
     e->type.deviator = e->symbol.declared->deviator;
     e->type.unknown = ck->holes;
     e->known = true;
@@ -538,10 +576,12 @@ static void check_choices(checker *ck, const law_choice *choices, int count) {
 static bool is_rule(const stmt *s) {
   switch (s->kind) {
   case STMT_PARAMETER:
+  case STMT_FIELD:
   case STMT_OPTION:
   case STMT_STATE:
   case STMT_FUNCTION:
   case STMT_NONCONSERVATIVE:
+  case STMT_ACCEPT:
   case STMT_REQUIRE:
   case STMT_INCLUDE:
   case STMT_COUNT:
@@ -565,14 +605,18 @@ static void list_rules(checker *ck) {
     }
 }
 
-/* --- states that are tensors ------------------------------------------------------------------ */
+/* --- states that are tensors or vectors ------------------------------------------------------- */
 
 /* What stores and shows states knows numbers only: a tensor's components are fields of their own,
-   eps_p_xx and so on. The name itself keeps the index of the first. */
+   eps_p_xx and so on, a vector's slip_x and so on. The name itself keeps the index of the first. */
 static symbol *component_of(checker *ck, const symbol *whole, int k) {
   symbol *s = arena_alloc(ck->memory, sizeof *s);
   *s = *whole;
-  s->name = arena_printf(ck->memory, "%s_%c%c", whole->name, tensor_axis(k, 0), tensor_axis(k, 1));
+  if (whole->shape == SHAPE_VECTOR)
+    s->name = arena_printf(ck->memory, "%s_%c", whole->name, vector_axis(k));
+  else
+    s->name =
+        arena_printf(ck->memory, "%s_%c%c", whole->name, tensor_axis(k, 0), tensor_axis(k, 1));
   s->shape = SHAPE_SCALAR;
   s->component_of = whole;
   s->component = k;
@@ -585,11 +629,17 @@ static symbol *component_of(checker *ck, const symbol *whole, int k) {
   return s;
 }
 
-static int kept_components(const symbol *s) {
-  return s->shape == SHAPE_TENSOR ? TENSOR_COMPONENT_COUNT - s->deviator : 1;
+static int components_of(const symbol *s) {
+  return s->shape == SHAPE_TENSOR   ? TENSOR_COMPONENT_COUNT
+         : s->shape == SHAPE_VECTOR ? VECTOR_COMPONENT_COUNT
+                                    : 1;
 }
 
-static void split_tensors(checker *ck) {
+static int kept_components(const symbol *s) {
+  return components_of(s) - s->deviator;
+}
+
+static void split_fields(checker *ck) {
   const symbol_list whole = ck->law->fields;
   int count = 0;
   for (int i = 0; i < whole.count; i++)
@@ -600,15 +650,53 @@ static void split_tensors(checker *ck) {
   for (int i = 0; i < whole.count; i++) {
     symbol *s = whole.items[i];
     s->index = count;
-    for (int k = 0; s->shape == SHAPE_TENSOR && k < TENSOR_COMPONENT_COUNT; k++) {
+    const int parts = components_of(s);
+    for (int k = 0; parts > 1 && k < parts; k++) {
       if (law_field_of(s, k) < 0) continue;
       items[count] = component_of(ck, s, k);
       items[count]->index = count;
       count++;
     }
-    if (s->shape != SHAPE_TENSOR) items[count++] = s;
+    if (parts == 1) items[count++] = s;
   }
   ck->law->fields = (symbol_list){items, count};
+}
+
+/* --- rates ------------------------------------------------------------------------------------ */
+
+/* A name that nothing of the law has. */
+static const char *name_of_rate(checker *ck, const char *state) {
+  const char *name = arena_printf(ck->memory, "%s_rate", state);
+  while (names_find(ck, SPACE_QUANTITIES, name))
+    name = arena_printf(ck->memory, "%s_", name);
+  return name;
+}
+
+static symbol *rate_of(checker *ck, const symbol *state) {
+  symbol *s = arena_alloc(ck->memory, sizeof *s);
+  *s = *state;
+  s->name = name_of_rate(ck, state->name);
+  s->dim = dim_div(state->dim, dimension_of("s"));
+  s->doc = arena_printf(ck->memory, "rate of %s at the end of the step", state->name);
+  s->initial = 0;
+  s->rate_of = state;
+  return s;
+}
+
+/* Beside each state that has a rate a field behind all others keeps how quickly it changed when the
+   step began. */
+static void keep_rates(checker *ck) {
+  const symbol_list states = ck->law->fields;
+  symbol **items = arena_alloc(ck->memory, 2 * (size_t)states.count * sizeof *items);
+  int count = states.count;
+  for (int i = 0; i < states.count; i++) {
+    symbol *s = items[i] = states.items[i];
+    if (!s->rule || s->rule->kind != STMT_RATE) continue;
+    items[count] = rate_of(ck, s);
+    items[count]->index = count;
+    count++;
+  }
+  if (count > states.count) ck->law->fields = (symbol_list){items, count};
 }
 
 static void list_statements(checker *ck) {
@@ -642,10 +730,10 @@ static void publish_types(checker *ck) {
 
 static void check_anisotropic(checker *ck) {
   const tree *t = ck->tree;
-  if (!t->anisotropic || t->law == LAW_CONTINUUM) return;
+  if (!t->anisotropic || t->law != LAW_SLIP_BOND) return;
   complain(ck, DIAG_LAW_KIND, t->anisotropic_where,
-           "`anisotropic` is said of laws of a continuum, not of a %s law", law_word(ck));
-  diag_hint(ck->d, "leave it away: bonds have directions, so that nothing asks for it");
+           "`anisotropic` is said of bodies and of cracks in them, not of a bar's bonds");
+  diag_hint(ck->d, "leave it away");
 }
 
 static void check_all(checker *ck, const law_choice *choices, int choice_count) {
@@ -679,7 +767,8 @@ law *law_check(arena *memory, tree *t, const source_set *sources, const law_choi
     report_unused(&ck);
     report_increments(&ck);
     list_rules(&ck);
-    split_tensors(&ck);
+    split_fields(&ck);
+    keep_rates(&ck);
   }
   names_end(&ck);
   return d->errors == errors ? l : NULL;

@@ -51,15 +51,28 @@ static double number_value(const expr *e) {
   return e->number * u.factor;
 }
 
+static double name_value(const expr *e, const double *values) {
+  const symbol *s = e->symbol;
+  if (s && s->kind == SYMBOL_QUANTITY && s->index == QUANTITY_PI) return 2 * PL_HALF_PI_HI;
+  return values && s && s->kind == SYMBOL_PARAMETER ? values[s->index] : NAN;
+}
+
+/* Of a parameter that is a vector. */
+static double axis_value(const expr *e, const double *values) {
+  const symbol *s = e->left->kind == EXPR_NAME ? e->left->symbol : NULL;
+  if (!values || !s || s->kind != SYMBOL_PARAMETER) return NAN;
+  return values[s->index + e->component];
+}
+
 double law_constant_value(const expr *e, const double *values) {
   switch (e->kind) {
   case EXPR_NUMBER:
     return number_value(e);
   case EXPR_NAME:
-    if (!values || !e->symbol || e->symbol->kind != SYMBOL_PARAMETER) return NAN;
-    return values[e->symbol->index];
+    return name_value(e, values);
   case EXPR_UNARY: {
     double a = law_constant_value(e->left, values);
+    if (e->unary == OP_AXIS) return axis_value(e, values);
     return e->unary == OP_NEG ? -a : a;
   }
   case EXPR_BINARY:

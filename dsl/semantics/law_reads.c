@@ -47,6 +47,12 @@ bool law_reads(const law *l, builtin_quantity q) {
   return find_all(l).quantity[q];
 }
 
+bool law_reads_time(const law *l) {
+  for (int k = 0; k < l->rule_count; k++)
+    if (l->rules[k]->kind == STMT_RATE) return true;
+  return law_reads(l, QUANTITY_DT);
+}
+
 bool law_calls(const law *l, builtin_function f) {
   return find_all(l).function[f];
 }

@@ -59,27 +59,34 @@ static bool is_free_here(const checker *ck, const builtin_quantity_info *q) {
   return q->kinds == IN_SLIP || ((q->kinds ^ here) & (IN_CONTINUUM | IN_CRACK));
 }
 
+/* Where a quantity lives in the law at hand. */
+static placement place_here(const checker *ck, const builtin_quantity_info *q) {
+  if (q->place == ON_NOTHING) return ON_NOTHING;
+  if (ck->tree->law == LAW_CRACK) return ON_TIP;
+  return is_single(ck) && q->place == ON_PARTICLE ? ON_BODY : q->place;
+}
+
+void names_add_quantity(checker *ck, int quantity) {
+  const builtin_quantity_info *q = &builtin_quantities[quantity];
+  const dimension dim = dimension_of(q->unit);
+  const placement on = place_here(ck, q);
+  entry *e = names_add(ck, SPACE_QUANTITIES, q->name,
+                       (symbol){.kind = SYMBOL_QUANTITY,
+                                .name = q->name,
+                                .index = quantity,
+                                .dim = dim,
+                                .shape = q->shape,
+                                .place = on,
+                                .doc = q->meaning,
+                                .used = true});
+  e->type = (value){.dim = dim, .shape = q->shape, .place = on};
+  e->known = true;
+}
+
 static void add_builtins(checker *ck) {
   ck->now = -1;
-  for (int i = 0; i < QUANTITY_COUNT; i++) {
-    const builtin_quantity_info *q = &builtin_quantities[i];
-    if (is_free_here(ck, q)) continue;
-    dimension dim = dimension_of(q->unit);
-    const placement on = ck->tree->law == LAW_CRACK                 ? ON_TIP
-                         : is_single(ck) && q->place == ON_PARTICLE ? ON_BODY
-                                                                    : q->place;
-    entry *e = names_add(ck, SPACE_QUANTITIES, q->name,
-                         (symbol){.kind = SYMBOL_QUANTITY,
-                                  .name = q->name,
-                                  .index = i,
-                                  .dim = dim,
-                                  .shape = q->shape,
-                                  .place = on,
-                                  .doc = q->meaning,
-                                  .used = true});
-    e->type = (value){.dim = dim, .shape = q->shape, .place = on};
-    e->known = true;
-  }
+  for (int i = 0; i < QUANTITY_COUNT; i++)
+    if (!is_free_here(ck, &builtin_quantities[i])) names_add_quantity(ck, i);
   for (int i = 0; i < SETTING_COUNT; i++) {
     entry *e = names_add(ck, SPACE_QUANTITIES, settings[i],
                          (symbol){.kind = SYMBOL_CHOICE,
@@ -109,10 +116,22 @@ void names_end(checker *ck) {
   free(ck->entries);
 }
 
+/* "fibre_x", as decks and results call a component of fibre. False: it is none. */
+static bool suggest_axis(checker *ck, const char *name, size_t length) {
+  if (length < 3 || name[length - 2] != '_' || !strchr("xyz", name[length - 1])) return false;
+  const entry *e =
+      names_find(ck, SPACE_QUANTITIES, arena_printf(ck->memory, "%.*s", (int)length - 2, name));
+  if (!e || !e->known || e->type.shape != SHAPE_VECTOR) return false;
+  diag_hint(ck->d, "a component of the vector `%s` is written `%s[%c]`", e->symbol.name,
+            e->symbol.name, name[length - 1]);
+  return true;
+}
+
 /* "eps_p_xy", as results call a component of eps_p; what is a tensor is found later. False: it is
    none. */
 static bool suggest_component(checker *ck, const char *name) {
   const size_t length = strlen(name);
+  if (suggest_axis(ck, name, length)) return true;
   if (length < 4 || name[length - 3] != '_') return false;
   const char *axes = name + length - 2;
   const entry *e =
@@ -162,7 +181,9 @@ static void report_other_kind(checker *ck, const expr *e, const builtin_quantity
                                      [LAW_CRACK] = "a law of cracks"};
   complain(ck, DIAG_LAW_KIND, e->name_where, "%s does not have `%s` (%s)", laws[ck->tree->law],
            e->name, q->meaning);
-  if (q->kinds == IN_CRACK)
+  if (q == &builtin_quantities[QUANTITY_DT])
+    diag_hint(ck->d, "a tip is looked at now and then: `speed_now` is what it has of the time");
+  else if (q->kinds == IN_CRACK)
     diag_hint(ck->d, "what a tip does, between `crack` and `end crack`, may read it");
   else
     diag_hint(ck->d, "a law that begins with `law %s` has it", law_that_has(q->kinds));
@@ -187,8 +208,6 @@ static void report_unknown(checker *ck, const expr *e) {
            function ? "`%s` is a function, not a quantity" : "there is no quantity `%s`", name);
   if (function)
     diag_hint(ck->d, "write its arguments: `%s(...)`", name);
-  else if (strcmp(name, "pi") == 0)
-    diag_hint(ck->d, "write 3.141592653589793, or give angles in degrees: `30 [deg]`");
   else if (ck->alone)
     diag_hint(ck->d, "a formula knows %s", ck->alone);
   else
@@ -197,7 +216,7 @@ static void report_unknown(checker *ck, const expr *e) {
 
 bool is_fixed(const symbol *s) {
   if (s->kind == SYMBOL_QUANTITY) return builtin_quantities[s->index].fixed;
-  return s->kind == SYMBOL_CONSTANT || s->kind == SYMBOL_PARAMETER;
+  return s->kind == SYMBOL_CONSTANT || (s->kind == SYMBOL_PARAMETER && !symbol_is_field(s));
 }
 
 static bool quantity_is_here(checker *ck, const expr *e, const symbol *s) {
@@ -217,6 +236,7 @@ static bool quantity_is_here(checker *ck, const expr *e, const symbol *s) {
 
 /* Whether the context lets the name in at all. */
 static bool context_allows(checker *ck, const expr *e, const symbol *s) {
+  if (s->kind == SYMBOL_QUANTITY && s->index == QUANTITY_PI) return true;
   switch (ck->context) {
   case IN_RULE:
     return true;
@@ -226,7 +246,8 @@ static bool context_allows(checker *ck, const expr *e, const symbol *s) {
     diag_hint(ck->d, "for a value that follows from others write `constant x = ...`");
     return false;
   case IN_BOUNDS:
-    if (s->kind == SYMBOL_PARAMETER || s->kind == SYMBOL_CHOICE || s->kind == SYMBOL_OPTION)
+    if ((s->kind == SYMBOL_PARAMETER && !symbol_is_field(s)) || s->kind == SYMBOL_CHOICE ||
+        s->kind == SYMBOL_OPTION)
       return true;
     complain(ck, DIAG_BOUNDS, e->name_where, "bounds are made of numbers and parameters");
     if (s->kind == SYMBOL_QUANTITY)
@@ -234,11 +255,15 @@ static bool context_allows(checker *ck, const expr *e, const symbol *s) {
                 "`%s` is not known yet when parameters are read: let the parameter be the ratio to "
                 "it, and write `constant x = ratio*%s`",
                 s->name, s->name);
+    else if (s->kind == SYMBOL_PARAMETER)
+      diag_hint(ck->d, "`%s` is a field, which may differ from place to place and in time",
+                s->name);
     else
       diag_hint(ck->d, "write out what `%s` is, in numbers and parameters", s->name);
     return false;
   case IN_CONSTANT:
-    if (s->kind <= SYMBOL_CONSTANT || s->kind == SYMBOL_CHOICE || s->kind == SYMBOL_OPTION)
+    if ((s->kind <= SYMBOL_CONSTANT && (s->kind == SYMBOL_QUANTITY || is_fixed(s))) ||
+        s->kind == SYMBOL_CHOICE || s->kind == SYMBOL_OPTION)
       return true;
     complain(ck, DIAG_PLACEMENT, e->name_where,
              "`%s` may change in time, so a constant cannot use it", e->name);
@@ -272,6 +297,21 @@ static entry *find_argument(const checker *ck, const char *name) {
   return NULL;
 }
 
+/* Above its line there is no rest stretch yet, and that itself knows no motion. A function is checked
+   where it is called. */
+static bool is_measured_from_rest(checker *ck, const expr *e, const symbol *s) {
+  const bool stretch = s->kind == SYMBOL_QUANTITY && s->index == QUANTITY_STRETCH;
+  if (!stretch || !ck->law->rest || ck->now > ck->rest_at || ck->now >= ck->statement_count ||
+      ck->statements[ck->now]->kind == STMT_FUNCTION)
+    return true;
+  if (ck->now == ck->rest_at)
+    complain(ck, DIAG_PLACEMENT, e->where, "the rest stretch does not know the stretch");
+  else
+    complain(ck, DIAG_UNDEFINED, e->where, "`stretch` is read above the line `rest stretch`");
+  diag_note(ck->d, ck->law->rest->where, "from here on it is measured from the rest stretch");
+  return false;
+}
+
 entry *names_resolve(checker *ck, expr *e) {
   entry *found = find_argument(ck, e->name);
   if (found) return found;
@@ -287,7 +327,9 @@ entry *names_resolve(checker *ck, expr *e) {
   }
   symbol *s = &found->symbol;
   if (ck->context != IN_BOUNDS) s->used = true;
+  if (found->blamed) return NULL; /* said where it is declared */
   if (s->kind == SYMBOL_QUANTITY && !quantity_is_here(ck, e, s)) return NULL;
+  if (!is_measured_from_rest(ck, e, s)) return NULL;
   if (!context_allows(ck, e, s)) return NULL;
   if (s->kind == SYMBOL_STATE || s->kind == SYMBOL_DAMAGE)
     return field_may_be_read(ck, e, found) ? found : NULL;

@@ -10,6 +10,8 @@ void names_open(checker *ck);
 void names_begin(checker *ck);
 void names_end(checker *ck);
 entry *names_add(checker *ck, name_space space, const char *key, symbol what);
+/* Enters what is built in, of enum builtin_quantity. */
+void names_add_quantity(checker *ck, int quantity);
 entry *names_find(const checker *ck, name_space space, const char *name);
 /* Several options may have choices of the same name. */
 entry *names_find_choice(const checker *ck, const symbol *option, const char *name);

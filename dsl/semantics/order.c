@@ -143,17 +143,22 @@ void mark_used(checker *ck) {
   }
   for (int i = 0; i < RESULT_COUNT; i++)
     if (ck->law->results[i]) reach(&s, entry_of(ck->law->results[i]));
+  if (ck->law->rest) reach(&s, entry_of(ck->law->rest));
   if (ck->law->failed) reach(&s, entry_of(ck->law->failed));
   search_run(&s, NULL);
   free(s.stack);
   for (int i = 0; i < ck->entry_count; i++)
     ck->entries[i]->symbol.used = ck->entries[i]->visited == s.mark;
+  for (int i = 0; i < ck->law->parameters.count; i++) {
+    const symbol *p = ck->law->parameters.items[i];
+    if (p->component_of) entry_of(p)->symbol.used = p->component_of->used;
+  }
 }
 
-static const char *kind_words(symbol_kind kind) {
-  switch (kind) {
+static const char *kind_words(const symbol *s) {
+  switch (s->kind) {
   case SYMBOL_PARAMETER:
-    return "parameter";
+    return symbol_is_field(s) ? "field" : "parameter";
   case SYMBOL_CONSTANT:
     return "constant";
   case SYMBOL_STATE:
@@ -172,7 +177,7 @@ static const char *kind_words(symbol_kind kind) {
 void report_unused(checker *ck) {
   for (int i = 0; i < ck->entry_count; i++) {
     const symbol *s = &ck->entries[i]->symbol;
-    if (s->used || s == ck->law->rho) continue;
+    if (s->used || s == ck->law->rho || (s->rule && s->rule->total)) continue;
     if (ck->reads_poisson && strcmp(s->name, "nu") == 0) continue;
     if (s->where.file != ck->tree->name_where.file)
       continue; /* a library brings more than needed */
@@ -182,9 +187,9 @@ void report_unused(checker *ck) {
       complain(ck, DIAG_UNUSED_DAMAGE, s->where, "no force and no output uses the damage `%s`",
                s->name);
       diag_hint(ck->d, "weaken a force with it, such as `(1 - %s)*...`, or remove it", s->name);
-    } else if (kind_words(s->kind)) {
-      complain(ck, DIAG_UNUSED, s->where, "no force and no output uses the %s `%s`",
-               kind_words(s->kind), s->name);
+    } else if (kind_words(s)) {
+      complain(ck, DIAG_UNUSED, s->where, "no force and no output uses the %s `%s`", kind_words(s),
+               s->name);
     }
   }
 }

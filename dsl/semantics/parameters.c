@@ -42,8 +42,49 @@ static void check_density(checker *ck, const stmt *s, dimension dim) {
   diag_hint(ck->d, "give it a unit such as `2323 [kg/m^3]`, or choose another name");
 }
 
+/* The default of a component of a vector that is called `p`. */
+static bool check_component(checker *ck, const symbol *p, value whole) {
+  entry *e = entry_of(p);
+  expr *part = p->declared->value;
+  e->type = scalar_of(whole.dim, ON_BODY);
+  e->known = true;
+  if (p->component < p->component_of->declared->value->argument_count) {
+    const value v = check_plain(ck, part, IN_DEFAULT);
+    if (v.broken || (!v.unknown && !read_finite(ck, part, &e->symbol.initial))) return false;
+    e->symbol.has_default = !v.unknown;
+  } else {
+    e->symbol.has_default = true;
+  }
+  return true;
+}
+
+/* (1, 0, 0): each component is a number. */
+static void check_vector(checker *ck, const stmt *s) {
+  entry *e = entry_of(s->symbol);
+  const context before = ck->context;
+  ck->context = IN_DEFAULT;
+  value v = check_number(ck, s->value);
+  ck->context = before;
+  v.zero = false;
+  v.place = ON_BODY;
+  if (!v.broken && s->in.given) {
+    complain(ck, DIAG_BOUNDS, s->in.where, "`%s` is a vector, and has no bounds", s->name);
+    diag_hint(ck->d, "leave them away; what a law needs is its direction alone: `%s/norm(%s)`",
+              s->name, s->name);
+    v = BROKEN;
+  }
+  for (int k = 0; k < VECTOR_COMPONENT_COUNT && !v.broken; k++)
+    if (!check_component(ck, ck->law->parameters.items[e->symbol.index + k], v)) v = BROKEN;
+  e->type = v;
+  e->known = true;
+}
+
 void check_parameter(checker *ck, stmt *s) {
   if (!s->symbol) return;
+  if (expr_is_vector(s->value)) {
+    check_vector(ck, s);
+    return;
+  }
   entry *e = entry_of(s->symbol);
   value v = scalar_of(DIMENSIONLESS, ON_BODY);
   unit u;
@@ -65,6 +106,59 @@ void check_parameter(checker *ck, stmt *s) {
   if (!v.broken && !v.unknown) check_density(ck, s, v.dim);
 }
 
+/* --- fields in place and time ----------------------------------------------------------------- */
+
+/* Where a field is given; a bond reads the mean of its ends, so that it lives on the bond there. */
+static placement field_place(checker *ck, const stmt *s) {
+  const placement given = ck->tree->law == LAW_CONTINUUM ? ON_POINT : ON_PARTICLE;
+  const placement read = ck->tree->law == LAW_CONTINUUM ? ON_POINT
+                         : ck->tree->law == LAW_STATE   ? ON_PARTICLE
+                                                        : ON_BOND;
+  if (s->place == ON_NOTHING || s->place == given) return read;
+  complain(ck, DIAG_PLACEMENT, s->place_where, "a %s law is given its fields on %ss", law_word(ck),
+           placement_name(given));
+  diag_hint(ck->d, "write `on %s`%s", placement_name(given),
+            read == ON_BOND ? "; a bond reads the mean of its two ends" : "");
+  return read;
+}
+
+/* The unit behind the name says what the default must be. */
+static void check_field_unit(checker *ck, const stmt *s, value *v) {
+  unit u;
+  if (!s->unit_text) return;
+  if (!read_unit(ck, s->unit_text, s->unit_where, &u)) {
+    *v = BROKEN;
+  } else if (!v->broken && !v->unknown && !dim_equal(u.dim, v->dim)) {
+    complain(ck, DIAG_UNITS, s->value->where, "the field `%s` is %s, but its default is %s",
+             s->name, describe(ck, u.dim), describe(ck, v->dim));
+    diag_note(ck->d, s->unit_where, "its unit is given here");
+    *v = BROKEN;
+  }
+}
+
+/* The masses of particles do not change. */
+static bool refuse_field(checker *ck, const stmt *s) {
+  if (ck->tree->law == LAW_CRACK) {
+    complain(ck, DIAG_LAW_KIND, s->name_where, "what the tip of a crack does reads no fields");
+    diag_hint(ck->d, "make it a parameter");
+    return true;
+  }
+  if (strcmp(s->name, "rho") != 0) return false;
+  complain(ck, DIAG_LAW_KIND, s->name_where,
+           "`rho` is the mass density of the particles, which does not change in time");
+  diag_hint(ck->d, "make it a parameter: a deck may give that by place, too");
+  return true;
+}
+
+void check_field(checker *ck, stmt *s) {
+  if (!s->symbol) return;
+  entry *e = entry_of(s->symbol);
+  check_parameter(ck, s);
+  if (s->value) check_field_unit(ck, s, &e->type);
+  if (refuse_field(ck, s)) e->type = BROKEN;
+  e->type.place = e->symbol.place = field_place(ck, s);
+}
+
 /* A bare 0 leaves unit and shape to the rule. */
 void check_initial_value(checker *ck, stmt *s) {
   if (!s->symbol) return;
@@ -73,7 +167,7 @@ void check_initial_value(checker *ck, stmt *s) {
   if (s->value) v = check_plain(ck, s->value, IN_DEFAULT);
   if (!v.broken && !v.unknown && s->value && !read_finite(ck, s->value, &e->symbol.initial))
     v = BROKEN;
-  if (s->tensor && !v.broken) v.shape = SHAPE_TENSOR;
+  if (!v.broken && (s->tensor || s->vector)) v.shape = s->vector ? SHAPE_VECTOR : SHAPE_TENSOR;
   v.deviator = s->deviator;
   if (v.zero || v.unknown) {
     e->infer = true; /* in every pass: what one has found stays until its rule says it again */
@@ -147,7 +241,8 @@ void check_bounds(checker *ck) {
   for (int i = 0; i < parameters->count; i++) {
     const symbol *p = parameters->items[i];
     const bounds *in = &p->declared->in;
-    if (!in->given || entry_of(p)->type.broken || entry_of(p)->type.unknown) continue;
+    if (!in->given || p->component_of || entry_of(p)->type.broken || entry_of(p)->type.unknown)
+      continue;
     const dimension dim = entry_of(p)->type.dim;
     char text[64];
     own_unit(p, text, sizeof(text));

@@ -5,6 +5,7 @@
 #include "dsl/semantics/checker.h"
 
 void check_parameter(checker *ck, stmt *s);
+void check_field(checker *ck, stmt *s);
 void check_initial_value(checker *ck, stmt *s);
 void check_bounds(checker *ck);
 

@@ -99,6 +99,21 @@ static value check_name(checker *ck, expr *e) {
   return check_family_name(ck, e, v);
 }
 
+/* v[x] */
+static value check_axis(checker *ck, expr *e) {
+  const value v = check_value(ck, e->left);
+  if (v.broken || v.unknown) return v;
+  if (v.shape == SHAPE_VECTOR) return scalar_of(v.dim, v.place);
+  const char axis = vector_axis(e->component);
+  complain(ck, DIAG_SHAPE, e->where, "`%s` is %s and has no component `%c`", e->left->name,
+           shape_words(v.shape), axis);
+  if (v.shape == SHAPE_TENSOR)
+    diag_hint(ck->d, "a tensor's component has two axes: `%s[%c,%c]`", e->left->name, axis, axis);
+  else
+    diag_hint(ck->d, "components are those of vectors, such as `direction[x]`");
+  return BROKEN;
+}
+
 static value check_component(checker *ck, expr *e) {
   value v = check_value(ck, e->left);
   if (v.broken || v.unknown) return v;
@@ -109,12 +124,17 @@ static value check_component(checker *ck, expr *e) {
   }
   complain(ck, DIAG_SHAPE, e->where, "`%s` is %s and has no component `%c,%c`", e->left->name,
            shape_words(v.shape), tensor_axis(e->component, 0), tensor_axis(e->component, 1));
-  diag_hint(ck->d, "components are those of stresses, strains and other tensors");
+  if (v.shape == SHAPE_VECTOR)
+    diag_hint(ck->d, "a vector's component has one axis: `%s[%c]`", e->left->name,
+              tensor_axis(e->component, 0));
+  else
+    diag_hint(ck->d, "components are those of stresses, strains and other tensors");
   return BROKEN;
 }
 
 static value check_unary(checker *ck, expr *e) {
   if (e->unary == OP_COMPONENT) return check_component(ck, e);
+  if (e->unary == OP_AXIS) return check_axis(ck, e);
   if (e->unary != OP_NOT) return check_number(ck, e->left);
   value v = check_guard(ck, e->left);
   return v;
@@ -206,7 +226,10 @@ static value check_product(checker *ck, expr *e, value a, value b) {
     const char *left = written(ck, e->left, "a"), *right = written(ck, e->right, "b");
     complain(ck, DIAG_SHAPE, e->where, "the product of %s and %s is not defined",
              shape_words(a.shape), shape_words(b.shape));
-    if (a.shape == b.shape) diag_hint(ck->d, "for the scalar product write `%s : %s`", left, right);
+    if (a.shape == SHAPE_VECTOR && b.shape == SHAPE_VECTOR)
+      diag_hint(ck->d, "write `dot(%s, %s)` or `cross(%s, %s)`", left, right, left, right);
+    else if (a.shape == b.shape)
+      diag_hint(ck->d, "for the scalar product write `%s : %s`", left, right);
     return BROKEN;
   }
   return v;
@@ -415,7 +438,10 @@ value check_value(checker *ck, expr *e) {
   if (v.broken || !v.whole) return v;
   complain(ck, DIAG_PLACEMENT, e->where, "%s has one value for each neighbour",
            quoted(ck, e, "this"));
-  if (e->kind == EXPR_NAME) diag_hint(ck->d, "write `%s[j]`", e->name);
+  if (ck->of_whole_family)
+    diag_hint(ck->d, HINT_NAME_THE_FAMILY, ck->of_whole_family);
+  else if (e->kind == EXPR_NAME)
+    diag_hint(ck->d, "write `%s[j]`", e->name);
   return BROKEN;
 }
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "dsl/syntax/parser.h"
+#include "dsl/syntax/tree_build.h"
 
 static void complain(parsing *p, span where, const char *message, const char *hint) {
   if (!first_complaint(p)) return;
@@ -156,6 +157,13 @@ void line_settings(parsing *p, const words *list, span where) {
   }
 }
 
+/* The first such line that the checker will take. */
+static bool may_rest(const parsing *p, const stmt *s) {
+  const law_kind kind = p->model->law;
+  return !p->model->rests && strcmp(s->rest_of, LAW_RESTING) == 0 && kind <= LAW_STATE &&
+         s->indexed == (kind == LAW_STATE);
+}
+
 bool line_statement(parsing *p, stmt *s, word text, span where) {
   if (!inside_model(p, where)) return false;
   bool shared = s->kind == STMT_FUNCTION || s->kind == STMT_CONSTANT || s->kind == STMT_INCLUDE;
@@ -165,6 +173,11 @@ bool line_statement(parsing *p, stmt *s, word text, span where) {
   s->text_where = text.where;
   *p->tail = s;
   p->tail = &s->next;
+  if (s->rest_of && may_rest(p, s)) {
+    p->model->rests = true;
+    s->next = build_total(p, s);
+    p->tail = &s->next->next;
+  }
   return s->kind == STMT_INCLUDE;
 }
 

@@ -54,14 +54,14 @@ static const word no_word;
 %token NEWLINE
 %token MODEL END LAW FOR PARAMETER CONSTANT OPTION STATE DAMAGE FUNCTION FORCE MOMENT ENERGY STRESS
 %token STRAIN YIELD FLOW OUTPUT NONCONSERVATIVE INCLUDE CRACK GROW TOWARD SPEED FAILED
-%token REQUIRE
+%token REQUIRE ACCEPT REST RATE FIELD
 %token EXPRESSION /* begins one that stands by itself: no text has it */
 %token WHEN OTHERWISE JUMP IN AND OR NOT BY ALONG RETURNED ON
 %token EQ NE LE GE POW HOLE
 %token <number> NUMBER
 %token <word> NAME PRIMED UNIT STRING
 
-%type <stmt> only_text declaration parameter flow rule
+%type <stmt> only_text declaration parameter field flow rule rate rest
 %type <expr> default body cases case_lines call arguments
 %type <expr> expression conjunction negation comparison sum addend term factor power primary
 %type <word> text unit index on along
@@ -97,6 +97,7 @@ line:
 only_text:
   NONCONSERVATIVE                   { $$ = build_stmt(p, STMT_NONCONSERVATIVE, no_word, no_word,
                                                       NULL, @1); }
+| ACCEPT NAME                       { $$ = build_stmt(p, STMT_ACCEPT, $2, no_word, NULL, @$); }
 | INCLUDE                           { $$ = build_stmt(p, STMT_INCLUDE, no_word, no_word,
                                                       NULL, @1); }
 ;
@@ -104,12 +105,15 @@ only_text:
 declaration:
   parameter
 | parameter IN interval             { $$ = $1; $$->in = $3; }
-| CONSTANT NAME '=' body            { $$ = build_stmt(p, STMT_CONSTANT, $2, no_word, $4, @$); }
+| field
+| field IN interval                 { $$ = $1; $$->in = $3; }
+| CONSTANT NAME index '=' body      { $$ = build_stmt(p, STMT_CONSTANT, $2, $3, $5, @$); }
 | OPTION NAME '=' choices           { $$ = build_stmt(p, STMT_OPTION, $2, no_word, NULL, @$);
                                       build_words_of($$, $4); }
 | OPTION NAME '=' '|' choices       { $$ = build_stmt(p, STMT_OPTION, $2, no_word, NULL, @$);
                                       build_words_of($$, $5); }
 | NAME index '=' body               { $$ = build_stmt(p, STMT_DEFINITION, $1, $2, $4, @$); }
+| rest
 | STATE NAME index on '=' body      { $$ = build_stmt(p, STMT_STATE, $2, $3, $6, @$);
                                       build_placement(p, $$, $4); }
 | STATE NAME index on '=' NAME NUMBER unit
@@ -133,6 +137,7 @@ declaration:
                                       build_force_state(p, $2, $$, $7); }
 | rule
 | flow
+| rate
 ;
 
 rule:
@@ -158,9 +163,28 @@ flow:
                                       $$->returned = true; }
 ;
 
+/* A line may also give a name that is `rest` or `rate`. */
+rest:
+  REST NAME index '=' body          { $$ = build_rest(p, $2, $3, $5, @$); }
+| REST index '=' body               { $$ = build_stmt(p, STMT_DEFINITION, (word){"rest", @1}, $2,
+                                                      $4, @$); }
+;
+
+rate:
+  RATE NAME index '=' body          { $$ = build_stmt(p, STMT_RATE, $2, $3, $5, @$); }
+| RATE index '=' body               { $$ = build_stmt(p, STMT_DEFINITION, (word){"rate", @1}, $2,
+                                                      $4, @$); }
+;
+
 parameter:
   PARAMETER NAME unit default       { $$ = build_stmt(p, STMT_PARAMETER, $2, no_word, $4, @$);
                                       $$->unit_text = $3.text; $$->unit_where = $3.where; }
+;
+
+field:
+  FIELD NAME unit on default        { $$ = build_stmt(p, STMT_FIELD, $2, no_word, $5, @$);
+                                      $$->unit_text = $3.text; $$->unit_where = $3.where;
+                                      build_placement(p, $$, $4); }
 ;
 
 unit:
@@ -307,7 +331,9 @@ primary:
   NUMBER                            { $$ = build_number(p, $1, no_word, @$); }
 | NUMBER UNIT                       { $$ = build_number(p, $1, $2, @$); }
 | HOLE unit                         { $$ = build_hole(p, $2, $2.text ? @$ : @1); }
-| NAME index                        { $$ = build_name(p, $1, false, $2, $2.text ? @$ : @1); }
+| NAME index                        { $$ = build_name_or_axis(p, $1, $2, $2.text ? @$ : @1); }
+| NAME '[' NAME ']' '[' NAME ']'    { $$ = build_axis(p, build_name(p, $1, false, $3,
+                                                                    span_join(@1, @4)), $6, @$); }
 | NAME '[' NAME ',' NAME ']'        { $$ = build_component(p, build_name(p, $1, false, no_word, @1),
                                                            $3, $5, @$); }
 | NAME '[' NAME ']' '[' NAME ',' NAME ']'
@@ -317,6 +343,9 @@ primary:
 | PRIMED index                      { $$ = build_name(p, $1, true, $2, $2.text ? @$ : @1); }
 | call ')'                          { $$ = $1; $$->where = @$; }
 | '(' expression ')'                { $$ = $2; $$->where = @$; }
+| '(' expression ',' expression ')' { $$ = build_vector(p, $2, $4, NULL, @$); }
+| '(' expression ',' expression ',' expression ')'
+                                    { $$ = build_vector(p, $2, $4, $6, @$); }
 | '(' cases ')'                     { $$ = $2; $$->where = @$; }
 ;
 

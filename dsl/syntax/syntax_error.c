@@ -256,8 +256,8 @@ static bool unit_misplaced(parsing *p, const trouble *t) {
 
 static bool bounds_wrong(parsing *p, const trouble *t) {
   bool at_start = p->lex.before_last == T_IN;
-  bool at_comma =
-      t->expected[','] && !t->expected[')'] && p->lex.equals <= 1 && p->lex.first == T_PARAMETER;
+  const bool declares = p->lex.first == T_PARAMETER || p->lex.first == T_FIELD;
+  bool at_comma = t->expected[','] && !t->expected[')'] && p->lex.equals <= 1 && declares;
   if (!at_start && !at_comma) return false;
   if (at_start && t->token == T_NEWLINE)
     say(p, p->lex.before_where, "the bounds after `in` are missing");
@@ -425,6 +425,7 @@ static const struct {
     {T_LAW, "law central bond` or `law micropolar bond` or `law state"},
     {T_FOR, "for plane_stress, space"},
     {T_PARAMETER, "parameter E = 30 [GPa] in (0, inf) \"Young's modulus\""},
+    {T_FIELD, "field T [K] on particle = 293 [K] \"temperature\""},
     {T_CONSTANT, "constant EA = E*area"},
     {T_OPTION, "option onset = rankine | mohr_coulomb"},
     {T_STATE, "state x on bond = 0"},
@@ -437,8 +438,11 @@ static const struct {
     {T_STRAIN, "strain eps = expression"},
     {T_YIELD, "yield f = expression"},
     {T_FLOW, "flow x by increment when guard` or `flow x along direction returned when guard"},
+    {T_RATE, "rate x = expression"},
     {T_OUTPUT, "output x = expression \"what it is\""},
     {T_NONCONSERVATIVE, "nonconservative \"why\""},
+    {T_REST, "rest stretch = expression"},
+    {T_ACCEPT, "accept patch \"why\""},
     {T_INCLUDE, "include \"shared.plm\""},
 };
 

@@ -85,7 +85,7 @@ static void print_cases(const expr *e, FILE *out) {
 }
 
 static void print_call(const expr *e, FILE *out) {
-  fprintf(out, "%s(", e->name);
+  fprintf(out, "%s(", expr_is_vector(e) ? "" : e->name);
   for (int i = 0; i < e->argument_count; i++) {
     const argument *a = &e->arguments[i];
     if (i) fputs(", ", out);
@@ -109,7 +109,7 @@ static level level_of(const expr *e, level context) {
   case EXPR_BINARY:
     return levels_of(e->binary).own;
   case EXPR_UNARY:
-    if (e->unary == OP_COMPONENT) return LEVEL_PRIMARY;
+    if (e->unary >= OP_COMPONENT) return LEVEL_PRIMARY;
     if (e->unary == OP_NOT) return LEVEL_NOT;
     return context == LEVEL_FACTOR ? LEVEL_FACTOR : LEVEL_ADDEND;
   case EXPR_CASES:
@@ -121,7 +121,10 @@ static level level_of(const expr *e, level context) {
 
 static void print_component(const expr *e, FILE *out) {
   print_at(e->left, LEVEL_PRIMARY, out);
-  fprintf(out, "[%c,%c]", tensor_axis(e->component, 0), tensor_axis(e->component, 1));
+  if (e->unary == OP_AXIS)
+    fprintf(out, "[%c]", vector_axis(e->component));
+  else
+    fprintf(out, "[%c,%c]", tensor_axis(e->component, 0), tensor_axis(e->component, 1));
 }
 
 static void print_bare(const expr *e, level own, FILE *out) {
@@ -134,7 +137,7 @@ static void print_bare(const expr *e, level own, FILE *out) {
     fprintf(out, "%s%s%s", e->name, e->primed ? "'" : "", e->indexed ? "[j]" : "");
     break;
   case EXPR_UNARY:
-    if (e->unary == OP_COMPONENT) {
+    if (e->unary >= OP_COMPONENT) {
       print_component(e, out);
       break;
     }
@@ -202,7 +205,7 @@ static void dump_arguments(const expr *e, int depth, FILE *out) {
 }
 
 static void dump_expr(const expr *e, int depth, FILE *out) {
-  static const char *const unary[] = {"negative", "positive", "not", "component"};
+  static const char *const unary[] = {"negative", "positive", "not", "component", "axis"};
   indent(depth, out);
   switch (e->kind) {
   case EXPR_NUMBER:
@@ -219,6 +222,7 @@ static void dump_expr(const expr *e, int depth, FILE *out) {
     fputs(unary[e->unary], out);
     if (e->unary == OP_COMPONENT)
       fprintf(out, " %c,%c", tensor_axis(e->component, 0), tensor_axis(e->component, 1));
+    if (e->unary == OP_AXIS) fprintf(out, " %c", vector_axis(e->component));
     fputc('\n', out);
     dump_expr(e->left, depth + 1, out);
     break;
@@ -297,7 +301,11 @@ static void dump_stmt(const stmt *s, FILE *out) {
     fprintf(out, "text \"%s\"\n", s->text);
   }
   dump_bounds(&s->in, 2, out);
-  dump_labelled(s->deviator ? "deviator" : s->tensor ? "tensor" : "value", s->value, 2, out);
+  dump_labelled(s->deviator ? "deviator"
+                : s->vector ? LAW_VECTOR
+                : s->tensor ? "tensor"
+                            : "value",
+                s->value, 2, out);
   dump_labelled("when", s->when, 2, out);
 }
 
@@ -311,6 +319,14 @@ char tensor_axis(int component, int which) {
   static const char axes[TENSOR_COMPONENT_COUNT][2] = {TENSOR_COMPONENTS(X)};
 #undef X
   return axes[component][which];
+}
+
+char vector_axis(int component) {
+  return "xyz"[component];
+}
+
+bool expr_is_vector(const expr *e) {
+  return e && e->kind == EXPR_CALL && strcmp(e->name, LAW_VECTOR) == 0;
 }
 
 const char *law_kind_name(law_kind kind) {

@@ -22,10 +22,15 @@ C_LINKAGE_BEGIN
 
 /* `for irregular`, `when irregular`: particles that stand on no lattice. */
 #define LAW_IRREGULAR "irregular"
-/* `for anisotropic`: a law of a continuum that knows the axes. */
+/* The function that `(1, 0, 0)` stands for. */
+#define LAW_VECTOR "vector"
+enum { VECTOR_COMPONENT_COUNT = 3 };
+/* `for anisotropic`: a law that knows the axes. */
 #define LAW_ANISOTROPIC "anisotropic"
 /* The damage that `failed when ...` declares. */
 #define LAW_FAILED "failed"
+/* What has a rest state: `rest stretch = ...`. */
+#define LAW_RESTING "stretch"
 
 typedef enum expr_kind {
   EXPR_NUMBER, /* 30 [GPa] */
@@ -64,7 +69,7 @@ typedef enum binary_op {
       OP_BINARY_COUNT
 } binary_op;
 
-typedef enum unary_op { OP_NEG, OP_PLUS, OP_NOT, OP_COMPONENT } unary_op;
+typedef enum unary_op { OP_NEG, OP_PLUS, OP_NOT, OP_COMPONENT, OP_AXIS } unary_op;
 
 /* What a value is, beside its dimension. A bending quantity has one component in 2D, two in 3D. */
 typedef enum shape { SHAPE_SCALAR, SHAPE_LOGICAL, SHAPE_BENDING, SHAPE_VECTOR, SHAPE_TENSOR } shape;
@@ -125,7 +130,7 @@ struct expr {
   bool primed;  /* NAME: ' follows the name (the neighbour's value toward me) */
 
   unary_op unary;
-  int component; /* UNARY of OP_COMPONENT: which of the tensor's */
+  int component; /* UNARY of OP_COMPONENT: which of the tensor's; of OP_AXIS of the vector's */
   binary_op binary;
   expr *left, *right; /* BINARY; UNARY uses left */
 
@@ -148,13 +153,15 @@ struct expr {
 typedef enum stmt_kind {
 #define TREE_STATEMENTS(X)                                                                         \
   X(PARAMETER, "parameter")                                                                        \
+  X(FIELD, "field")                                                                                \
   X(CONSTANT, "constant")                                                                          \
   X(OPTION, "option")                                                                              \
   X(DEFINITION, "definition") X(STATE, "state") X(DAMAGE, "damage") X(FUNCTION, "function")        \
       X(FORCE, "force") X(FORCE_STATE, "force state") X(MOMENT, "moment") X(ENERGY, "energy")      \
-          X(STRESS, "stress") X(STRAIN, "strain") X(YIELD, "yield") X(FLOW, "flow")                \
+          X(STRESS, "stress") X(STRAIN, "strain") X(YIELD, "yield") X(FLOW, "flow") X(RATE, "rate") \
               X(OUTPUT, "output") X(NONCONSERVATIVE, "nonconservative") X(INCLUDE, "include")      \
-                  X(GROW, "grow") X(TOWARD, "toward") X(SPEED, "speed") X(REQUIRE, "require")
+                  X(GROW, "grow") X(TOWARD, "toward") X(SPEED, "speed") X(REQUIRE, "require")        \
+                  X(ACCEPT, "accept")
 #define X(code, text) STMT_##code,
   TREE_STATEMENTS(X)
 #undef X
@@ -175,12 +182,12 @@ struct stmt {
   span name_where;
   bool indexed;          /* name[j] */
   expr *value;           /* rule, default or initial value; NULL when absent */
-  placement place;       /* STATE, DAMAGE: as written, ON_NOTHING when not written */
+  placement place;       /* STATE, DAMAGE, FIELD: as written, ON_NOTHING when not written */
   span place_where;      /* of the word after `on` */
-  const char *unit_text; /* PARAMETER without default: its unit, NULL for a pure number */
+  const char *unit_text; /* PARAMETER, FIELD: unit behind the name, NULL without one */
   span unit_where;
   bool along_reference; /* FORCE_STATE: acts along the reference bond, not the current one */
-  bounds in;            /* PARAMETER, REQUIRE */
+  bounds in;            /* PARAMETER, FIELD, REQUIRE */
   const char **words;   /* OPTION: choices; FUNCTION: arguments */
   span *word_where;
   int word_count;
@@ -188,6 +195,9 @@ struct stmt {
   bool returned;    /* FLOW along ... returned */
   bool tensor;      /* STATE: begins at `tensor 0` or `deviator 0` */
   bool deviator;    /* STATE: begins at `deviator 0` */
+  const char *rest_of; /* DEFINITION: written `rest stretch = ...`, then `stretch`; else NULL */
+  bool total;          /* DEFINITION: what follows from such a line */
+  bool vector;      /* STATE: begins at `vector 0` */
   bool failure;     /* DAMAGE: written `failed when ...` */
   const char *text; /* quoted text: description, reason, or included file */
   span text_where;
@@ -234,6 +244,7 @@ typedef struct tree {
   int setting_count;
   bool anisotropic; /* was in the line `for`; it does not stand among the settings */
   span anisotropic_where;
+  bool rests;  /* has a line `rest stretch` */
   stmt *first; /* in the order written, included statements in place */
 } tree;
 
@@ -243,6 +254,9 @@ const char *placement_name(placement p);
 const char *stmt_words(arena *memory, const stmt *s);
 /* The axes of a component, 'x', 'y' or 'z'. */
 char tensor_axis(int component, int which);
+char vector_axis(int component);
+/* Is it `(1, 0, 0)`, or `vector(1, 0, 0)`? */
+bool expr_is_vector(const expr *e);
 
 /* Prints the tree as indented text, one node a line, without spans, as golden tests have it. */
 void tree_dump(const tree *t, FILE *out);

@@ -31,7 +31,7 @@ static bool index_given(parsing *p, word index) {
   if (index.text && strcmp(index.text, "j") != 0 && first_complaint(p)) {
     diag_report(p->messages, DIAG_SYNTAX, index.where, "the neighbour is called `j`, not `%s`",
                 index.text);
-    diag_hint(p->messages, "write [j]");
+    diag_hint(p->messages, "write [j]; a component of a vector is [x], [y] or [z]");
   }
   return index.text != NULL;
 }
@@ -57,6 +57,37 @@ expr *build_name(parsing *p, word name, bool primed, word index, span where) {
   e->name_where = name.where;
   e->primed = primed;
   e->indexed = index_given(p, index);
+  return e;
+}
+
+static int find_axis(const char *text) {
+  for (int k = 0; k < VECTOR_COMPONENT_COUNT; k++)
+    if (text[0] == vector_axis(k) && !text[1]) return k;
+  return -1;
+}
+
+expr *build_axis(parsing *p, expr *vector, word axis, span where) {
+  expr *e = build_unary(p, OP_AXIS, vector, where);
+  const int found = find_axis(axis.text);
+  e->component = found < 0 ? 0 : found;
+  if (found >= 0 || !first_complaint(p)) return e;
+  diag_report(p->messages, DIAG_SYNTAX, axis.where, "a vector has no component `%s`", axis.text);
+  diag_hint(p->messages, "components are named by the axes x, y and z, as in `%s[j][x]`",
+            vector->name);
+  return e;
+}
+
+expr *build_name_or_axis(parsing *p, word name, word index, span where) {
+  if (!index.text || find_axis(index.text) < 0) return build_name(p, name, false, index, where);
+  return build_axis(p, build_name(p, name, false, (word){.text = NULL}, name.where), index, where);
+}
+
+expr *build_vector(parsing *p, expr *x, expr *y, expr *z, span where) {
+  expr *const parts[] = {x, y, z};
+  expr *e = build_call(p, (word){.text = LAW_VECTOR, .where = where});
+  for (int k = 0; k < VECTOR_COMPONENT_COUNT && parts[k]; k++)
+    build_argument(p, e, (word){.text = NULL}, parts[k]);
+  e->where = where;
   return e;
 }
 
@@ -193,6 +224,26 @@ stmt *build_tip_stmt(parsing *p, stmt_kind kind, span name_where, expr *value, s
   return build_stmt(p, kind, name, none, value, where);
 }
 
+stmt *build_rest(parsing *p, word of, word index, expr *value, span where) {
+  const word name = {.text = arena_printf(p->memory, "rest_%s", of.text), .where = of.where};
+  stmt *s = build_stmt(p, STMT_DEFINITION, name, index, value, where);
+  s->rest_of = of.text;
+  return s;
+}
+
+stmt *build_total(parsing *p, const stmt *rest) {
+  const span at = rest->name_where;
+  const word index = {.text = rest->indexed ? "j" : NULL, .where = at},
+             of = {.text = rest->rest_of, .where = at}, by = {.text = rest->name, .where = at},
+             name = {.text = arena_printf(p->memory, "total_%s", rest->rest_of), .where = at};
+  expr *measured = build_name(p, of, false, index, at),
+       *rest_part = build_name(p, by, false, index, at);
+  expr *sum = build_binary(p, OP_ADD, measured, rest_part, at);
+  stmt *s = build_stmt(p, STMT_DEFINITION, name, index, sum, rest->where);
+  s->total = true;
+  return s;
+}
+
 stmt *build_failure(parsing *p, span name_where, expr *guard, span where) {
   const word name = {.text = LAW_FAILED, .where = name_where}, none = {.text = NULL};
   expr *whole = build_number(p, 1, none, name_where),
@@ -232,13 +283,14 @@ void build_placement(parsing *p, stmt *s, word on) {
 }
 
 void build_tensor_state(parsing *p, stmt *s, word tensor) {
-  s->tensor = true;
+  s->vector = strcmp(tensor.text, LAW_VECTOR) == 0;
+  s->tensor = !s->vector;
   s->deviator = strcmp(tensor.text, "deviator") == 0;
-  if (!s->deviator && strcmp(tensor.text, "tensor") != 0) {
+  if (!s->vector && !s->deviator && strcmp(tensor.text, "tensor") != 0) {
     if (!first_complaint(p)) return;
     diag_report(p->messages, DIAG_SYNTAX, tensor.where, "`%s` is not understood here", tensor.text);
     diag_hint(p->messages, "a state that is a tensor begins with `= tensor 0`, one of trace 0 with "
-                           "`= deviator 0`");
+                           "`= deviator 0`, one that is a vector with `= vector 0`");
   } else if (s->value->number != 0 && first_complaint(p)) {
     diag_report(p->messages, DIAG_SYNTAX, s->value->where, "a %s begins at 0", tensor.text);
     diag_hint(p->messages, "write `%s 0`", tensor.text);

@@ -14,7 +14,7 @@
   X(STRESS, "stress") X(STRAIN, "strain") X(YIELD, "yield") X(FLOW, "flow") X(OUTPUT, "output")    \
   X(NONCONSERVATIVE, "nonconservative") X(INCLUDE, "include") X(CRACK, "crack") X(GROW, "grow")   \
   X(TOWARD, "toward") X(SPEED, "speed") X(FAILED, "failed")  \
-  X(REQUIRE, "require")
+  X(REQUIRE, "require") X(ACCEPT, "accept") X(REST, "rest") X(RATE, "rate") X(FIELD, "field")
 
 /* Words that are never names. X(token, text) */
 #define RESERVED_WORDS(X)                                                                          \

@@ -6,6 +6,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "dsl/semantics/law_reads.h"
 #include "generator/check/physics_parameters.h"
 #include "generator/interpreter/comparison.h"
 #include "generator/ir/random_values.h"
@@ -127,6 +128,7 @@ bool bench_open(bench *b, const law *l, const physics_options *o, diagnostics *d
   b->parameter_count = l->parameters.count;
   b->field_count = l->fields.count;
   b->width = b->parameter_count + QUANTITY_COUNT + b->field_count + LAW_CHORD;
+  b->reads_time = law_reads_time(l);
   b->micropolar = law_kind_turns(l->tree->law);
   const size_t longest = (size_t)b->width + ENDS_COUNT; /* as long as any of the parts */
   b->strides = arena_alloc(b->memory, longest);
@@ -201,6 +203,7 @@ motion bench_motion(const bench *b, double *const *states, int lane) {
 void bench_virgin(const bench *b, double *const *states, int lane) {
   for (int k = 0; k < b->field_count; k++)
     bench_field(b, states, k)[lane] = b->law->fields.items[k]->initial;
+  bench_quantity(b, states, QUANTITY_DT)[lane] = 0;
   bench_move(b, states, lane, (motion){{0}});
 }
 
@@ -263,4 +266,6 @@ void bench_watch(bench *b, double *const *states, int count) {
   for (int k = 0; k < b->guards.count; k++)
     for (int lane = 0; lane < count; lane++)
       conditions_see(&b->conditions, k, b->guards.out[k][lane] != 0);
+  for (int lane = 0; lane < count && b->guards.count; lane++)
+    conditions_take(&b->conditions, b->guards.out, lane);
 }

@@ -49,6 +49,7 @@ typedef struct bench {
   double evaluated;          /* states so far */
   double allowed;            /* states after which the present check ends */
   int operations;            /* of one evaluation of the law */
+  bool reads_time;           /* `dt`, which rates of states read, too */
   probe step;                /* N, M_i, M_j, new fields, rules of the fields */
   probe frozen;              /* N, M_i, M_j with the fields at hand */
   law_conditions conditions; /* of law_step.text */
@@ -78,6 +79,7 @@ void bench_move(const bench *b, double *const *states, int lane, motion m);
 /* The reference chord from the other end. */
 void bench_turn(const bench *b, double *const *states, int lane);
 motion bench_motion(const bench *b, double *const *states, int lane);
+/* At rest, at no time since it began. */
 void bench_virgin(const bench *b, double *const *states, int lane);
 /* Parameters and bond class of one lane: those of the options; without them a log-uniform factor of
    0.5 to 2 on every default, kept within the bounds. The first lane of a batch has the defaults,

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "dsl/semantics/law_reads.h"
 #include "generator/check/physics_parameters.h"
 #include "generator/interpreter/interpreted.h"
 #include "generator/ir/random_values.h"
@@ -73,6 +74,7 @@ static bool build_both(kernel_plan *p, const segment *step, const segment *obser
 static bool plan_whole(family_bench *b, int *narrow, int *all) {
   const law *l = b->law;
   kernel_plan *p = b->plan[0] = begin(l);
+  b->reads_time = law_reads_time(p->law);
   const int fields = l->fields.count;
   if (!lower_law(p->law, p->graph, LOWER_STEP, b->memory, &b->step, b->said)) return false;
   const lowered_text *t = &b->step.text;

@@ -32,6 +32,7 @@ typedef struct family_bench {
   rows *lattice;
   const char *lattice_name;
   bool has_energy;
+  bool reads_time; /* `dt`, which is whole->advance */
   double *parameters;
   uint64_t seed;
   watched *rule;             /* [fields] of damages */

@@ -7,6 +7,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "dsl/semantics/law_reads.h"
 #include "generator/ir/random_values.h"
 #include "generator/lower/lower_family.h"
 #include "runtime/analysis/implied.h"
@@ -15,7 +16,6 @@ static const double REST_TOLERANCE = 1e-9;   /* of the force at a strain of 1e-3
 static const double ENERGY_TOLERANCE = 1e-9; /* of the work of the absolute forces */
 static const double GAIN_TOLERANCE = 1e-6;   /* of the path's peak energy */
 static const double SLOPE_TOLERANCE = 1e-6;  /* central differences of the energy */
-static const double ELASTIC_TOLERANCE = 1e-2;
 
 static double largest(const double *v, long count) {
   double most = 0;
@@ -137,44 +137,6 @@ void family_check_twist(family_bench *b) {
                        stiffness);
       return;
     }
-}
-
-/* --- elasticity ------------------------------------------------------------------------------- */
-
-static double named_parameter(const family_bench *b, const char *name) {
-  for (int k = 0; k < b->law->parameters.count; k++)
-    if (strcmp(b->law->parameters.items[k]->name, name) == 0) return b->parameters[k];
-  return NAN;
-}
-
-/* Young's modulus and Poisson's ratio that a plane sees. */
-static void seen_in_plane(law_setting setting, double *E, double *nu) {
-  if (setting != SETTING_PLANE_STRAIN) return;
-  *E /= 1 - *nu * *nu;
-  *nu /= 1 - *nu;
-}
-
-/* Force per volumes: the law of a continuum, which a lattice approaches with a growing horizon. */
-static bool gives_density(const law *l) {
-  const stmt *given = law_force_state(l);
-  return given && lower_is_per_volumes(given->symbol->dim);
-}
-
-void family_check_elasticity(family_bench *b) {
-  implied_elasticity e;
-  family_bench_draw(b, true);
-  double E = named_parameter(b, "E"), nu = named_parameter(b, "nu");
-  if (isnan(E) || isnan(nu) || gives_density(b->law)) return;
-  seen_in_plane(b->law->setting, &E, &nu);
-  if (!implied_elastic(b->kernel[0], b->parameters, b->lattice, &e)) return;
-  for (int c = 0; c < 2; c++)
-    if (!(fabs(e.E[c] - E) <= ELASTIC_TOLERANCE * E && fabs(e.nu[c] - nu) <= ELASTIC_TOLERANCE))
-      family_bench_say(b, DIAG_PATCH, family_bench_force(b), 0,
-                       "under uniform strain the perfect lattice is not that of `E` and `nu`: "
-                       "along %c it has %.4g GPa and %.4g, not %.4g GPa and %.4g%s",
-                       "xy"[c], 1e-9 * e.E[c], e.nu[c], 1e-9 * E, nu,
-                       b->law->setting == SETTING_PLANE_STRAIN ? " (as a plane strain sees them)"
-                                                               : "");
 }
 
 /* --- work with the fields held ---------------------------------------------------------------- */

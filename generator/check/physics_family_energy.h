@@ -9,7 +9,6 @@ void family_check_rest(family_bench *b);
 void family_check_stiffness(family_bench *b);
 /* Of bonds in space: a twist meets a moment against it. */
 void family_check_twist(family_bench *b);
-void family_check_elasticity(family_bench *b);
 /* Work with the fields held: stored energy, closed ways, what damage does; whole bodies and
    damaged ones. */
 void family_check_energy(family_bench *b, bool damaged);

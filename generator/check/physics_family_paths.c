@@ -25,6 +25,7 @@ typedef struct flow_tally { /* states just beyond a yield limit */
 typedef struct leg {
   double *from, *to, *rate, *u, *force, *other;
   double strain, speed;    /* 1, 1/s */
+  bool in_time;            /* the time of the body has gone on */
   unsigned char *truth[2]; /* of all guards at all places: at the last step, now */
   long truths;
   flow_tally *tally; /* [flows] of all legs */
@@ -77,8 +78,9 @@ static void note_seen(family_bench *b, const unsigned char *truth) {
 
 /* --- what every step is asked ----------------------------------------------------------------- */
 
+/* What grows in time may do so without end in one of the steps taken here. */
 static void check_finite(family_bench *b, const leg *l) {
-  for (long k = 0; k < b->values; k++)
+  for (long k = 0; k < b->values && !l->in_time; k++)
     if (!isfinite(l->force[k])) {
       family_bench_say(b, DIAG_NOT_FINITE, family_bench_force(b), l->strain,
                        "the force is not a finite number in a state that a body can reach");
@@ -383,6 +385,8 @@ static void begin_leg(family_bench *b, leg *l, bool slow, bool far) {
   l->from = l->to;
   l->to = from;
   l->strain = pl_pow(10, far ? draw_uniform(&b->seed, 0, 0.5) : draw_uniform(&b->seed, -3.5, -0.7));
+  b->whole->advance = b->reads_time && !slow ? pl_pow(10, draw_uniform(&b->seed, -8, 8)) : 0;
+  l->in_time = l->in_time || b->whole->advance > 0;
   l->speed = slow ? 0 : pl_pow(10, draw_uniform(&b->seed, -3, 5));
   family_bench_deform(b, l->strain, l->to);
   for (long k = 0; k < b->values; k++)
@@ -433,12 +437,14 @@ void family_check_histories(family_bench *b, int legs) {
   for (int k = 0; k < legs && !(k && family_bench_tired(b)); k++) {
     if (k % LEGS_OF_ONE == 0) {
       family_bench_draw(b, k == 0);
+      l.in_time = false;
       rest_leg(b, &l);
       crossings = CROSSINGS_OF_ONE;
     }
     begin_leg(b, &l, k % 2 == 0, k % LEGS_OF_ONE == LEGS_OF_ONE - 1);
     go_leg(b, &l, &crossings);
   }
+  b->whole->advance = 0;
   judge_tallies(b, &l);
   leg_free(&l);
 }
@@ -450,7 +456,16 @@ enum { CORNERS = 5 }; /* the first and the last at rest */
 typedef struct cycle {
   double *corner[CORNERS];
   double strain, speed, work, peak;
+  double time; /* s, from corner to corner, of laws that read it */
 } cycle;
+
+/* How quickly states of the virgin body begin to change. */
+static void begin_time(family_bench *b, double *force) {
+  if (!b->reads_time) return;
+  family_bench_move(b, NULL, NULL);
+  family_bench_forces(b, b->whole, force);
+  family_bench_accept(b);
+}
 
 /* The whole law round the corners from the virgin body, forces in the middle of each step. */
 static void go_round(family_bench *b, cycle *c, int steps) {
@@ -458,6 +473,7 @@ static void go_round(family_bench *b, cycle *c, int steps) {
          *force = family_bench_values(b);
   const patch *p = b->whole;
   patch_virgin(b->whole);
+  begin_time(b, force);
   c->work = c->peak = 0;
   for (int k = 0; k + 1 < CORNERS; k++) {
     for (long n = 0; n < b->values; n++) {
@@ -469,12 +485,14 @@ static void go_round(family_bench *b, cycle *c, int steps) {
       for (long n = 0; n < b->values; n++)
         u[n] = c->corner[k][n] + (step + 0.5) * way[n];
       family_bench_move(b, u, v);
+      if (b->reads_time) b->whole->advance = (k || step ? 1 : 0.5) * c->time / steps;
       family_bench_forces(b, b->whole, force);
       c->work += family_work(force, way, p->law->dimensions * p->inside_count, &size);
       c->peak = pl_fmax(c->peak, fabs(c->work));
       family_bench_accept(b);
     }
   }
+  b->whole->advance = 0;
   free(u);
   free(v);
   free(way);
@@ -505,7 +523,7 @@ static bool stays_negative(family_bench *b, cycle *c) {
 /* Out and back through another corner; some twice the same way. */
 static void draw_cycle(family_bench *b, cycle *c, int kind) {
   c->strain = pl_pow(10, draw_uniform(&b->seed, -5, -1));
-  c->speed = pl_pow(10, draw_uniform(&b->seed, -3, 4));
+  c->speed = b->reads_time ? 1 / c->time : pl_pow(10, draw_uniform(&b->seed, -3, 4));
   for (int k = 1; k + 1 < CORNERS; k++)
     family_bench_deform(b, c->strain, c->corner[k]);
   if (kind % 2) memset(c->corner[2], 0, (size_t)b->values * sizeof(double));
@@ -514,12 +532,14 @@ static void draw_cycle(family_bench *b, cycle *c, int kind) {
 
 void family_check_dissipation(family_bench *b, int cycles) {
   enum { COARSE = 16 };
-  cycle c;
+  cycle c = {.time = 0};
   for (int k = 0; k < CORNERS; k++)
     c.corner[k] = family_bench_values(b);
   for (int k = 0; k < cycles && !b->failed[DIAG_DISSIPATION] && !(k && family_bench_tired(b));
        k++) {
     family_bench_draw(b, k == 0);
+    /* nothing tells how slow a law is: all over seventeen decades */
+    if (b->reads_time) c.time = pl_pow(10, -8 + 17 * (k + draw_uniform(&b->seed, 0, 1)) / cycles);
     draw_cycle(b, &c, k);
     go_round(b, &c, COARSE);
     if (!(c.work < -tolerated_gain(b, &c) * c.peak) || !stays_negative(b, &c)) continue;
@@ -527,8 +547,13 @@ void family_check_dissipation(family_bench *b, int cycles) {
                      "a closed cycle gives %.4g J of work out, %.3g %% of its peak energy: the law "
                      "feeds energy",
                      -c.work, -100 * c.work / c.peak);
-    diag_hint(b->said, "damping opposes the rate, friction needs a `state` for the slip, and "
-                       "damage is not undone");
+    diag_hint(b->said,
+              b->reads_time
+                  ? "what relaxes goes toward the deformation that moves it: look at signs "
+                    "of rates; a stiffness that grows in time adds to what comes, not to "
+                    "what is there"
+                  : "damping opposes the rate, friction needs a `state` for the slip, and "
+                    "damage is not undone");
   }
   for (int k = 0; k < CORNERS; k++)
     free(c.corner[k]);

@@ -168,7 +168,7 @@ static void say_healing(physics *p, const healing *h, int lane, int leg, double 
   char corners[640], began[128] = "";
   memcpy(way, h->of[lane].corner, ((size_t)leg + 1) * sizeof *way);
   way[leg + 1] = bench_motion(&p->b, h->states, lane);
-  physics_describe_way(p, way, h->of[lane].rate, leg + 2, corners, sizeof corners);
+  physics_describe_way(p, way, h->of[lane].rate, NULL, leg + 2, corners, sizeof corners);
   if (h->began != s->initial)
     snprintf(began, sizeof began, ", begun with %s = %g", s->name, h->began);
   physics_say(

@@ -17,6 +17,7 @@ enum { CORNERS = 9, LEGS = CORNERS - 1 };
 typedef struct loop {
   motion corner[CORNERS]; /* corner[LEGS] is corner[0] */
   double rate[LEGS];      /* of the stretch, 1/s */
+  double time[LEGS];      /* s, of laws that read it */
 } loop;
 
 typedef struct loops {
@@ -75,26 +76,28 @@ static int force_at_fault(const loops *l, int lane) {
   return worst;
 }
 
-void physics_describe_way(const physics *p, const motion *corners, const double *rates, int count,
-                          char *text, size_t size) {
+void physics_describe_way(const physics *p, const motion *corners, const double *rates,
+                          const double *times, int count, char *text, size_t size) {
   size_t n = 0;
   text[0] = 0;
   for (int k = 1; k < count && n + 80 < size; k++) {
     const double *m = corners[k].at;
-    if (k > 1 && !memcmp(m, corners[k - 1].at, sizeof corners->at)) continue;
+    if (k > 1 && !times && !memcmp(m, corners[k - 1].at, sizeof corners->at)) continue;
     n += (size_t)snprintf(text + n, size - n, p->b.micropolar ? "%s(%.3g, %.3g, %.3g)" : "%s%.3g",
                           n ? ", " : "", m[AXIS_STRETCH], m[AXIS_THETA_I], m[AXIS_THETA_J]);
     if (rates && physics_reads_rate(p))
       n += (size_t)snprintf(text + n, size - n, " at %.3g 1/s", rates[k - 1]);
+    if (times) n += (size_t)snprintf(text + n, size - n, " in %.3g s", times[k - 1]);
   }
 }
 
-/* `rates`: those of the legs, or NULL. */
-static void note_loop(physics *p, const loops *l, int lane, const double *rates) {
+/* `rates` and `times`: those of the legs, or NULL. */
+static void note_loop(physics *p, const loops *l, int lane, const double *rates,
+                      const double *times) {
   char corners[640];
   double *column = must_alloc((size_t)p->b.width * sizeof *column);
   bench_get(&p->b, l->base, lane, column);
-  physics_describe_way(p, l->of[lane].corner, rates, CORNERS, corners, sizeof corners);
+  physics_describe_way(p, l->of[lane].corner, rates, times, CORNERS, corners, sizeof corners);
   char *state = physics_state_text(p, column);
   diag_note(p->said, (span){0, 0, UINT16_MAX}, "the way goes through %s = %s; it begins at %s",
             p->b.micropolar ? "(stretch, theta_i, theta_j)" : "stretch", corners, state);
@@ -146,7 +149,7 @@ static void say_closed_path(physics *p, const loops *l, int lane) {
               "have no stored energy",
               damaged ? "at a damage that stays the same " : "",
               100 * fabs(l->work[lane]) / l->peak[lane]);
-  note_loop(p, l, lane, NULL);
+  note_loop(p, l, lane, NULL, NULL);
   if (p->b.law->results[RESULT_V])
     diag_hint(p->said,
               "the moments of `force V` are V*length/2: they have an energy when V is as s/length");
@@ -230,16 +233,32 @@ void physics_check_closed_path(physics *p) {
 
 /* --- dissipation ------------------------------------------------------------------------------ */
 
+/* How quickly states of the virgin bond begin to change. */
+static void begin_time(physics *p, loops *l, int count) {
+  bench *b = &p->b;
+  if (!b->reads_time) return;
+  probe_run(b, &b->step, l->now, count);
+  bench_accept(b, l->now, count);
+}
+
+/* Up to the middle of a step from that of the one before. */
+static double time_since(const loop *o, int leg, int step, int steps) {
+  if (step > 0) return o->time[leg] / steps;
+  return 0.5 * (o->time[leg] + (leg > 0 ? o->time[leg - 1] : 0)) / steps;
+}
+
 /* The whole law along the loop, from rest; `steps` a leg, forces in the middle of each. */
 static void go_round(physics *p, loops *l, int count, int steps) {
   bench *b = &p->b;
   restart(p, l, count);
+  begin_time(p, l, count);
   for (int leg = 0; leg < LEGS; leg++) {
     for (int step = 0; step < steps; step++) {
       for (int lane = 0; lane < count; lane++) {
         motion m = between(&l->of[lane], leg, (step + 0.5) / steps);
         m.at[AXIS_RATE] = l->of[lane].rate[leg];
         bench_move(b, l->now, lane, m);
+        bench_quantity(b, l->now, QUANTITY_DT)[lane] = time_since(&l->of[lane], leg, step, steps);
       }
       probe_run(b, &b->step, l->now, count);
       for (int lane = 0; lane < count; lane++)
@@ -291,6 +310,16 @@ static void draw_corners(physics *p, loop *o, int kind) {
   }
 }
 
+/* The same of laws that read the time: quick and slow ones, and some that stand still. */
+static void draw_times(physics *p, loop *o) {
+  const double time = pl_pow(10, draw_uniform(&p->b.seed, -8, 9));
+  for (int leg = 0; leg < LEGS; leg++) {
+    const double way = o->corner[leg + 1].at[AXIS_STRETCH] - o->corner[leg].at[AXIS_STRETCH];
+    o->time[leg] = time * pl_pow(10, draw_uniform(&p->b.seed, -1, 0));
+    o->rate[leg] = way / o->time[leg];
+  }
+}
+
 /* Each leg at its own speed, within a decade of the others. */
 static void draw_rates(physics *p, loop *o) {
   double speed = pl_pow(10, draw_uniform(&p->b.seed, -3, 5));
@@ -330,9 +359,14 @@ static void look_closer(physics *p, const loops *coarse, int lane, loops *l) {
         p, DIAG_DISSIPATION, physics_fault(p, force_at_fault(l, 0), column), NULL,
         "a closed cycle gives %.4g J of work out, %.3g %% of its peak energy: the law feeds energy",
         -l->work[0], -100 * l->work[0] / l->peak[0]);
-    note_loop(p, l, 0, l->of[0].rate);
-    diag_hint(p->said, "damping opposes the rate, friction needs a `state` for the slip, and "
-                       "damage is not undone");
+    note_loop(p, l, 0, l->of[0].rate, p->b.reads_time ? l->of[0].time : NULL);
+    diag_hint(p->said,
+              p->b.reads_time
+                  ? "what relaxes goes toward the deformation that moves it: look at signs "
+                    "of rates; a stiffness that grows in time adds to what comes, not to "
+                    "what is there"
+                  : "damping opposes the rate, friction needs a `state` for the slip, and "
+                    "damage is not undone");
   }
   free(column);
 }
@@ -360,7 +394,7 @@ void physics_check_dissipation(physics *p) {
       bench_draw(b, l->base, lane);
       bench_virgin(b, l->base, lane);
       draw_corners(p, &l->of[lane], lane + round);
-      draw_rates(p, &l->of[lane]);
+      (b->reads_time ? draw_times : draw_rates)(p, &l->of[lane]);
     }
     go_round(p, l, BENCH_LANES, COARSE_STEPS);
     for (int lane = worst_lane(l);

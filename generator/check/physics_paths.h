@@ -8,9 +8,9 @@
 void physics_check_closed_path(physics *p);
 void physics_check_dissipation(physics *p);
 /* "0.001, 0, -0.002" or, of stretch and end rotations, "(0.001, 0, 0), ...": the corners after
-   the first; of a law that reads the rate "0.001 at 10 1/s" when `rates` has those of the legs
-   (NULL: no). */
-void physics_describe_way(const physics *p, const motion *corners, const double *rates, int count,
-                          char *text, size_t size);
+   the first; of a law that reads the rate "0.001 at 10 1/s" when `rates` has those of the legs,
+   "0.001 in 2 s" when `times` has theirs (NULL: no). */
+void physics_describe_way(const physics *p, const motion *corners, const double *rates,
+                          const double *times, int count, char *text, size_t size);
 
 #endif

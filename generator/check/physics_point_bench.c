@@ -7,6 +7,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "dsl/semantics/law_reads.h"
 #include "generator/check/physics_parameters.h"
 #include "generator/interpreter/interpreted.h"
 #include "generator/ir/random_values.h"
@@ -47,6 +48,7 @@ bool point_bench_open(point_bench *b, law_setting setting) {
   b->plan = plan_kernel(&b->setting, b->said);
   if (!b->plan) return false;
   b->kernel = plan_interpreted(b->plan);
+  b->reads_time = law_reads_time(&b->setting);
   b->strains = PL_STRAINS(b->kernel->dimensions);
   b->stresses = PL_STRESSES(b->kernel->dimensions);
   b->parameters = must_calloc((size_t)b->law->parameters.count + 1, sizeof(double));
@@ -121,7 +123,8 @@ void point_bench_run(point_bench *b, pl_point_function function, double time_ste
                            .tangent = b->tangent_at,
                            .observed = b->observed,
                            .lost = b->lost_at,
-                           .time_step = time_step};
+                           .time_step = time_step,
+                           .advance = b->advance};
   function(b->kernel, b->uniforms, &given);
   b->report->states += LANES;
 }

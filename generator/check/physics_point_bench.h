@@ -21,6 +21,8 @@ typedef struct point_bench {
   uint64_t seed;
   bool others; /* parameters are drawn, not the defaults */
   double *parameters, *uniforms;
+  double advance;  /* s: `dt` of the next evaluations, 0 if nothing is said */
+  bool reads_time; /* the law reads it */
   bool failed[DIAG_COUNT];
   int strains, stresses;
   double strain[POINT_MOST][POINT_LANES], rate[POINT_MOST][POINT_LANES], size[POINT_LANES];

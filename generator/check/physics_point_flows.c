@@ -91,7 +91,8 @@ void point_flows_close(point_flows *f) {
 
 static void run(point_bench *b, point_flows *f, interpreter *program, double *const *out) {
   static const double none = 0, step = TIME_STEP;
-  const double *point[POINT_INPUTS], *ends[ENDS_COUNT] = {[ENDS_TIME_STEP] = &step};
+  const double *point[POINT_INPUTS],
+      *ends[ENDS_COUNT] = {[ENDS_TIME_STEP] = &step, [ENDS_ADVANCE] = &none};
   for (int k = 0; k < POINT_INPUTS; k++)
     point[k] = k < POINT_STRAINS ? &f->strain[k] : k == POINT_CELL_SIZE ? &b->size[0] : &none;
   for (int k = 0; k < f->law->parameters.count; k++)

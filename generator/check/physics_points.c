@@ -64,7 +64,7 @@ static void open_lone(const point_bench *b, const double *strain, lone_point *po
   *field = must_calloc((size_t)b->law->fields.count + 1, sizeof **field);
   for (int k = 0; k < b->law->fields.count; k++)
     (*field)[k] = b->old_field[k][0];
-  *at = (asked_point){strain, *field, b->size[0], TIME_STEP};
+  *at = (asked_point){strain, *field, b->size[0], TIME_STEP, 0};
   lone_point_open(point, b->plan, b->parameters, at);
 }
 
@@ -532,14 +532,15 @@ static const symbol *forgotten(const point_bench *b, const round_trip *t) {
 
 static void go(point_bench *b, round_trip *t, const double *next) {
   double change[MOST], rate[MOST], after[MOST];
+  const double time = b->reads_time ? b->advance : TIME_STEP;
   for (int k = 0; k < b->strains; k++) {
     change[k] = next[k] - t->strain[k];
-    rate[k] = change[k] / TIME_STEP;
+    rate[k] = change[k] / time;
     t->strain[k] = next[k];
   }
   point_bench_strain(b, next, b->kernel->reads_rates ? rate : NULL);
   memset(b->lost, 0, sizeof b->lost);
-  point_bench_run(b, b->kernel->point_ledger, TIME_STEP);
+  point_bench_run(b, b->kernel->point_ledger, time);
   for (int k = 0; k < b->strains; k++) {
     after[k] = b->stress[k][0];
     t->stress[k] = 0.5 * (t->stress[k] + after[k]);
@@ -555,7 +556,8 @@ static void go(point_bench *b, round_trip *t, const double *next) {
     }
 }
 
-/* Around a random polygon of strains and back, in small steps. */
+/* Around a random polygon of strains and back, in small steps; of laws that read the time quickly or
+   slowly. */
 static void go_around(point_bench *b, round_trip *t, int steps) {
   enum { CORNERS = 5 };
   double corner[CORNERS + 1][MOST] = {{0}}, next[MOST];
@@ -565,17 +567,20 @@ static void go_around(point_bench *b, round_trip *t, int steps) {
   memcpy(t->first, corner[1], sizeof t->first);
   point_bench_virgin(b);
   point_bench_stress(b, t->strain, t->stress);
+  if (b->reads_time) point_bench_keep(b); /* how quickly states begin to change */
+  if (b->reads_time) b->advance = pl_pow(10, draw_uniform(&b->seed, -8, 9)) / steps;
   for (int k = 0; k < CORNERS; k++)
     for (int step = 1; step <= steps; step++) {
       between(b, corner[k], corner[k + 1], (double)step / steps, next);
       go(b, t, next);
     }
+  b->advance = 0;
 }
 
 /* Whether what a step loses is known: a state may lock energy in, which only the law's own W tells
-   from what is lost. */
-static bool knows_losses(const law *l) {
-  bool known = !l->nonconservative;
+   from what is lost; and one that goes on in time may overtake the strain within a step. */
+static bool knows_losses(const law *l, bool reads_time) {
+  bool known = !l->nonconservative && !reads_time;
   for (int k = 0; k < l->fields.count && !l->results[RESULT_W]; k++)
     known = known && l->fields.items[k]->kind == SYMBOL_DAMAGE;
   return known;
@@ -605,7 +610,8 @@ static void judge_path(point_bench *b, const round_trip *t, int steps) {
   const double gain = b->law->nonconservative ? GAIN_OF_NONCONSERVATIVE : 1e-3;
   const bool gains = !may_gain && t->total < -gain * t->size;
   const bool loses = conserves && !b->law->nonconservative && t->total > 1e-3 * t->size;
-  const bool creates = knows_losses(b->law) && t->lost_least < -PATH_TOLERANCE * t->size / steps;
+  const bool creates =
+      knows_losses(b->law, b->reads_time) && t->lost_least < -PATH_TOLERANCE * t->size / steps;
   char text[512];
   if (!gains && !loses && !creates) return;
   const char *mend = mend_of_gain(b, t, conserves, text, sizeof text);
@@ -629,7 +635,7 @@ static void check_paths(point_bench *b) {
 /* --- a law ------------------------------------------------------------------------------------ */
 
 static void check_setting(point_bench *b, const physics_options *o, int sets) {
-  enum { ROUNDS = 40, PATHS = 4 };
+  enum { ROUNDS = 40, PATHS = 4, TIMED_PATHS = 16 };
   const double effort = o->effort > 0 ? o->effort : 1;
   const bool jumps = means_jumps(b->law);
   point_flows *flows = point_flows_open(b);
@@ -648,7 +654,7 @@ static void check_setting(point_bench *b, const physics_options *o, int sets) {
       check_energy_and_stress(b);
       physics_check_turns(b);
     }
-    for (int round = 0; round < PATHS * effort; round++)
+    for (int round = 0; round < (b->reads_time ? TIMED_PATHS : PATHS) * effort; round++)
       check_paths(b);
   }
   point_flows_close(flows);

@@ -25,6 +25,7 @@ typedef struct tip_bench {
   bool failed[DIAG_COUNT];
   double in[PL_TIP_INPUTS][LANES], out[PL_TIP_RESULTS][LANES];
   double **field, **new_field, **observed;
+  int turned, turned_away; /* tips that grow to a side, and those toward the less opened one */
 } tip_bench;
 
 static double **planes(int count) {
@@ -151,6 +152,36 @@ static void check_run(tip_bench *b, int lane) {
         speed);
 }
 
+/* sqrt(2 pi r) times the stress across a ray ahead of the tip. */
+static double hoop_stress(double K_I, double K_II, double angle) {
+  const double c = pl_cos(angle / 2);
+  return c * (K_I * c * c - 1.5 * K_II * pl_sin(angle));
+}
+
+/* An angle beyond half a turn is none; a crack turns to the side on which it is opened more. */
+static void check_direction(tip_bench *b, int lane) {
+  static const double half_turn = 3.14159265358979323846;
+  const double K_I = b->in[PL_TIP_K_I][lane], K_II = b->in[PL_TIP_K_II][lane],
+               toward = b->out[PL_TIP_TOWARD][lane];
+  if (b->out[PL_TIP_GROW][lane] == 0 || !isfinite(toward)) return;
+  if (fabs(toward) > half_turn * (1 + 1e-9))
+    say(b, DIAG_DEGREES, RESULT_TOWARD, lane,
+        "angles are in radians: no factor such as 180/pi; a number in degrees has its unit, `30 "
+        "[deg]`",
+        "the tip turns by %.4g rad, more than half a turn: this looks like degrees", toward);
+  if (!(K_I > 0) || fabs(K_II) < 0.05 * K_I || fabs(toward) < 1e-3) return;
+  b->turned++;
+  b->turned_away += hoop_stress(K_I, K_II, toward) < hoop_stress(K_I, K_II, -toward);
+}
+
+static void judge_directions(tip_bench *b) {
+  enum { FEW = 20 };
+  if (b->turned < FEW || b->turned_away < b->turned || b->failed[DIAG_DEGREES]) return;
+  say(b, DIAG_CRACK_DIRECTION, RESULT_TOWARD, 0,
+      "look at the sign of K_II: with K_II above 0 a crack turns to negative angles",
+      "in all of %d looks the tip turns to the side on which it is opened less", b->turned);
+}
+
 static bool bench_open(tip_bench *b, const law *l, const physics_options *o, diagnostics *d) {
   b->law = l;
   b->said = d;
@@ -197,12 +228,14 @@ void physics_check_tips(const law *l, const physics_options *o, diagnostics *d,
       draw(b, false);
       look(b);
       for (int lane = 0; lane < LANES; lane++) {
-        if (lane % 2 == 0) check_mirror(b, lane);
+        if (lane % 2 == 0 && !l->tree->anisotropic) check_mirror(b, lane);
         check_run(b, lane);
+        check_direction(b, lane);
       }
       report->states += LANES;
     }
   }
+  if (good) judge_directions(b);
   bench_close(b);
   free(b);
 }

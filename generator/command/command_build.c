@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "dsl/semantics/law_variant.h"
-#include "generator/check/physics.h"
 #include "generator/command/commands.h"
 #include "generator/drive/drive_grammar.h"
 #include "generator/kernel/document.h"
@@ -14,6 +13,7 @@
 #include "generator/kernel/toolchain_compiler.h"
 #include "generator/lower/lowered.h"
 #include "generator/run/run.h"
+#include "generator/sense/sense.h"
 #include "generator/study/study_request.h"
 #include "generator/target/c_text.h"
 #include "runtime/deck/deck_read.h"
@@ -65,13 +65,17 @@ static bool take_uses(model *m, const char *words) {
   return settings <= 1;
 }
 
-/* With all that a host of its own may ask for. */
+/* With all that a host of its own may ask for: fields of the law, too, have arrays. */
 static bool plan_law(model *m, bool no_physics) {
-  const law_variation v = {.alone = true};
+  const symbol_list *list = &m->law->parameters;
+  int *given = arena_alloc(m->memory, ((size_t)list->count + 1) * sizeof *given);
+  law_variation v = {.alone = true, .varying = given};
+  for (int k = 0; k < list->count; k++)
+    if (symbol_is_field(list->items[k])) given[v.varying_count++] = k;
   const law *regular = law_on_lattice(m->law, m->law->setting, false, 0);
   const bool planned =
       m->law->irregular ? model_plan_of_families(m, &v) : model_plan_varying(m, &v);
-  return planned && (no_physics || physics_check(regular, NULL, &m->said, NULL));
+  return planned && (no_physics || law_is_sound(regular, NULL, &m->said, NULL));
 }
 
 /* 0, or an exit status. */

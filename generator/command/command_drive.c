@@ -186,7 +186,7 @@ static void explain_bad_point(const driving *r, long row) {
     fields[f] = row ? t->columns[t->law_column + f].values[row - 1] : r->of.initial[f];
   const double *time = t->columns[DRIVE_COLUMN_TIME].values;
   const asked_point at = {strain, fields, r->in->point.cell_size,
-                          row ? time[row] - time[row - 1] : 1};
+                          row ? time[row] - time[row - 1] : 1, row ? time[row] - time[row - 1] : 0};
   explain_point(r->of.model.plan, r->of.parameters, &at, stderr);
   free(fields);
 }

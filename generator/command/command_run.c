@@ -65,6 +65,16 @@ static void print_physics(const physics_report *p) {
   putchar('\n');
 }
 
+/* "law.plm: spring, no errors, 2 warnings, 1 finding accepted (0.6 ms)" */
+static void print_counts(const char *path, const model *m) {
+  const diagnostics *d = &m->said;
+  printf("%s: %s, no errors, %d warning%s", path, m->law->tree->name, d->count,
+         d->count == 1 ? "" : "s");
+  if (d->accepted_count)
+    printf(", %d finding%s accepted", d->accepted_count, d->accepted_count == 1 ? "" : "s");
+  printf(" (%.1f ms)\n", 1e3 * m->seconds_front);
+}
+
 /* --- a law ------------------------------------------------------------------------------------ */
 
 /* A law with the values that --set gives, name=value. */
@@ -119,9 +129,7 @@ static int check_law(const run_options *o, const char *path, const char *dump) {
   int status = check_as_law(&c, o, path, dump);
   say(o, &c.said);
   if (c.model.memory) say(o, &c.model.said);
-  if (!status && !dump && !o->report)
-    printf("%s: %s, no errors, %d warning%s (%.1f ms)\n", path, c.model.law->tree->name,
-           c.model.said.count, c.model.said.count == 1 ? "" : "s", 1e3 * c.model.seconds_front);
+  if (!status && !dump && !o->report) print_counts(path, &c.model);
   if (!status && !dump && !o->report && c.physics.states > 0) print_physics(&c.physics);
   if (c.model.memory) model_close(&c.model);
   diag_clear(&c.said);

@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include "dsl/semantics/law_reads.h"
-#include "generator/check/physics.h"
 #include "generator/facts/law_facts.h"
 #include "generator/facts/law_facts_json.h"
 #include "generator/facts/law_facts_text.h"
@@ -18,6 +17,7 @@
 #include "generator/kernel/settings.h"
 #include "generator/plan/plan.h"
 #include "generator/run/law_verdict.h"
+#include "generator/sense/sense.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/stability.h"
 #include "runtime/deck/deck_value.h"
@@ -183,7 +183,7 @@ static bool imply(law_facts *f) {
 static bool obeys(law_facts *f) {
   diagnostics found;
   diag_begin(&found, &f->model.sources);
-  const bool good = f->missing ? physics_check(f->model.law, NULL, &found, NULL)
+  const bool good = f->missing ? law_is_sound(f->model.law, NULL, &found, NULL)
                                : run_law_obeys(&f->model, &f->lattice, f->values,
                                                f->material.item.where, &found, &f->said);
   tell(f, &found);

@@ -7,6 +7,7 @@
 #include "dsl/base/arena.h"
 #include "generator/drive/drive_motion.h"
 #include "generator/drive/drive_table.h"
+#include "generator/drive/driven_fields.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/simulation/simulation.h"
 
@@ -23,6 +24,8 @@ typedef struct motion {
    bonds at once, of which only the first is present. */
 typedef struct driven_bond {
   const pl_law *kernel;
+  pl_bond_class bonds;
+  double *parameters; /* at hand */
   double s, *uniforms, **field, **force, **observed;
   double *displacement[2], *velocity[2], *lost_state, *lost_rate; /* of i, j: [dof][LANES] */
   int64_t *flags;
@@ -82,11 +85,21 @@ static void bond_open(driven_bond *r, const pl_law *kernel, const double *parame
     r->strip.velocity_i[k] = r->velocity[0] + k * LANES;
     r->strip.velocity_j[k] = r->velocity[1] + k * LANES;
   }
+  r->bonds = *bonds;
+  r->parameters = must_calloc((size_t)kernel->parameter_count + 1, sizeof(double));
+  memcpy(r->parameters, parameters, (size_t)kernel->parameter_count * sizeof(double));
   kernel->prepare(kernel, parameters, bonds, r->uniforms);
+}
+
+/* The law with what its fields are at a time. */
+static void bond_given(driven_bond *r, const drive_input *in, double time) {
+  if (driven_fields_at(in, r->kernel, time, r->parameters))
+    r->kernel->prepare(r->kernel, r->parameters, &r->bonds, r->uniforms);
 }
 
 static void bond_close(driven_bond *r) {
   free(r->uniforms);
+  free(r->parameters);
   free(r->memory);
   free(r->field);
   free(r->force);
@@ -258,25 +271,41 @@ static void first_row(marching *m, const motion *to, double time) {
   put_row(m, time);
 }
 
+/* What the change of the fields in a step adds to the stored energy, at the state at its end. */
+static double given_by_fields(marching *m, const motion *at, double time, double step) {
+  driven_bond *r = &m->driven_bond;
+  if (m->in->given_count == 0) return 0;
+  bond_given(r, m->in, time - step);
+  const double before = stored_energy(r, at);
+  bond_given(r, m->in, time);
+  return stored_energy(r, at) - before;
+}
+
 /* Trapezoids throughout: work and rate losses between the step's ends, and what damage costs as the
    mean of what it costs at the deformation before and after, which is exact to second order and for
-   sudden changes between the two. */
+   sudden changes between the two. What fields give is the mean of what they do at either end. */
 static void next_row(marching *m, const motion *from, const motion *to, double time, double step) {
   double *e = m->energy;
-  m->driven_bond.strip.time = time - step;
-  answer before = same_rates(from, &m->at) ? m->forces : bond_probe(&m->driven_bond, from);
-  m->driven_bond.strip.time = time;
-  answer after = bond_step(&m->driven_bond, to);
-  double lost_before = e[DRIVE_ENERGY_STORED] - stored_energy(&m->driven_bond, from);
+  driven_bond *r = &m->driven_bond;
+  r->strip.time = time - step;
+  r->strip.advance = 0;
+  answer before = same_rates(from, &m->at) ? m->forces : bond_probe(r, from);
+  r->strip.time = time;
+  r->strip.advance = step;
+  bond_given(r, m->in, time);
+  const double begins = m->in->given_count ? stored_energy(r, from) : e[DRIVE_ENERGY_STORED];
+  e[DRIVE_ENERGY_EXTERNAL] += 0.5 * (begins - e[DRIVE_ENERGY_STORED]);
+  answer after = bond_step(r, to);
+  double lost_before = begins - stored_energy(r, from);
   e[DRIVE_ENERGY_DISSIPATED_DAMAGE] += 0.5 * (lost_before + after.lost_state);
   e[DRIVE_ENERGY_DISSIPATED_DAMPING] += 0.5 * (before.power + after.power) * step;
-  e[DRIVE_ENERGY_EXTERNAL] +=
-      0.5 * (before.N + after.N) * (to->stretch - from->stretch) * m->driven_bond.s;
+  e[DRIVE_ENERGY_EXTERNAL] += 0.5 * (before.N + after.N) * (to->stretch - from->stretch) * r->s;
   for (int end = 0; end < 2; end++)
     e[DRIVE_ENERGY_EXTERNAL] +=
         0.5 * (before.M[end] + after.M[end]) * (to->theta[end] - from->theta[end]);
   e[DRIVE_ENERGY_EXTERNAL] += 0.5 * (before.T + after.T) * (to->twist - from->twist);
-  e[DRIVE_ENERGY_STORED] = stored_energy(&m->driven_bond, to);
+  e[DRIVE_ENERGY_EXTERNAL] += 0.5 * given_by_fields(m, to, time, step);
+  e[DRIVE_ENERGY_STORED] = stored_energy(r, to);
   m->at = *to;
   m->forces = after;
   put_row(m, time);
@@ -321,6 +350,7 @@ bool drive_run(const drive_input *in, const pl_law *kernel, const double *parame
   bond_open(&m.driven_bond, kernel, parameters, &bonds);
   for (int f = 0; f < kernel->field_count; f++)
     m.driven_bond.field[f][0] = initial[f];
+  bond_given(&m.driven_bond, in, count > 0 ? t[0] : 0);
   bool good = true;
   for (long k = 0; good && k < count && out->bad_row < 0; k++) {
     motion to = motion_ending(in, t, count, k);
@@ -344,6 +374,7 @@ void drive_observe(const drive_input *in, const pl_law *kernel, const double *pa
   driven_bond r;
   if (!drive_bond_class(in, material_density(kernel, parameters), &bonds)) return;
   bond_open(&r, kernel, parameters, &bonds);
+  bond_given(&r, in, t->columns[DRIVE_COLUMN_TIME].values[row]);
   for (int f = 0; f < kernel->field_count; f++)
     r.field[f][0] = t->columns[DRIVE_COLUMN_LAW + f].values[row];
   motion m = {.stretch = t->columns[DRIVE_COLUMN_STRETCH].values[row],

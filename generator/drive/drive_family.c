@@ -9,8 +9,10 @@
 #include "dsl/base/arena.h"
 #include "generator/drive/drive_motion.h"
 #include "generator/drive/drive_table.h"
+#include "generator/drive/driven_fields.h"
 #include "generator/interpreter/interpreted.h"
 #include "generator/lower/lower_inputs.h"
+#include "generator/lower/lower_rest.h"
 #include "generator/plan/plan_family.h"
 #include "generator/plan/plan_roots.h"
 #include "runtime/analysis/implied.h"
@@ -47,6 +49,7 @@ static kernel_plan *plan_stress(const law *l, diagnostics *d) {
     plan_free(p);
     return NULL;
   }
+  rest_take_off_law(g, l, &step);
   static const ends_input chord[] = {ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y, ENDS_CLASS_CHORD_Z};
   const int count = part_count(p->dimensions), own = 1 + l->outputs.count;
   segment wanted = {.root_count = 0};
@@ -301,6 +304,26 @@ static void set_fields(driven_particle *r, const double *initial) {
       set_plane(r->law, f, k, initial[f]);
 }
 
+/* The law with what its fields are at a time. */
+static void take_given(driven_particle *r, const drive_input *in, double time, double *parameters) {
+  if (!driven_fields_at(in, r->kernel, time, parameters)) return;
+  patch_prepare(r->law, parameters);
+  if (r->stress) patch_prepare(r->stress, parameters);
+}
+
+/* J: what the change of the fields between two times adds to the stored energy at a state. */
+static double given_by_fields(driven_particle *r, const drive_input *in, const state *at,
+                              double before, double after, double *parameters) {
+  if (in->given_count == 0) return 0;
+  particle_move(r, at->strain, at->rate);
+  take_given(r, in, before, parameters);
+  patch_observe(r->law);
+  const double stored = r->law->observed[0][r->site];
+  take_given(r, in, after, parameters);
+  patch_observe(r->law);
+  return r->law->observed[0][r->site] - stored;
+}
+
 bool drive_family_run(const drive_input *in, const law *l, const pl_law *kernel, family_gauge *g,
                       const double *parameters, const double *initial, drive_table *out,
                       diagnostics *d) {
@@ -316,11 +339,17 @@ bool drive_family_run(const drive_input *in, const law *l, const pl_law *kernel,
   double *t = drive_times(in, &count);
   table_open(out, kernel, r.neighbours, count);
   set_fields(&r, initial);
+  double *now_given = must_calloc((size_t)kernel->parameter_count + 1, sizeof *now_given);
+  memcpy(now_given, parameters, (size_t)kernel->parameter_count * sizeof *now_given);
   for (long k = 0; k < count && out->bad_row < 0; k++) {
     const double inside = k ? t[k] - beside * (t[k] - t[k - 1]) : count > 1 ? beside * t[1] : 0;
     state now = state_at(in, r.dimensions, t[k], inside);
     r.law->time_step = r.stress->time_step = k ? t[k] - t[k - 1] : r.law->time_step;
+    r.law->advance = r.stress->advance = k ? t[k] - t[k - 1] : 0;
+    if (k) energy[EXTERNAL] += 0.5 * given_by_fields(&r, in, &before, t[k - 1], t[k], now_given);
+    take_given(&r, in, t[k], now_given);
     take_step(&r, &now);
+    if (k) energy[EXTERNAL] += 0.5 * given_by_fields(&r, in, &now, t[k - 1], t[k], now_given);
     energy[STORED] = r.law->observed[0][r.site];
     energy[EXTERNAL] += k ? work_between(&r, &before, &now) : energy[STORED];
     energy[DISSIPATED] = energy[EXTERNAL] - energy[STORED];
@@ -328,6 +357,7 @@ bool drive_family_run(const drive_input *in, const law *l, const pl_law *kernel,
     before = now;
   }
   free(t);
+  free(now_given);
   particle_close(&r);
   return true;
 }
@@ -339,8 +369,11 @@ void drive_family_observe(const drive_input *in, const law *l, const pl_law *ker
   state s = {.strain = {0}};
   diagnostics unheard;
   source_set sources = {NULL, 0};
+  double *values = must_calloc((size_t)kernel->parameter_count + 1, sizeof *values);
   diag_begin(&unheard, &sources);
-  if (particle_open(&r, in, l, kernel, NULL, parameters, &unheard)) {
+  memcpy(values, parameters, (size_t)kernel->parameter_count * sizeof *values);
+  driven_fields_at(in, kernel, t->columns[0].values[row], values);
+  if (particle_open(&r, in, l, kernel, NULL, values, &unheard)) {
     int c = t->law_column;
     for (int k = 0; k < r.parts; k++)
       s.strain[k] = t->columns[1 + k].values[row];
@@ -353,5 +386,6 @@ void drive_family_observe(const drive_input *in, const law *l, const pl_law *ker
       outputs[k] = r.law->observed[1 + k][r.site];
   }
   particle_close(&r);
+  free(values);
   diag_clear(&unheard);
 }

@@ -161,10 +161,12 @@ static const deck_key_info path_keys[] = {
      .choices =
          "stretch|theta_i|theta_j|twist|stretch_rate|strain_xx|strain_yy|strain_zz|strain_xy|"
          "strain_yz|strain_xz|stress_xx|stress_yy|stress_zz|stress_xy|stress_yz|stress_xz",
-     .required = true,
      NOT_KEPT,
      .doc = "what is prescribed; several `&path` of one quantity add up; the rate is that of the "
             "stretch unless it is given; stresses drive points alone"},
+    LATER("field", "",
+          "instead: a `field` of the law, which goes as `times` and `values` say, in its unit; "
+          "before and after as at the ends"),
     LATER(
         "value", "as the quantity",
         "full value of a load; amplitude of cycles; factor on `values` and files, 1 if not given"),

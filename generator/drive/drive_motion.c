@@ -66,6 +66,8 @@ double drive_end(const drive_input *in) {
   if (in->simulation.end_time >= 0) return in->simulation.end_time;
   for (int k = 0; k < in->piece_count; k++)
     end = pl_fmax(end, corner(&in->pieces[k], corner_count(&in->pieces[k]) - 1));
+  for (int k = 0; k < in->given_count; k++)
+    end = pl_fmax(end, in->given[k].f.times[in->given[k].f.count - 1]);
   return end;
 }
 
@@ -88,10 +90,15 @@ double *drive_corners(const drive_input *in, long *count) {
   long most = 0, n = 0;
   for (int k = 0; k < in->piece_count; k++)
     most += corner_count(&in->pieces[k]);
+  for (int k = 0; k < in->given_count; k++)
+    most += in->given[k].f.count;
   double *t = must_alloc((size_t)(most + 1) * sizeof *t);
   for (int k = 0; k < in->piece_count; k++)
     for (long c = 0; c < corner_count(&in->pieces[k]); c++)
       t[n++] = corner(&in->pieces[k], c);
+  for (int k = 0; k < in->given_count; k++)
+    for (int c = 0; c < in->given[k].f.count; c++)
+      t[n++] = in->given[k].f.times[c];
   *count = clean(t, n, drive_end(in));
   return t;
 }

@@ -96,10 +96,51 @@ static bool wants_cycles(const namelist_group *g) {
          strcmp(history->values[0].text, "cycles") == 0;
 }
 
+/* Only `times` and `values`, which have its unit. */
+static void read_given(const reader *r, const namelist_group *g, const namelist_key *name) {
+  static const char *const others[] = {"quantity", "value",  "history", "start", "rise",
+                                       "period",   "cycles", "wave",    "file"};
+  const namelist_key *values = namelist_find(g, "values");
+  drive_given given = {.name_where = name->value_where,
+                       .where = values ? values->value_where : g->where};
+  static const deck_key_info name_key = {.name = "field", .type = DECK_NAME, .offset = 0};
+  deck_quantity q;
+  for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
+    const namelist_key *other = namelist_find(g, others[k]);
+    if (!other) continue;
+    diag_report(r->d, DIAG_CONFLICT, other->name_where, "`%s` does not go with `field`", others[k]);
+    diag_hint(r->d, "a field is given by `times` and `values`: &path field = 'T' times = 0, 1 "
+                    "values = '293 K', '400 K' /");
+    return;
+  }
+  if (!deck_field_read(r->memory, &name_key, name, &given.name, r->d) ||
+      !deck_quantity_in_time_read(r->memory, g, &given.f, &q, r->d))
+    return;
+  for (int k = 0; k < r->in->given_count; k++)
+    if (strcasecmp(r->in->given[k].name, given.name) == 0) {
+      diag_report(r->d, DIAG_CONFLICT, given.name_where, "the field `%s` has a path already",
+                  given.name);
+      diag_note(r->d, r->in->given[k].name_where, "it is given here");
+      return;
+    }
+  given.has_unit = q.has_unit;
+  given.dim = q.dim;
+  r->in->given[r->in->given_count++] = given;
+}
+
 static void read_path(const reader *r, const namelist_group *g) {
   drive_piece p = {.where = g->where};
   const deck_group_info *info = drive_grammar.groups[DRIVE_GROUP_path];
+  const namelist_key *field = namelist_find(g, "field");
   if (!group_keys_read(r->memory, g, info, &p, r->d)) return;
+  if (field) {
+    read_given(r, g, field);
+    return;
+  }
+  if (!namelist_find(g, "quantity")) {
+    diag_report(r->d, DIAG_MISSING_KEY, g->where, "`&path` needs `quantity` or `field`");
+    return;
+  }
   int quantity =
       deck_choice_read(r->memory, namelist_find(g, "quantity"), info->keys[0].choices, r->d);
   if (quantity < 0) return;
@@ -236,7 +277,7 @@ static void check_whole(const reader *r, int file) {
                 "`steps` must be at least 1");
     return;
   }
-  if (in->piece_count == 0 && r->d->errors == 0)
+  if (in->piece_count == 0 && in->given_count == 0 && r->d->errors == 0)
     diag_report(r->d, DIAG_MISSING_KEY, (span){0, 0, (uint16_t)file},
                 "there is no `&path`: nothing happens");
   double end = drive_end(in);
@@ -262,6 +303,7 @@ drive_input *drive_read(arena *a, source_set *sources, int file, const deck_over
   size_t most = (size_t)n->group_count + 1;
   in->path = arena_text(a, sources->items[file].name, strlen(sources->items[file].name));
   in->pieces = arena_alloc(a, most * sizeof *in->pieces);
+  in->given = arena_alloc(a, most * sizeof *in->given);
   in->expects = arena_alloc(a, most * sizeof *in->expects);
   deck_defaults(a, drive_grammar.groups[DRIVE_GROUP_simulation], &in->simulation);
   deck_defaults(a, drive_grammar.groups[DRIVE_GROUP_bond], &in->bond);

@@ -58,6 +58,15 @@ typedef struct drive_piece {
   int cycles;
 } drive_piece;
 
+/* One group &path with `field`: a field of the law by a table in time. */
+typedef struct drive_given {
+  const char *name;
+  span name_where, where; /* of its values */
+  time_function f;
+  bool has_unit;
+  dimension dim;
+} drive_given;
+
 /* One group &expect. */
 typedef struct drive_expect {
   deck_item item;
@@ -121,6 +130,8 @@ typedef struct drive_input {
   deck_material initial;  /* state and damage at the start, as assignments */
   drive_piece *pieces;
   int piece_count;
+  drive_given *given;
+  int given_count;
   drive_expect *expects;
   int expect_count;
 } drive_input;

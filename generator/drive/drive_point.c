@@ -8,6 +8,7 @@
 #include "dsl/semantics/law_limits.h"
 #include "dsl/semantics/law_variant.h"
 #include "generator/drive/drive_motion.h"
+#include "generator/drive/driven_fields.h"
 #include "generator/drive/point_control.h"
 
 enum { MOST = PL_MAX_STRAINS };
@@ -82,6 +83,7 @@ typedef struct marching {
   double tangent[MOST][MOST];
   ellipticity ellipticity; /* of that tangent */
   double energy[DRIVE_ENERGY_COUNT];
+  double *parameters; /* at hand */
 } marching;
 
 static void put(drive_table *t, int *column, const double *values, int count) {
@@ -134,6 +136,22 @@ static double work_between(const driven_point *p, const stressed *before, const 
   return sum;
 }
 
+/* The law with what its fields are at a time. */
+static void take_given(marching *m, double time) {
+  if (driven_fields_at(m->in, m->point.kernel, time, m->parameters))
+    driven_point_take(&m->point, m->parameters);
+}
+
+/* What the change of the fields between two times adds to the stored energy at a state, J/m^3; the
+   law is left with those of the second. */
+static double given_by_fields(marching *m, const strained *at, double before, double after) {
+  if (m->in->given_count == 0) return 0;
+  take_given(m, before);
+  const double stored = driven_point_observe(&m->point, at);
+  take_given(m, after);
+  return driven_point_observe(&m->point, at) - stored;
+}
+
 /* What the first row holds counts as work done before it. */
 static void first_row(marching *m, const strained *to, double time) {
   double *e = m->energy;
@@ -150,6 +168,7 @@ static void first_row(marching *m, const strained *to, double time) {
 static strained beginning(const marching *m, const strained *to, double inside) {
   strained from = m->at;
   from.step = to->step;
+  from.advance = 0;
   for (int k = 0; k < m->control.strains; k++)
     from.rate[k] = m->control.by_stress[k] || m->control.follows[k] < 0
                        ? to->rate[k]
@@ -162,14 +181,17 @@ static strained beginning(const marching *m, const strained *to, double inside) 
 static void next_row(marching *m, const strained *from, const strained *to, const stressed *after,
                      double time) {
   double *e = m->energy;
+  take_given(m, time - to->step);
   const stressed before = driven_point_step(&m->point, from);
+  e[DRIVE_ENERGY_EXTERNAL] += 0.5 * given_by_fields(m, from, time - to->step, time);
   (void)driven_point_step(&m->point, to);
   find_ellipticity(m, to);
   driven_point_accept(&m->point);
   e[DRIVE_ENERGY_DISSIPATED_DAMAGE] += after->lost[PL_LOST_TO_STATES];
   e[DRIVE_ENERGY_DISSIPATED_DAMPING] +=
       0.5 * (before.lost[PL_LOST_TO_RATES] + after->lost[PL_LOST_TO_RATES]);
-  e[DRIVE_ENERGY_EXTERNAL] += work_between(&m->point, &before, after, from, to);
+  e[DRIVE_ENERGY_EXTERNAL] += work_between(&m->point, &before, after, from, to) +
+                              0.5 * given_by_fields(m, to, time - to->step, time);
   e[DRIVE_ENERGY_STORED] = driven_point_observe(&m->point, to);
   m->at = *to;
   m->answer = *after;
@@ -228,10 +250,13 @@ bool drive_point_run(const drive_input *in, const pl_law *kernel, const double *
   double *t = drive_times(in, &count);
   bool good = true;
   table_open(out, in, kernel, count);
+  m.parameters = must_calloc((size_t)kernel->parameter_count + 1, sizeof *m.parameters);
+  memcpy(m.parameters, parameters, (size_t)kernel->parameter_count * sizeof *m.parameters);
   for (long k = 0; good && k < count && out->bad_row < 0; k++) {
     const double step = k ? t[k] - t[k - 1] : count > 1 ? t[1] : 1;
-    strained to = {.step = step};
+    strained to = {.step = step, .advance = k ? step : 0};
     stressed answer;
+    take_given(&m, t[k]);
     good = point_control_reach(&m.control, in, &m.point, t[k], t[k] + (k ? -1 : 1) * beside * step,
                                k ? &m.at : NULL, &to, &answer, d);
     if (!good) break;
@@ -244,6 +269,7 @@ bool drive_point_run(const drive_input *in, const pl_law *kernel, const double *
     next_row(&m, &from, &to, &answer, t[k]);
   }
   driven_point_close(&m.point);
+  free(m.parameters);
   free(t);
   return good;
 }
@@ -252,7 +278,11 @@ void drive_point_observe(const drive_input *in, const pl_law *kernel, const doub
                          const drive_table *t, long row, double *outputs) {
   driven_point p;
   strained at = {.step = row ? t->columns[0].values[row] - t->columns[0].values[row - 1] : 1};
-  driven_point_open(&p, kernel, parameters, in->point.cell_size);
+  double *values = must_calloc((size_t)kernel->parameter_count + 1, sizeof *values);
+  memcpy(values, parameters, (size_t)kernel->parameter_count * sizeof *values);
+  driven_fields_at(in, kernel, t->columns[0].values[row], values);
+  driven_point_open(&p, kernel, values, in->point.cell_size);
+  free(values);
   for (int k = 0; k < p.strains; k++) {
     at.strain[k] = t->columns[1 + k].values[row];
     at.rate[k] = t->columns[1 + p.strains + k].values[row];

@@ -8,6 +8,7 @@
 #include "dsl/semantics/law_reads.h"
 #include "dsl/semantics/law_variant.h"
 #include "generator/drive/drive_bond.h"
+#include "generator/drive/driven_fields.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/material_law.h"
 #include "generator/plan/plan.h"
@@ -164,6 +165,7 @@ static bool set_values(driven_law *r) {
   for (int f = 0; f < kernel->field_count; f++)
     r->initial[f] = kernel->fields[f].initial;
   bool good = material_parameters(&r->model.values, kernel, r->parameters, r->said);
+  good = good && driven_fields_suit(r->in, kernel, r->parameters, r->said);
   for (int k = 0; k < r->in->initial.assignment_count; k++)
     good = set_field(r, &r->in->initial.assignments[k]) && good;
   return good;

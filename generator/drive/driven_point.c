@@ -41,7 +41,6 @@ static double *aligned(double *memory) {
 
 void driven_point_open(driven_point *p, const pl_law *kernel, const double *parameters,
                        double cell_size) {
-  const pl_bond_class none = {.size = sizeof none};
   const int fields = kernel->field_count, observed = 1 + kernel->output_count,
             fixed = 3 * PL_MAX_STRAINS + PL_MAX_STRAINS * PL_MAX_STRAINS + PL_LOSSES + 1;
   *p = (driven_point){.kernel = kernel,
@@ -61,7 +60,12 @@ void driven_point_open(driven_point *p, const pl_law *kernel, const double *para
   take(&next, 1, &p->cell_size);
   for (int lane = 0; lane < LANES; lane++)
     p->cell_size[lane] = cell_size;
-  kernel->prepare(kernel, parameters, &none, p->uniforms);
+  driven_point_take(p, parameters);
+}
+
+void driven_point_take(driven_point *p, const double *parameters) {
+  const pl_bond_class none = {.size = sizeof none};
+  p->kernel->prepare(p->kernel, parameters, &none, p->uniforms);
 }
 
 void driven_point_close(driven_point *p) {
@@ -96,7 +100,8 @@ static void run(driven_point *p, pl_point_function function, const strained *at)
                             .tangent = p->tangent,
                             .observed = p->observed,
                             .lost = p->lost,
-                            .time_step = at->step};
+                            .time_step = at->step,
+                            .advance = at->advance};
   function(p->kernel, p->uniforms, &points);
 }
 

@@ -9,6 +9,7 @@
 typedef struct strained {
   double strain[PL_MAX_STRAINS], rate[PL_MAX_STRAINS]; /* 1, 1/s */
   double step;                                         /* s: how long it took to get there */
+  double advance; /* s: the same, but 0 where states stay as they are: at the beginning */
 } strained;
 
 typedef struct stressed {
@@ -28,6 +29,8 @@ typedef struct driven_point {
 void driven_point_open(driven_point *p, const pl_law *kernel, const double *parameters,
                        double cell_size);
 void driven_point_close(driven_point *p);
+/* With other parameters from now on. */
+void driven_point_take(driven_point *p, const double *parameters);
 
 void driven_point_set(driven_point *p, int field, double value);
 /* Stress and losses; what the fields become waits to be accepted. */

@@ -33,7 +33,7 @@ void explain_bad(const kernel_plan *p, const double *parameters, const pl_bond_c
                  const bad_state *b, FILE *out) {
   const symbol_list *fields = &p->law->fields;
   const double kinematics[PL_STATE_INPUTS] = {b->stretch, b->stretch_rate, b->theta_i, b->theta_j,
-                                              bonds->s * (1 + b->stretch)};
+                                              bonds->s * (1 + b->stretch), b->advance};
   double **in = planes_new(PL_STATE_INPUTS, 1), **field = planes_new(fields->count, 1);
   for (int k = 0; k < PL_STATE_INPUTS; k++)
     in[k][0] = kinematics[k];

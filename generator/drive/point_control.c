@@ -394,7 +394,7 @@ bool point_control_reach(point_control *c, const drive_input *in, driven_point *
               .point = p,
               .before = before ? before : &rest,
               .since = sudden ? SUDDEN * to->step : to->step,
-              .at = {.step = to->step}};
+              .at = {.step = to->step, .advance = to->advance}};
   for (int k = 0; k < c->strains; k++) {
     const drive_quantity q = (drive_quantity)c->follows[k];
     const bool given = c->follows[k] != NOTHING;

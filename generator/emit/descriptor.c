@@ -37,6 +37,24 @@ static void write_varying(c_text *out, const kernel_plan *p) {
   c_text_add(out, "};\n\n");
 }
 
+/* Places of the fields that the law is given. */
+static void write_given(c_text *out, const kernel_plan *p) {
+  const symbol_list *list = &p->law->parameters;
+  int count = 0;
+  for (int k = 0; k < list->count; k++) {
+    if (!symbol_is_field(list->items[k])) continue;
+    c_text_add(out, count++ ? ", %d" : "static const int32_t law_given[] = {%d", k);
+  }
+  if (count) c_text_add(out, "};\n\n");
+}
+
+static int given_count(const kernel_plan *p) {
+  int count = 0;
+  for (int k = 0; k < p->law->parameters.count; k++)
+    count += symbol_is_field(p->law->parameters.items[k]);
+  return count;
+}
+
 static const char *place_of_field(const symbol *s) {
   return s->place == ON_POINT      ? "PL_ON_POINT"
          : s->place == ON_TIP      ? "PL_ON_TIP"
@@ -96,6 +114,8 @@ static void write_law(c_text *out, const kernel_plan *p) {
   if (p->variation.varying_count)
     c_text_add(out, "    .varying_count = %d,\n    .varying = law_varying,\n",
                p->variation.varying_count);
+  if (given_count(p))
+    c_text_add(out, "    .given_count = %d,\n    .given = law_given,\n", given_count(p));
   write_table(out, "field", "law_fields", p->law->fields.count);
   write_table(out, "output", "law_outputs", p->law->outputs.count);
   c_text_add(out,
@@ -193,6 +213,7 @@ char *descriptor_keyed(const char *unkeyed, const char *key) {
 void descriptor_lists(const kernel_plan *p, c_text *out) {
   write_parameters(out, p);
   write_varying(out, p);
+  write_given(out, p);
   write_fields(out, &p->law->fields, "law_fields");
   write_fields(out, &p->law->outputs, "law_outputs");
   if (p->form == FORM_STRIPS) write_state_inputs(out);

@@ -96,8 +96,14 @@ const char *family_input_array(const emitter *e, ir_node n, const family_index *
   const ir_source from = ir_input_source(e->graph, n);
   const bool link = from == IR_FROM_NEIGHBOUR_LINK || from == IR_FROM_NEIGHBOUR_BOND_LINK;
   const char *array = own_array(e, n, at);
-  if (family_is_list(e) || !family_is_of_neighbour(e, n)) return array;
+  if (!at->to || !family_is_of_neighbour(e, n)) return array;
   return spell(e, SAY_FROM_THERE, array, link ? at->link_to : at->to);
+}
+
+const char *family_way_value(const emitter *e, ir_node n) {
+  const ends_origin *o = origin_of(e, n);
+  return o->array == FROM_LENGTH ? spell(e, SAY_WAY_LENGTH)
+                                 : spell(e, SAY_WAY_CHORD, numeral(e, o->component));
 }
 
 const char *family_root_array(const emitter *e, const segment_root *r, const family_index *at) {

@@ -9,6 +9,7 @@
    neighbour here and there, for the way to it and to its links, and for number and place of the
    bond at its owner. */
 typedef struct family_index {
+  /* `to` NULL: the loop adds the way */
   const char *first, *k, *back, *to, *link_to, *owned, *owner;
   bool far; /* the bond is the neighbour's, which is known only where families are unrolled */
 } family_index;
@@ -22,6 +23,8 @@ bool family_is_of_neighbour(const emitter *e, ir_node n);
 /* Where the array of an input begins: of the chunk's particles, or of their neighbours; on lists
    the loop adds the way to the neighbour. */
 const char *family_input_array(const emitter *e, ir_node n, const family_index *at);
+/* Length or chord of the way that particles alike have. */
+const char *family_way_value(const emitter *e, ir_node n);
 /* Where the array of a root begins. Slots and planes are the pass's own. */
 const char *family_root_array(const emitter *e, const segment_root *r, const family_index *at);
 

@@ -13,9 +13,9 @@ static const family_index in_loops = {.first = " + first",
                                       .owner = "owner"};
 
 void family_loops_declare(emitter *e, ir_node n) {
-  if (expression_is_ends_input(e, n, ENDS_TIME_STEP)) {
+  if (expression_is_of_time(e, n)) {
     say(e, SAY_DECLARE, e->scope->before, spell(e, SAY_VALUE), e->name[n],
-        spell(e, SAY_FAMILY_TIME_STEP));
+        expression_time(e, n, SAY_FAMILY_TIME_STEP, SAY_FAMILY_ADVANCE));
     return;
   }
   say(e, SAY_DECLARE, e->scope->before,
@@ -24,9 +24,7 @@ void family_loops_declare(emitter *e, ir_node n) {
 }
 
 const char *family_loops_input(emitter *e, ir_node n) {
-  const bool listed = family_is_list(e) && family_is_of_neighbour(e, n);
-  const char *value =
-      spell(e, listed ? SAY_OF_LISTED : SAY_HERE, spell(e, SAY_INPUT_ARRAY, e->name[n]));
+  const char *value = spell(e, SAY_HERE, spell(e, SAY_INPUT_ARRAY, e->name[n]));
   if (ir_input_source(e->graph, n) == IR_FROM_SHARED_ODD) return spell(e, SAY_SIGNED, value);
   return family_is_protection(e, n) ? spell(e, SAY_ANY_BIT, value) : value;
 }
@@ -107,31 +105,18 @@ void family_loops_particles(emitter *e, const segment *a) {
   expression_close(e);
 }
 
-/* On a list a number that no particle of the chunk has a bond of: what is kept of it beyond the
-   pass is 0. */
-static void skip_absent(emitter *e, const segment *a) {
-  say(e, SAY_UNLESS_SOME);
-  for (int k = 0; k < a->root_count; k++)
-    if (segment_asks(&a->roots[k]) && !family_root_is_reduction(&a->roots[k]) &&
-        !segment_is_loss(&a->roots[k]))
-      say(e, SAY_ZEROS, numeral(e, k), family_root_array(e, &a->roots[k], &in_loops));
-  say(e, SAY_NEXT_NEIGHBOUR);
-}
-
 void family_loops_neighbours(emitter *e, const segment *a) {
-  const bool list = family_is_list(e);
-  const scope in = {.before = "      ",
-                    .indent = "        ",
-                    .uniform = list ? SAY_UNIFORM : SAY_UNIFORM_OF_NEIGHBOUR,
-                    .declare = family_loops_declare,
-                    .input = family_loops_input};
+  static const scope in = {.before = "      ",
+                           .indent = "        ",
+                           .uniform = SAY_UNIFORM_OF_NEIGHBOUR,
+                           .declare = family_loops_declare,
+                           .input = family_loops_input};
   expression_open_segment(e, &in, a);
   const bool odd = expression_reads(e, IR_FROM_SHARED_ODD);
   family_loops_start(e, a);
   say(e, a->kind == OVER_BONDS ? SAY_OVER_OWNED : SAY_OVER_NEIGHBOURS);
-  if (list) skip_absent(e, a);
-  say(e, list ? SAY_WAY_OF_LIST : SAY_WAY_OF_ROWS);
-  if (family_segment_asks(a)) say(e, list ? SAY_BONDS_OF_LIST : SAY_BONDS_OF_ROWS);
+  say(e, SAY_WAY_OF_ROWS);
+  if (family_segment_asks(a)) say(e, SAY_BONDS_OF_ROWS);
   if (odd) say(e, SAY_SIGN);
   if (odd || expression_reads(e, IR_FROM_SHARED)) say(e, SAY_OWNER);
   write_loop(e, a);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "generator/emit/family_segment.h"
 #include "generator/lower/point_inputs.h"
 #include "generator/plan/plan_points.h"
 
@@ -41,8 +42,9 @@ static const char *array_of_input(emitter *e, ir_node n) {
 
 static void declare(emitter *e, ir_node n) {
   if (ir_is_sought(e->graph, n)) return;
-  if (expression_is_ends_input(e, n, ENDS_TIME_STEP))
-    say(e, SAY_DECLARE, "  ", spell(e, SAY_VALUE), e->name[n], spell(e, SAY_POINT_TIME_STEP));
+  if (expression_is_of_time(e, n))
+    say(e, SAY_DECLARE, "  ", spell(e, SAY_VALUE), e->name[n],
+        expression_time(e, n, SAY_POINT_TIME_STEP, SAY_POINT_ADVANCE));
   else
     say(e, SAY_DECLARE, "  ", spell(e, SAY_READ), spell(e, SAY_INPUT_ARRAY, e->name[n]),
         array_of_input(e, n));
@@ -87,16 +89,66 @@ static const char *array_of_root(emitter *e, const segment_root *r) {
   return spell(e, members[r->target], numeral(e, r->index));
 }
 
-static void write_results(emitter *e, const segment *a) {
+/* To where result k goes, in the words of its kind: what adds to what is lost waits where it may be
+   computed again. */
+static void write_result(emitter *e, const segment_root *r, int k, bool again) {
+  const bool adds = segment_is_loss(r);
+  const char *to = adds && again ? spell(e, SAY_LOSS_THAT_WAITS, numeral(e, k))
+                                 : spell(e, SAY_HERE, spell(e, SAY_RESULT_ARRAY, numeral(e, k)));
+  say(e, adds && !again ? SAY_ADD : SAY_STORE, "    ", to, expression_whole(e, r->node));
+}
+
+static void write_results(emitter *e, const segment *a, bool again) {
   for (int k = 0; k < a->root_count; k++)
-    say(e, segment_is_loss(&a->roots[k]) ? SAY_ADD : SAY_STORE, "    ",
-        spell(e, SAY_HERE, spell(e, SAY_RESULT_ARRAY, numeral(e, k))),
-        expression_whole(e, a->roots[k].node));
+    write_result(e, &a->roots[k], k, again);
+}
+
+/* --- what is expected ------------------------------------------------------------------------- */
+
+/* Writes the body of a loop, whose roots are computed there. */
+typedef void (*body_writer)(emitter *e, const segment *a, bool expects);
+
+static void open_losses(emitter *e, const segment *a) {
+  for (int k = 0; k < a->root_count; k++)
+    if (segment_is_loss(&a->roots[k])) say(e, SAY_LOSS_WAITS, numeral(e, k));
+}
+
+static void add_losses(emitter *e, const segment *a) {
+  bool any = false;
+  for (int k = 0; k < a->root_count; k++)
+    any = any || segment_is_loss(&a->roots[k]);
+  if (!any) return;
+  say(e, SAY_SEARCH_LOOP);
+  for (int k = 0; k < a->root_count; k++)
+    if (segment_is_loss(&a->roots[k]))
+      say(e, SAY_ADD, "    ", spell(e, SAY_HERE, spell(e, SAY_RESULT_ARRAY, numeral(e, k))),
+          spell(e, SAY_LOSS_THAT_WAITS, numeral(e, k)));
+  say(e, SAY_END, "  ");
+}
+
+/* The loop over a block that relies on what is expected, and the whole of it again where some point
+   is not so. */
+static void write_twice(emitter *e, const segment *a, body_writer loop) {
+  ir_node *nodes = segment_values(a);
+  open_losses(e, a);
+  say(e, SAY_SOME_UNEXPECTED);
+  unsigned char *before = family_narrow(e, nodes, a->root_count, RELIES_ON_EXPECTED);
+  loop(e, a, true);
+  family_widen(e, before);
+  say(e, SAY_IF_SOME_UNEXPECTED);
+  loop(e, a, false);
+  say(e, SAY_END, "    ");
+  add_losses(e, a);
+  free(nodes);
+}
+
+static void gather_unexpected(emitter *e) {
+  say(e, SAY_GATHER_UNEXPECTED, family_expected(e), "1");
 }
 
 /* --- searches --------------------------------------------------------------------------------- */
 
-enum { SEARCH_BLOCK = 64 };
+enum { SEARCH_BLOCK = 64, EXPECTED_BLOCK = 32 };
 
 static searches searches_of(const emitter *e) {
   const size_t size = (size_t)e->node_count + 1;
@@ -206,12 +258,26 @@ static void write_blocks(emitter *e, const segment *a, searches *s) {
   spread(e, s);
   say(e, SAY_SEARCH_LOOP);
   write_lines(e, s);
-  write_results(e, a);
+  write_results(e, a, false);
   say(e, SAY_END, "  ");
   say(e, SAY_END, "  ");
 }
 
 /* --- programs --------------------------------------------------------------------------------- */
+
+static void write_loop_of_block(emitter *e, const segment *a, bool expects) {
+  say(e, SAY_SEARCH_LOOP);
+  expression_lines(e);
+  if (expects) gather_unexpected(e);
+  write_results(e, a, true);
+  say(e, SAY_END, "  ");
+}
+
+static void write_expected(emitter *e, const segment *a) {
+  say(e, SAY_SEARCH_BLOCKS, numeral(e, EXPECTED_BLOCK));
+  write_twice(e, a, write_loop_of_block);
+  say(e, SAY_END, "  ");
+}
 
 static void write_program(emitter *e, const segment *a, const char *name) {
   expression_open_segment(e, &of_points, a);
@@ -227,10 +293,12 @@ static void write_program(emitter *e, const segment *a, const char *name) {
         array_of_root(e, &a->roots[k]));
   if (s.count) {
     write_blocks(e, a, &s);
+  } else if (family_expected(e)) {
+    write_expected(e, a);
   } else {
     say(e, SAY_OVER_BONDS);
     expression_lines(e);
-    write_results(e, a);
+    write_results(e, a, false);
     say(e, SAY_END, "  ");
   }
   kernel_function_end(&e->parts, e->out);
@@ -278,25 +346,51 @@ static segment of_rectangle(const emitter *e, const segment *a) {
   return out;
 }
 
-static void write_results_of_rectangle(emitter *e, const segment *a) {
+static void write_results_of_rectangle(emitter *e, const segment *a, bool again) {
   for (int k = 0; k < a->root_count; k++) {
     const segment_root *r = &a->roots[k];
-    say(e, segment_is_loss(r) ? SAY_ADD : SAY_STORE, "    ",
-        r->target == TO_FORCE ? spell(e, SAY_RECTANGLE_VALUE, "cell_stress", numeral(e, r->index))
-                              : spell(e, SAY_HERE, spell(e, SAY_RESULT_ARRAY, numeral(e, k))),
-        expression_whole(e, r->node));
+    if (r->target == TO_FORCE)
+      say(e, SAY_STORE, "    ", spell(e, SAY_RECTANGLE_VALUE, "cell_stress", numeral(e, r->index)),
+          expression_whole(e, r->node));
+    else
+      write_result(e, r, k, again);
   }
 }
 
 enum { AXES = 2 };
 
+static bool reads_rates(const emitter *e) {
+  bool rates = false;
+  for (ir_node n = 0; n < e->node_count; n++)
+    rates = rates || (e->needed[n] && is_strain(e, n) && is_rate(ir_input_index(e->graph, n)));
+  return rates;
+}
+
+/* The rectangles of a vector: their strains, their points, what these push. */
+static void write_vector(emitter *e, const segment *a, bool rates, bool expects, bool again) {
+  say(e, SAY_RECTANGLE_LANES);
+  say(e, SAY_RECTANGLE_STRAINS, "cell_strain");
+  if (rates) say(e, SAY_RECTANGLE_STRAINS, "cell_rate");
+  say(e, SAY_RECTANGLE_POINTS);
+  expression_lines(e);
+  if (expects) gather_unexpected(e);
+  write_results_of_rectangle(e, a, again);
+  say(e, SAY_END, "    ");
+  say(e, SAY_RECTANGLE_PUSH);
+  for (int d = 0; d < AXES; d++)
+    say(e, SAY_RECTANGLE_STORE, numeral(e, d));
+  say(e, SAY_END, "  ");
+}
+
+static void write_vector_again(emitter *e, const segment *a, bool expects) {
+  write_vector(e, a, reads_rates(e), expects, true);
+}
+
 static void write_rectangles(emitter *e, const segment *of, const char *name) {
   const segment a = of_rectangle(e, of);
   expression_open_segment(e, &of_rectangles, &a);
   e->form = NULL; /* no searches */
-  bool rates = false;
-  for (ir_node n = 0; n < e->node_count; n++)
-    rates = rates || (e->needed[n] && is_strain(e, n) && is_rate(ir_input_index(e->graph, n)));
+  const bool rates = reads_rates(e);
   kernel_function_begin(&e->parts, e->out, "PL_PASS", name, spell(e, SAY_OVER_RECTANGLES));
   say(e, SAY_RECTANGLES_HEAD);
   say(e, SAY_RECTANGLE_FIELD, "cell_strain", "displacement");
@@ -309,16 +403,10 @@ static void write_rectangles(emitter *e, const segment *of, const char *name) {
   for (int d = 0; d < AXES; d++)
     say(e, SAY_RECTANGLE_FORCE, numeral(e, d));
   say(e, SAY_RECTANGLE_LOOP);
-  say(e, SAY_RECTANGLE_STRAINS, "cell_strain");
-  if (rates) say(e, SAY_RECTANGLE_STRAINS, "cell_rate");
-  say(e, SAY_RECTANGLE_POINTS);
-  expression_lines(e);
-  write_results_of_rectangle(e, &a);
-  say(e, SAY_END, "    ");
-  say(e, SAY_RECTANGLE_PUSH);
-  for (int d = 0; d < AXES; d++)
-    say(e, SAY_RECTANGLE_STORE, numeral(e, d));
-  say(e, SAY_END, "  ");
+  if (family_expected(e))
+    write_twice(e, &a, write_vector_again);
+  else
+    write_vector(e, &a, rates, false, false);
   for (int d = 0; d < AXES; d++)
     say(e, SAY_RECTANGLE_SUM, numeral(e, d));
   say(e, SAY_END, "  ");

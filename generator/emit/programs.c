@@ -3,6 +3,7 @@
 #include <inttypes.h>
 
 #include "generator/emit/family_arrays.h"
+#include "generator/emit/family_lists.h"
 #include "generator/emit/family_loops.h"
 #include "generator/emit/family_pairs.h"
 #include "generator/emit/family_unrolled.h"
@@ -55,12 +56,13 @@ static bool loops_over_neighbours(const program_pass *p) {
 
 /* Particles and neighbours by loops: chunk by chunk, segment after segment. */
 static void write_loops(emitter *e, const program_pass *p) {
-  static void (*const forms[])(emitter *,
-                               const segment *) = {[OVER_PARTICLES] = family_loops_particles,
-                                                   [OVER_NEIGHBOURS] = family_loops_neighbours,
-                                                   [OVER_BONDS] = family_loops_neighbours,
-                                                   [OVER_PAIRS] = family_pairs};
   const bool rows = e->plan->form == FORM_UNROLLED, list = family_is_list(e);
+  void (*const neighbours)(emitter *, const segment *) =
+      list ? family_lists_neighbours : family_loops_neighbours;
+  void (*const forms[])(emitter *, const segment *) = {[OVER_PARTICLES] = family_loops_particles,
+                                                       [OVER_NEIGHBOURS] = neighbours,
+                                                       [OVER_BONDS] = neighbours,
+                                                       [OVER_PAIRS] = family_pairs};
   say(e, SAY_CHUNK, numeral(e, chunk_of(p, list)));
   if (program_sum_count(&e->plan->programs[PROGRAM_STEP]) > 0 && !program_is_paired(p))
     say(e, SAY_RETURN_IF_AHEAD);
@@ -73,8 +75,10 @@ static void write_loops(emitter *e, const program_pass *p) {
   if (list && loops_over_neighbours(p)) say(e, SAY_SOME_BONDS);
   const bool seldom = p == e->plan->programs[PROGRAM_LEDGER].passes && e->plan->loses_by_own_fields;
   if (seldom) say(e, SAY_IF_FIELDS_CHANGED);
+  if (list) family_lists_begin(e, p);
   for (int k = 0; k < p->segment_count; k++)
     forms[p->segments[k].kind](e, &p->segments[k]);
+  if (list) family_lists_end(e);
   if (seldom) say(e, SAY_END, "    ");
   say(e, SAY_END, "  ");
   if (rows) say(e, SAY_END, "  ");
@@ -136,6 +140,7 @@ void programs_functions(emitter *e) {
   }
   say(e, SAY_UNIFORM_COUNT, numeral(e, e->plan->uniform_count));
   family_pairs_functions(e);
+  family_lists_functions(e);
   const kernel_program *step = &e->plan->programs[PROGRAM_STEP],
                        *losses = &e->plan->programs[PROGRAM_LEDGER],
                        *observe = &e->plan->programs[PROGRAM_OBSERVE],

@@ -6,7 +6,7 @@
 /* --- lines and results ------------------------------------------------------------------------ */
 
 bool stages_is_loaded(const emitter *e, ir_node n) {
-  return expression_is_input(e, n) && !expression_is_ends_input(e, n, ENDS_TIME_STEP);
+  return expression_is_input(e, n) && !expression_is_of_time(e, n);
 }
 
 static bool is_damage(const emitter *e, int field) {

@@ -80,8 +80,9 @@ static void declare(emitter *e, ir_node n) {
   const ir_source from = ir_input_source(e->graph, n);
   const char *array = spell(e, SAY_STRIP_PARAMETER, numeral(e, index));
   if (from == IR_FROM_FIELD || expression_is_ends_input(e, n, ENDS_PROTECTED)) return;
-  if (expression_is_ends_input(e, n, ENDS_TIME_STEP)) {
-    say(e, SAY_DECLARE, "  ", spell(e, SAY_VALUE), e->name[n], spell(e, SAY_STRIP_TIME_STEP));
+  if (expression_is_of_time(e, n)) {
+    say(e, SAY_DECLARE, "  ", spell(e, SAY_VALUE), e->name[n],
+        expression_time(e, n, SAY_STRIP_TIME_STEP, SAY_STRIP_ADVANCE));
     return;
   }
   if (from == IR_FROM_ENDS) {

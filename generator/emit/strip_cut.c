@@ -2,7 +2,6 @@
 
 #include <assert.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "generator/emit/strip_arrays.h"
 
@@ -41,7 +40,7 @@ static void write_kept_stores(emitter *e, const stages *s, int stage) {
 /* --- what is expected ------------------------------------------------------------------------- */
 
 /* The choices that ask for it, in the order of the graph. */
-enum { EXPECTATIONS = 2 };
+enum { EXPECTATIONS = 4 };
 typedef struct expectations {
   ir_node condition[EXPECTATIONS];
   int stage[EXPECTATIONS];
@@ -66,6 +65,27 @@ static const char *bits(const emitter *e, ir_node n) {
   return spell(e, SAY_BITS, expression_value(e, n));
 }
 
+static int flag_count(const expectations *x) {
+  int count = 0;
+  for (int k = 0; k < x->count; k++)
+    count += x->of[k].count == 0;
+  return count;
+}
+
+/* Where it waits, behind the buffers, whether expectation k, of no size, is not so of a bond. */
+static const char *flag(const emitter *e, const stages *s, const expectations *x, int k) {
+  int at = s->buffers;
+  while (--k >= 0)
+    at += x->of[k].count == 0;
+  return spell(e, SAY_BUFFER, numeral(e, at));
+}
+
+/* Buffers of values and of flags. */
+static int buffer_count(const emitter *e, const stages *s) {
+  const expectations x = find_expectations(e, s);
+  return s->buffers + flag_count(&x);
+}
+
 /* The largest sizes so far, of absent bonds too, as bits, which are in the order of sizes, those of
    NaN above all; a size of 2 or more has a bit that smaller ones have not. */
 static void write_sizes(emitter *e, const stages *s, int stage) {
@@ -73,7 +93,10 @@ static void write_sizes(emitter *e, const stages *s, int stage) {
   for (int k = 0; k < x.count; k++) {
     const ir_node *size = x.of[k].size;
     if (x.stage[k] != stage) continue;
-    if (x.of[k].count == 2)
+    if (x.of[k].count == 0)
+      say(e, SAY_GATHER_OTHER, numeral(e, k), flag(e, s, &x, k),
+          expression_condition(e, x.condition[k]));
+    else if (x.of[k].count == 2)
       say(e, SAY_GATHER_LARGE, bits(e, size[0]), bits(e, size[1]));
     else
       say(e, SAY_GATHER_LARGEST, numeral(e, k), bits(e, size[0]));
@@ -83,7 +106,18 @@ static void write_sizes(emitter *e, const stages *s, int stage) {
 static void write_no_sizes(emitter *e, const stages *s) {
   const expectations x = find_expectations(e, s);
   for (int k = 0; k < x.count; k++)
-    say(e, x.of[k].count == 2 ? SAY_NO_LARGE : SAY_NO_LARGEST, numeral(e, k));
+    say(e,
+        x.of[k].count == 0   ? SAY_NO_OTHER
+        : x.of[k].count == 1 ? SAY_NO_LARGEST
+                             : SAY_NO_LARGE,
+        numeral(e, k));
+}
+
+/* Whether that may not be so of some bond. */
+static const char *is_unexpected(const emitter *e, const expectations *x, int k) {
+  if (x->of[k].count == 0) return spell(e, SAY_IS_OTHER, numeral(e, k));
+  if (x->of[k].count == 2) return spell(e, SAY_IS_LARGE);
+  return spell(e, SAY_IS_LARGEST, numeral(e, k), bits(e, x->of[k].limit));
 }
 
 /* Asks the function for what is not as expected, where something may be. */
@@ -91,15 +125,12 @@ static void write_question(emitter *e, const stages *s, const char *name) {
   const expectations x = find_expectations(e, s);
   const char *asked = NULL, *arrays = NULL;
   for (int k = 0; k < x.count; k++)
-    asked = words_join(e->memory, asked, " || ",
-                       x.of[k].count == 2
-                           ? spell(e, SAY_IS_LARGE)
-                           : spell(e, SAY_IS_LARGEST, numeral(e, k), bits(e, x.of[k].limit)));
+    asked = words_join(e->memory, asked, " || ", is_unexpected(e, &x, k));
   for (int k = 0; k < s->result_arrays; k++)
     arrays = words_join(e->memory, arrays, ", ", strip_array(e, root_of_array(e, k)));
   if (asked)
     say(e, SAY_COMPUTE_AGAIN, asked, name, arrays ? arrays : "",
-        spell(e, s->buffers ? SAY_BUFFERS : SAY_NO_BUFFERS));
+        spell(e, buffer_count(e, s) ? SAY_BUFFERS : SAY_NO_BUFFERS));
 }
 
 /* --- stages ----------------------------------------------------------------------------------- */
@@ -126,10 +157,18 @@ static void write_results(emitter *e, const stages *s, int stage) {
   if (s->changes && !of_change) write_changes(e);
 }
 
+/* Whether a stage asks for anything but sizes: of bonds that exist. */
+static bool asks_present(const emitter *e, const stages *s, int stage) {
+  const expectations x = find_expectations(e, s);
+  for (int k = 0; k < x.count; k++)
+    if (x.stage[k] == stage && x.of[k].count == 0) return true;
+  return false;
+}
+
 /* Whether the loop of a stage looks at arrays of the strip, not at buffers alone. */
 static bool reads_bonds(const emitter *e, const stages *s, int stage, const unsigned char *mask,
                         const unsigned char *kept_loads) {
-  bool reads = stage >= stages_last(s);
+  bool reads = stage >= stages_last(s) || asks_present(e, s, stage);
   for (ir_node n = 0; n < e->node_count && !reads; n++) {
     const bool in_array = s->buffer[n] >= 0 && s->buffer[n] < s->result_arrays;
     reads = (mask[n] && expression_is_input(e, n)) ||
@@ -164,7 +203,7 @@ static void write_stage(emitter *e, const stages *s, int stage, unsigned relies)
   stages_mark(e, s, stage, relies, mask, kept_loads);
   say(e, SAY_OVER_PART);
   if (reads_bonds(e, s, stage, mask, kept_loads)) say(e, SAY_BOND_OF_PART);
-  if (stage >= stages_last(s)) say(e, SAY_PRESENT_OF_PART);
+  if (stage >= stages_last(s) || asks_present(e, s, stage)) say(e, SAY_PRESENT_OF_PART);
   write_kept_loads(e, s, kept_loads);
   e->dropped = drop_early(e, s, stage);
   write_lines_of(e, relies, mask);
@@ -190,7 +229,8 @@ static void write_stage_for_strip(emitter *e, const stages *s, int stage) {
 }
 
 void strip_cut_loops(emitter *e, const stages *s, const char *name) {
-  if (s->buffers) say(e, SAY_KEEP_BUFFERS, numeral(e, s->buffers), numeral(e, STAGES_PITCH));
+  const int buffers = buffer_count(e, s);
+  if (buffers) say(e, SAY_KEEP_BUFFERS, numeral(e, buffers), numeral(e, STAGES_PITCH));
   say(e, SAY_OVER_PARTS, numeral(e, STAGES_PART));
   write_no_sizes(e, s);
   if (s->changes) say(e, SAY_NO_CHANGES);
@@ -220,64 +260,111 @@ void strip_cut_declare(emitter *e, const char *name) {
   say(e, SAY_DECLARE_UNEXPECTED, unexpected_name(e, name), over_part(e));
 }
 
-static void write_search(emitter *e, const expectations *x, unsigned char *mask) {
+/* Which groups have some bond that is not as expected: by sizes, which are computed once more, and
+   by flags that wait. */
+static void write_search(emitter *e, const stages *s, const expectations *x, unsigned char *mask) {
   const char *all = NULL;
-  say(e, SAY_SEARCH);
-  write_lines_of(e, RELIES_ON_EXPECTED, mask);
   for (int k = 0; k < x->count; k++)
-    all = words_join(e->memory, all, " && ",
-                     arena_printf(e->memory, "(%s)", expression_condition(e, x->condition[k])));
-  say(e, SAY_SEARCH_END, all);
+    if (x->of[k].count)
+      all = words_join(e->memory, all, " && ",
+                       arena_printf(e->memory, "(%s)", expression_condition(e, x->condition[k])));
+  say(e, SAY_OVER_GROUPS, numeral(e, STAGES_PART / PL_LANES + 1));
+  if (all) {
+    say(e, SAY_SEARCH);
+    write_lines_of(e, RELIES_ON_EXPECTED, mask);
+    say(e, SAY_SEARCH_END, all);
+  }
+  for (int k = 0; k < x->count; k++)
+    if (!x->of[k].count) say(e, SAY_SEARCH_KEPT_FLAGS, flag(e, s, x, k));
+  say(e, SAY_OVER_UNEXPECTED);
 }
 
-static void write_both_sides(emitter *e, const stages *s, const unsigned char *kept,
-                             unsigned char *mask) {
+/* Of what the last stage takes from buffers. */
+typedef struct both_sides {
+  unsigned char *kept;  /* [node_count] all of it */
+  unsigned char *again; /* [node_count] that hangs on what is expected, */
+  unsigned char *loads; /* [node_count] the rest that this is computed from, which is there, */
+  unsigned char *lines; /* [node_count] and the lines between */
+} both_sides;
+
+static void mark_dependent(const emitter *e, unsigned char *marks) {
+  for (ir_node n = 0; n < e->node_count; n++) {
+    if (expression_is_uniform(e, n)) continue;
+    marks[n] = choice_is_expected(e, n);
+    for (int k = 0; k < ir_arity(ir_operation(e->graph, n)); k++)
+      marks[n] |= marks[ir_operand(e->graph, n, k)];
+  }
+}
+
+static both_sides both_sides_of(const emitter *e, const stages *s) {
+  const size_t size = (size_t)e->node_count + 1;
+  both_sides b = {must_calloc(size, 1), must_calloc(size, 1), must_calloc(size, 1),
+                  must_calloc(size, 1)};
+  stages_mark_kept(e, s, b.kept);
+  mark_dependent(e, b.again);
+  for (ir_node n = e->node_count - 1; n >= 0; n--) {
+    b.again[n] &= b.kept[n];
+    if (!b.lines[n] && !b.again[n]) continue;
+    b.lines[n] = !b.kept[n] || b.again[n];
+    b.loads[n] = !b.lines[n];
+    ir_node operand[3];
+    const int count = b.loads[n] ? 0 : choice_operands(e, n, RELIES_ON_NOTHING, operand);
+    for (int k = 0; k < count; k++)
+      b.lines[operand[k]] = 1;
+  }
+  return b;
+}
+
+static void both_sides_free(both_sides *b) {
+  free(b->kept);
+  free(b->again);
+  free(b->loads);
+  free(b->lines);
+}
+
+static void write_both_sides(emitter *e, const stages *s, const both_sides *b) {
   say(e, SAY_BOTH_SIDES);
-  write_lines_of(e, RELIES_ON_NOTHING, mask);
+  write_kept_loads(e, s, b->loads);
+  write_lines_of(e, RELIES_ON_NOTHING, b->lines);
   for (ir_node n = 0; n < e->node_count; n++)
-    if (kept[n]) write_kept_store(e, s, n);
+    if (b->again[n]) write_kept_store(e, s, n);
   say(e, SAY_BOTH_SIDES_END);
 }
 
-static void declare_result_arrays(emitter *e, const stages *s, const unsigned char *kept) {
+static void declare_result_arrays(emitter *e, const stages *s, const both_sides *b) {
   for (int k = 0; k < s->result_arrays; k++) {
     bool used = false;
     for (ir_node n = 0; n < e->node_count; n++)
-      used |= kept[n] && s->buffer[n] == k;
+      used |= (b->again[n] || b->loads[n]) && s->buffer[n] == k;
     if (used) strip_declare_array(e, root_of_array(e, k), spell(e, SAY_ARRAY_GIVEN, numeral(e, k)));
   }
 }
 
 void strip_cut_unexpected(emitter *e, const stages *s, const char *name) {
   const size_t size = (size_t)e->node_count + 1;
-  unsigned char *asked = must_calloc(size, 1), *kept = must_calloc(size, 1),
-                *both = must_calloc(size, 1), *whole = e->needed;
+  unsigned char *asked = must_calloc(size, 1), *whole = e->needed;
+  both_sides both = both_sides_of(e, s);
   const expectations x = find_expectations(e, s);
   for (int k = 0; k < x.count; k++)
-    asked[x.condition[k]] = 1;
+    asked[x.condition[k]] = x.of[k].count > 0;
   choice_mark_operands(e, RELIES_ON_EXPECTED, asked);
-  stages_mark_kept(e, s, kept);
-  memcpy(both, kept, size);
-  choice_mark_operands(e, RELIES_ON_NOTHING, both);
   e->needed = must_calloc(size, 1);
   for (ir_node n = 0; n < e->node_count; n++)
-    e->needed[n] = asked[n] | both[n];
+    e->needed[n] = asked[n] | both.lines[n];
   kernel_function_begin(&e->parts, e->out, "PL_APART PL_PASS", unexpected_name(e, name),
                         over_part(e));
   say(e, SAY_UNEXPECTED_HEAD);
   strip_declare_protection(e);
   expression_declare(e);
   strip_declare_fields(e, false);
-  declare_result_arrays(e, s, kept);
-  say(e, SAY_OVER_GROUPS);
-  write_search(e, &x, asked);
-  write_both_sides(e, s, kept, both);
+  declare_result_arrays(e, s, &both);
+  write_search(e, s, &x, asked);
+  write_both_sides(e, s, &both);
   kernel_function_end(&e->parts, e->out);
   free(e->needed);
   e->needed = whole;
   free(asked);
-  free(kept);
-  free(both);
+  both_sides_free(&both);
 }
 
 unsigned char *strip_cut_usually_needed(const emitter *e, const stages *s) {
@@ -291,7 +378,7 @@ unsigned char *strip_cut_usually_needed(const emitter *e, const stages *s) {
   }
   const expectations x = find_expectations(e, s);
   for (int k = 0; k < x.count; k++)
-    usual[x.of[k].limit] = 1;
+    if (x.of[k].count) usual[x.of[k].limit] = 1;
   free(mask);
   free(loads);
   return usual;

@@ -44,6 +44,7 @@ static void put_parameters(json *j, const law_facts *f) {
     open_symbol(j, list->items[p]);
     json_put_number(j, "value", f->given[p] ? f->values[p] : NAN);
     put_bounds(j, f, p);
+    json_put_bool(j, "field", symbol_is_field(list->items[p]));
     json_object_end(j);
   }
   json_array_end(j);
@@ -149,6 +150,18 @@ static void put_points(json *j, const law_facts *f) {
   json_array_end(j);
 }
 
+static void put_accepted(json *j, const law *l) {
+  json_put_array(j, "accepted");
+  const char *check, *why;
+  for (int k = 0; law_says(l, k, &check, &why); k++) {
+    json_object(j);
+    json_put_text(j, "check", check);
+    json_put_text(j, "why", why);
+    json_object_end(j);
+  }
+  json_array_end(j);
+}
+
 void law_facts_put(json *j, const law_facts *f) {
   const law *l = f->model.law;
   json_put_text(j, "model", l->tree->name);
@@ -159,6 +172,7 @@ void law_facts_put(json *j, const law_facts *f) {
   put_symbols(j, "fields", &l->fields);
   put_symbols(j, "outputs", &l->outputs);
   json_put_text(j, "nonconservative", l->nonconservative);
+  put_accepted(j, l);
   put_cost(j, f);
   if (law_facts_has_implied(f)) put_implied(j, f);
   if (l->tree->law == LAW_CONTINUUM && !f->missing) put_points(j, f);

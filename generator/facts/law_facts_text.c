@@ -18,6 +18,20 @@ static void print_parameter(const law_facts *f, int p) {
          s->doc ? s->doc : "");
 }
 
+/* Parameters, or the fields that a deck gives in place and time. */
+static void print_parameters(const law_facts *f, const char *title, bool fields) {
+  const symbol_list *list = &f->model.law->parameters;
+  bool begun = false;
+  for (int p = 0; p < list->count; p++) {
+    if (symbol_is_field(list->items[p]) != fields) continue;
+    if (!begun)
+      printf("%s:\n  %-12s %-12s %-10s %-18s %s\n", title, "name", "value", "unit", "bounds",
+             "meaning");
+    begun = true;
+    print_parameter(f, p);
+  }
+}
+
 /* Further lines of a description stand below its first one. */
 static void print_description(const char *text) {
   for (; *text; text++) {
@@ -196,16 +210,15 @@ void law_facts_print(const law_facts *f) {
   const law *l = f->model.law;
   printf("%s (law %s)\n", l->tree->name, law_kind_text(l));
   if (l->tree->doc) printf("%s\n", l->tree->doc);
-  if (l->parameters.count)
-    printf("Parameters:\n  %-12s %-12s %-10s %-18s %s\n", "name", "value", "unit", "bounds",
-           "meaning");
-  for (int p = 0; p < l->parameters.count; p++)
-    print_parameter(f, p);
+  print_parameters(f, "Parameters", false);
+  print_parameters(f, "Fields in place and time, and what they are without a deck", true);
   print_options(l);
   print_symbols("State and damage", &l->fields);
   print_symbols("Outputs", &l->outputs);
   print_cost(f);
-  if (l->nonconservative) printf("Not conservative: %s\n", l->nonconservative);
+  const char *check, *why;
+  for (int k = 0; law_says(l, k, &check, &why); k++)
+    printf("Accepted, %s: %s\n", check, why);
   if (f->missing)
     printf("What it implies depends on `%s`, which has no default: give --set %s=...\n", f->missing,
            f->missing);

@@ -2,9 +2,10 @@
 
 #include "dsl/semantics/law_variant.h"
 #include "generator/intervals/interval_check.h"
+#include "generator/sense/sense.h"
 
 bool law_obeys(const law *l, const double *parameters, diagnostics *d, physics_report *report) {
-  const bool good = physics_check(l, &(physics_options){.parameters = parameters}, d, report);
+  const bool good = law_is_sound(l, &(physics_options){.parameters = parameters}, d, report);
   interval_check(l, d);
   return good;
 }

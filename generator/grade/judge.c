@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "generator/against/difference_words.h"
-#include "generator/check/physics.h"
 #include "generator/grade/curve_text.h"
 #include "generator/grade/judge_path.h"
 #include "generator/grade/measure.h"
+#include "generator/sense/sense.h"
 #include "runtime/deck/deck_value.h"
 
 enum { MOST_MESSAGES = 100 };
@@ -95,7 +95,7 @@ static void check(judging *j) {
   model m;
   const bool opened = model_open(&m, j->q->answer, NULL, 0);
   j->reads = opened && model_plan(&m);
-  j->obeys = j->reads && physics_check(m.law, NULL, &m.said, NULL);
+  j->obeys = j->reads && law_is_sound(m.law, &(physics_options){.strict = true}, &m.said, NULL);
   j->first_error = j->reads ? NULL : first_error(j->memory, &m.said);
   put_messages(j, &m.said, &m.sources);
   model_close(&m);

@@ -261,6 +261,14 @@ static void describe_families(interpreted *p) {
                                        passes_of[PROGRAM_FORCE_STATE]);
 }
 
+static void describe_given(interpreted *p) {
+  const symbol_list *list = &p->plan->law->parameters;
+  int32_t *given = arena_alloc(p->memory, ((size_t)list->count + 1) * sizeof *given);
+  for (int k = 0; k < list->count; k++)
+    if (symbol_is_field(list->items[k])) given[p->law.given_count++] = k;
+  p->law.given = given;
+}
+
 static void describe(interpreted *p) {
   const kernel_plan *plan = p->plan;
   const law *l = plan->law;
@@ -292,6 +300,7 @@ static void describe(interpreted *p) {
       .bounds = run_bounds,
       .context = p,
   };
+  describe_given(p);
   if (plan->form == FORM_STRIPS)
     describe_strips(p);
   else if (plan->form == FORM_POINTS)

@@ -41,6 +41,7 @@ static void point_at_particles(runner *r, const pl_family *f, long first) {
   if (f->volume) ends[ENDS_VOLUME_I] = f->volume + first;
   if (f->mass) ends[ENDS_MASS_I] = f->mass + first;
   ends[ENDS_TIME_STEP] = &f->time_step;
+  ends[ENDS_ADVANCE] = &f->advance;
 }
 
 /* Where the values of neighbour k of the chunk's particles stand, given where those of the run's

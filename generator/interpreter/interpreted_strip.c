@@ -47,6 +47,7 @@ static void point_at_bonds(runner *r, const pl_strip *s, long first, int count) 
     r->protection[0][lane] = s->flags[first + lane] & PL_PROTECTED(s->direction) ? 1 : 0;
   ends[ENDS_PROTECTED] = r->protection[0];
   ends[ENDS_TIME_STEP] = &s->time_step;
+  ends[ENDS_ADVANCE] = &s->advance;
   for (int k = 0; k < r->plan->law->fields.count; k++)
     r->at[IR_FROM_FIELD][k] = s->field[k] + first;
   for (int k = 0; k < r->plan->variation.varying_count; k++)
@@ -133,6 +134,7 @@ static void point_at_points(runner *r, const pl_points *s, long first) {
   }
   at[POINT_CELL_SIZE] = s->cell_size ? s->cell_size + first : NULL;
   r->at[IR_FROM_ENDS][ENDS_TIME_STEP] = &s->time_step;
+  r->at[IR_FROM_ENDS][ENDS_ADVANCE] = &s->advance;
   for (int k = 0; k < r->plan->law->fields.count; k++)
     r->at[IR_FROM_FIELD][k] = s->old_field[k] + first;
   for (int k = 0; k < r->plan->variation.varying_count; k++)

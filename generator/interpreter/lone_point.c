@@ -18,6 +18,7 @@ void lone_point_open(lone_point *p, const kernel_plan *of, const double *paramet
                     .own = must_calloc((size_t)l->parameters.count + 1, sizeof *p->own),
                     .field = must_calloc((size_t)l->fields.count + 1, sizeof *p->field)};
   p->ends[ENDS_TIME_STEP] = &at->step;
+  p->ends[ENDS_ADVANCE] = &at->advance;
   for (int k = 0; k < POINT_INPUTS; k++)
     p->point[k] = k == POINT_CELL_SIZE ? &at->size : &NONE;
   for (int k = 0; k < PL_STRAINS(of->dimensions); k++)

@@ -9,7 +9,7 @@
 /* A point before a step: strain as kernels read it, states, size of the cell. */
 typedef struct asked_point {
   const double *strain, *field;
-  double size, step; /* m, s */
+  double size, step, advance; /* m; s, the latter two as of pl_points */
 } asked_point;
 
 typedef struct lone_point {

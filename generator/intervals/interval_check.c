@@ -51,6 +51,17 @@ static context *whole_law(analysis *a) {
 
 /* --- states ----------------------------------------------------------------------------------- */
 
+/* A state that has a rate stays above its initial value where it does not fall from there. */
+static range range_of_rate(analysis *a, int k) {
+  const range kept = a->fields[k];
+  const double initial = a->law->fields.items[k]->initial;
+  a->fields[k] = range_of(initial);
+  const range rate = interval_value(a, whole_law(a), a->bench->law_step.text.rules[k]);
+  a->fields[k] = kept;
+  const bool falls = !range_is_nonnegative(rate), rises = !range_is_nonnegative(range_neg(rate));
+  return range_between(falls ? -INFINITY : initial, rises ? INFINITY : initial, falls, rises);
+}
+
 /* Takes back what the rules do not keep up when all fields are as supposed. False when nothing is
  * left to take back. */
 static bool take_back(analysis *a) {
@@ -61,7 +72,10 @@ static bool take_back(analysis *a) {
   context *whole = whole_law(a);
   for (int k = 0; k < a->law->fields.count; k++) {
     if (a->law->fields.items[k]->kind == SYMBOL_DAMAGE) continue;
-    range r = interval_value(a, whole, a->bench->law_step.fields[k]), *f = &a->fields[k];
+    const bool in_time = law_rate_field(a->law, k) >= 0;
+    range r =
+        in_time ? range_of_rate(a, k) : interval_value(a, whole, a->bench->law_step.fields[k]);
+    range *f = &a->fields[k];
     if (f->low > r.low) changed = true, f->low = -INFINITY, f->low_open = true;
     if (f->high < r.high) changed = true, f->high = INFINITY, f->high_open = true;
   }
@@ -137,7 +151,7 @@ static void look_at_law(analysis *a) {
   context *whole = whole_law(a);
   const lowered_law *s = &b->law_step;
   for (int k = 0; k < l->fields.count; k++)
-    look_at(a, whole, s->fields[k]);
+    look_at(a, whole, law_rate_field(l, k) >= 0 ? s->text.rules[k] : s->fields[k]);
   const ir_node results[] = {s->N, s->M_i[0], s->M_j[0], s->W};
   for (size_t k = 0; k < sizeof results / sizeof *results; k++)
     look_at(a, whole, results[k]);
@@ -148,6 +162,7 @@ static void look_at_law(analysis *a) {
 
 void interval_check(const law *l, diagnostics *d) {
   static const physics_options usual = {0};
+  const int before = d->count;
   bench b;
   const law_kind kind = l->tree->law;
   if (kind == LAW_STATE || kind == LAW_CONTINUUM || kind == LAW_CRACK) return;
@@ -156,4 +171,5 @@ void interval_check(const law *l, diagnostics *d) {
   if (find_bounds(&a)) look_at_law(&a);
   arena_free(a.memory);
   bench_close(&b);
+  law_waive(l, d, before);
 }

@@ -181,6 +181,8 @@ static range quantity_range(int q) {
   case QUANTITY_THETA_I:
   case QUANTITY_THETA_J:
     return range_all();
+  case QUANTITY_DT:
+    return range_between(0, INFINITY, false, true);
   case QUANTITY_SHELL:
   case QUANTITY_N_FAMILY:
     return range_between(1, INFINITY, false, true);
@@ -289,7 +291,12 @@ static void check_operation(analysis *a, context *c, ir_node n, range p, range q
       if (sum_range(a, c, &s, 2).low < 0) interval_warn(a, c, n, first, WISH_NEGATIVE);
     }
     return;
+  case IR_ASIN:
+  case IR_ACOS:
+    if (p.low < -1 || p.high > 1) interval_warn(a, c, n, first, WISH_BEYOND_ONE);
+    return;
   case IR_LOG:
+  case IR_LOG10:
     if (!range_is_positive(p)) interval_warn(a, c, n, first, WISH_NOT_POSITIVE);
     return;
   case IR_POW:
@@ -336,6 +343,16 @@ static range operation_range(analysis *a, context *c, ir_node n) {
   }
 }
 
+/* The new value of a state that has a rate is what the rate lets it be. */
+static bool is_gone_on(const analysis *a, ir_node n, range *r) {
+  for (int k = 0; k < a->law->fields.count; k++)
+    if (a->bench->law_step.fields[k] == n && law_rate_field(a->law, k) >= 0) {
+      *r = a->fields[k];
+      return true;
+    }
+  return false;
+}
+
 range interval_value(analysis *a, context *c, ir_node n) {
   if (c->state[n] == DONE) return c->known[n];
   if (c->state[n] == BEGUN) /* bounds that refer to each other */
@@ -355,7 +372,7 @@ range interval_value(analysis *a, context *c, ir_node n) {
     r = choice_range(a, c, n);
     break;
   default:
-    r = operation_range(a, c, n);
+    if (!is_gone_on(a, n, &r)) r = operation_range(a, c, n);
   }
   r = tightened(a, c, n, r);
   a->depth--;

@@ -30,10 +30,11 @@ bool interval_said_before(const analysis *a, diag_code code, span where) {
 }
 
 void interval_warn(analysis *a, context *c, ir_node n, ir_node operand, interval_wish wish) {
-  static const char *const what[] = {"this divides by zero",
-                                     "this takes the root of a negative number",
-                                     "this takes the logarithm of a number that is not positive",
-                                     "this raises a negative number to a power that is not whole"};
+  static const char *const what[] = {
+      "this divides by zero", "this takes the root of a negative number",
+      "this takes the logarithm of a number that is not positive",
+      "this raises a negative number to a power that is not whole",
+      "no angle has such a sine or cosine: the argument leaves [-1, 1]"};
   interval_condition conditions[32];
   diag_code code = wish == WISH_ZERO ? DIAG_DIVISION_BY_ZERO : DIAG_DOMAIN;
   span where = place_of(a, n);
@@ -47,10 +48,8 @@ void interval_warn(analysis *a, context *c, ir_node n, ir_node operand, interval
   if (!state) return;
   diag_report(a->said, code, where, "%s in a state within the bounds", what[wish]);
   diag_note(a->said, (span){0, 0, UINT16_MAX}, "found at %s", state);
-  diag_hint(
-      a->said,
-      wish == WISH_ZERO
-          ? "narrow the bounds of a parameter, or keep the zero away by a case line or `max`"
-          : "narrow the bounds of a parameter, or keep such numbers away by a case line or `max`");
+  diag_hint(a->said, "narrow the bounds of a parameter, or keep %s away by %s",
+            wish == WISH_ZERO ? "the zero" : "such numbers",
+            wish == WISH_BEYOND_ONE ? "`min(max(x, -1), 1)`" : "a case line or `max`");
   free(state);
 }

@@ -98,6 +98,8 @@ static bool is_as_wished(const hunt *h, int lane) {
     return x == 0;
   case WISH_NOT_POSITIVE:
     return x <= 0;
+  case WISH_BEYOND_ONE:
+    return fabs(x) > 1;
   default:
     return x < 0;
   }

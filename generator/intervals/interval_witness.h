@@ -9,7 +9,8 @@ typedef enum interval_wish {
   WISH_ZERO,
   WISH_NEGATIVE,
   WISH_NOT_POSITIVE,
-  WISH_NEGATIVE_BASE
+  WISH_NEGATIVE_BASE,
+  WISH_BEYOND_ONE /* larger than 1 in size */
 } interval_wish;
 
 typedef struct interval_condition {

@@ -106,6 +106,13 @@ static ir_node one_and_square(ir *g, ir_op op, ir_node q) {
   return ir_make(g, op, number(g, 1.0), square, IR_NONE);
 }
 
+/* a'/sqrt((1 - a)(1 + a)), of asin; where the root is 0, as in of_root. */
+static ir_node of_arc_sine(ir *g, const term *t) {
+  const ir_node one = number(g, 1.0), below = ir_sub(g, one, t->a), above = ir_add(g, one, t->a);
+  const ir_node root = ir_unary(g, IR_SQRT, ir_mul(g, below, above));
+  return over(g, t->da, ir_make(g, IR_MAX, root, number(g, 1e-290), IR_NONE));
+}
+
 /* The neighbours that attain the extreme. */
 static ir_node of_family_extreme(ir *g, const term *t) {
   const ir_node attains = ir_make(g, IR_EQ, t->a, t->q, IR_NONE);
@@ -147,6 +154,8 @@ static ir_node of_operation(ir *g, const term *t) {
     return times(g, t->q, t->da);
   case IR_LOG:
     return over(g, t->da, t->a);
+  case IR_LOG10:
+    return over(g, times(g, number(g, PL_LGE_HI), t->da), t->a);
   case IR_POW:
     return of_power(g, t);
   case IR_INVERSE_ROOT:
@@ -159,6 +168,14 @@ static ir_node of_operation(ir *g, const term *t) {
     return difference(g, IR_NONE, times(g, ir_unary(g, IR_SIN, t->a), t->da));
   case IR_TAN:
     return times(g, one_and_square(g, IR_ADD, t->q), t->da);
+  case IR_ASIN:
+    return of_arc_sine(g, t);
+  case IR_ACOS:
+    return difference(g, IR_NONE, of_arc_sine(g, t));
+  case IR_SINH:
+    return times(g, ir_unary(g, IR_COSH, t->a), t->da);
+  case IR_COSH:
+    return times(g, ir_unary(g, IR_SINH, t->a), t->da);
   case IR_TANH:
     return times(g, one_and_square(g, IR_SUB, t->q), t->da);
   case IR_ATAN2:

@@ -142,9 +142,25 @@ static range root_of(range a) {
   return range_between(sqrt(b.low), sqrt(b.high), b.low_open, b.high_open);
 }
 
-static range logarithm_of(range a) {
-  return range_between(a.low > 0 ? pl_log(a.low) : -INFINITY,
-                       a.high > 0 ? pl_log(a.high) : INFINITY, a.low_open, a.high_open);
+static range logarithm_of(ir_op op, range a) {
+  return range_between(a.low > 0 ? operation_value(op, a.low, 0, 0) : -INFINITY,
+                       a.high > 0 ? operation_value(op, a.high, 0, 0) : INFINITY, a.low_open,
+                       a.high_open);
+}
+
+/* asin rises and acos falls where they are defined, from -1 to 1. */
+static range arc_of(ir_op op, range a) {
+  const range b = range_meet(a, range_between(-1, 1, false, false));
+  if (!(b.low <= b.high)) return image_of(op); /* nowhere */
+  const end low = {operation_value(op, b.low, 0, 0), b.low_open},
+            high = {operation_value(op, b.high, 0, 0), b.high_open};
+  return op == IR_ASIN ? from_ends(low, high) : from_ends(high, low);
+}
+
+/* The hyperbolic cosine rises with the size of its argument. */
+static range hyperbolic_cosine_of(range a) {
+  const range b = absolute(a);
+  return range_between(pl_cosh(b.low), pl_cosh(b.high), b.low_open, b.high_open);
 }
 
 /* Of a base that is not negative. */
@@ -187,7 +203,13 @@ range range_apply(ir_op op, range a, range b) {
   case IR_SQRT:
     return root_of(a);
   case IR_LOG:
-    return logarithm_of(a);
+  case IR_LOG10:
+    return logarithm_of(op, a);
+  case IR_ASIN:
+  case IR_ACOS:
+    return arc_of(op, a);
+  case IR_COSH:
+    return hyperbolic_cosine_of(a);
   case IR_POW:
     return power_of(a, b);
   case IR_MIN:

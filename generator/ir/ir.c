@@ -9,6 +9,8 @@
 
 enum { FIRST_NODES = 256, LARGEST_EXPONENT = 16 };
 
+typedef enum expected_as { AS_NOTHING, AS_ANY, AS_SIZE } expected_as;
+
 typedef struct node {
   ir_op op;
   ir_node operand[3];
@@ -16,8 +18,8 @@ typedef struct node {
   ir_source source; /* INPUT */
   int index;        /* INPUT */
   placement place;
-  bool of_class; /* differs from neighbour to neighbour, but not along a row */
-  bool expected; /* a condition that holds nearly always */
+  bool of_class;          /* differs from neighbour to neighbour, but not along a row */
+  unsigned char expected; /* a condition that holds nearly always: an expected_as */
   bool may_be_nan;
   bool sought; /* changes while a search goes on */
   const char *name;
@@ -169,12 +171,22 @@ ir_node ir_mark_class(ir *g, ir_node input) {
 bool ir_is_of_class(const ir *g, ir_node n) {
   return at(g, n)->of_class;
 }
-ir_node ir_expect(ir *g, ir_node condition) {
-  g->nodes[condition].expected = at(g, condition)->op != IR_CONSTANT;
+static ir_node expect(ir *g, ir_node condition, unsigned char as) {
+  node *n = &g->nodes[condition];
+  if (n->op != IR_CONSTANT && n->expected < as) n->expected = as;
   return condition;
 }
+ir_node ir_expect(ir *g, ir_node size_is_small) {
+  return expect(g, size_is_small, AS_SIZE);
+}
+ir_node ir_expect_any(ir *g, ir_node condition) {
+  return expect(g, condition, AS_ANY);
+}
 bool ir_is_expected(const ir *g, ir_node n) {
-  return at(g, n)->expected;
+  return at(g, n)->expected != AS_NOTHING;
+}
+bool ir_is_expected_of_size(const ir *g, ir_node n) {
+  return at(g, n)->expected == AS_SIZE;
 }
 
 bool ir_is_sought(const ir *g, ir_node n) {
@@ -471,7 +483,7 @@ static ir_node rebuild(ir *g, ir_node n, const ir_node *image) {
   if (same) return n;
   const ir_node made = ir_make(g, old.op, operand[0], operand[1], operand[2]);
   if (old.name) ir_set_name(g, made, old.name, old.where);
-  if (old.expected) ir_expect(g, made);
+  expect(g, made, old.expected);
   return made;
 }
 

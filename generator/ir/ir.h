@@ -118,10 +118,12 @@ static inline bool ir_is_of_particle(const ir *g, ir_node n) {
   return ir_place(g, n) <= ON_PARTICLE && !ir_is_of_class(g, n);
 }
 /* Says that a condition holds nearly always, so that what is chosen where it does not need not be
-   fast. Returns it. Of laws of bonds: that a size, at least 0, is below a positive limit
-   (choice_expectation), two such conditions at most. */
-ir_node ir_expect(ir *g, ir_node condition);
+   fast. Returns it. That a size, at least 0, is below a positive limit (choice_expectation); or any
+   condition, once the graph is rewritten no more. */
+ir_node ir_expect(ir *g, ir_node size_is_small);
+ir_node ir_expect_any(ir *g, ir_node condition);
 bool ir_is_expected(const ir *g, ir_node n);
+bool ir_is_expected_of_size(const ir *g, ir_node n);
 /* Chooses by such a condition. */
 bool ir_is_expected_choice(const ir *g, ir_node n);
 bool ir_is_logical(const ir *g, ir_node n);

@@ -86,6 +86,8 @@ typedef struct operation {
     PRICE(48, 14, 0), pl_inverse_root(a))                                                          \
   X(EXP, "exp", 1, RISING, IMAGE_OPEN(0, INFINITY), FUNCTION, 10, PRICE(75, 25, 0), pl_exp(a))     \
   X(LOG, "log", 1, PARTIAL | MAKES_NAN, IMAGE_ALL, FUNCTION, 10, PRICE(100, 25, 1), pl_log(a))     \
+  X(LOG10, "log10", 1, PARTIAL | MAKES_NAN, IMAGE_ALL, FUNCTION, 10, PRICE(115, 35, 1),            \
+    pl_log10(a))                                                                                   \
   X(POW, "pow", 2, PARTIAL | MAKES_NAN, IMAGE_ALL, FUNCTION, 10, PRICE(230, 90, 1), pl_pow(a, b))  \
   X(CBRT, "cbrt", 1, ODD | VANISHES | RISING | KINKED, IMAGE_ALL, FUNCTION, 10,                    \
     PRICE(110, 35, 0), pl_cbrt(a))                                                                 \
@@ -95,6 +97,14 @@ typedef struct operation {
     pl_cos(a))                                                                                     \
   X(TAN, "tan", 1, MAKES_NAN | ODD | VANISHES, IMAGE_ALL, FUNCTION, 10, PRICE(110, 60, 1),         \
     pl_tan(a))                                                                                     \
+  X(ASIN, "asin", 1, PARTIAL | MAKES_NAN | ODD | VANISHES,                                         \
+    IMAGE_CLOSED(-HALF_TURN / 2, HALF_TURN / 2), FUNCTION, 10, PRICE(130, 40, 3), pl_asin(a))      \
+  X(ACOS, "acos", 1, PARTIAL | MAKES_NAN, IMAGE_CLOSED(0, HALF_TURN), FUNCTION, 10,                \
+    PRICE(130, 45, 3), pl_acos(a))                                                                 \
+  X(SINH, "sinh", 1, ODD | VANISHES | RISING, IMAGE_ALL, FUNCTION, 10, PRICE(120, 45, 1),          \
+    pl_sinh(a))                                                                                    \
+  X(COSH, "cosh", 1, EVEN, IMAGE_CLOSED(1, INFINITY), FUNCTION, 10, PRICE(105, 35, 1),             \
+    pl_cosh(a))                                                                                    \
   X(TANH, "tanh", 1, ODD | VANISHES | RISING, IMAGE_OPEN(-1, 1), FUNCTION, 10, PRICE(110, 35, 1),  \
     pl_tanh(a))                                                                                    \
   X(ATAN2, "atan2", 2, KINKED, IMAGE_CLOSED(-HALF_TURN, HALF_TURN), FUNCTION, 10,                  \

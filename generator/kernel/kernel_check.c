@@ -54,6 +54,7 @@ static void draw_states(const law_readers *l, const state_arrays *a, uint64_t *s
     in[2][q] = draw_size(seed, -9, 0.5);
     in[3][q] = draw_size(seed, -9, 0.5);
     in[4][q] = l->bonds->s * (1 + in[0][q]);
+    in[5][q] = fabs(draw_size(seed, -9, 9));
     for (int f = 0; f < kernel->field_count; f++)
       a->field[f][q] = draw_field(seed, &kernel->fields[f]);
   }
@@ -169,7 +170,7 @@ kernel_check kernel_check_run(const kernel_plan *p, const pl_law *kernel,
     check_bounds(&l, parameters[k], &c.outputs);
     if (kernel->kind == PL_CONTINUUM || kernel->kind == PL_CRACK) {
       const double *const each[2] = {uniforms[0], uniforms[1]};
-      kernel_check_points(l.law, each, states / sets, &seed, &c.outputs);
+      kernel_check_points(l.law, each, parameters[k], states / sets, &seed, &c.outputs);
       c.points += states / sets;
     } else if (kernel->kind == PL_STATE)
       check_families(&c, &l, states / sets, &seed);

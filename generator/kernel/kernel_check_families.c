@@ -35,6 +35,7 @@ typedef struct body {
   int32_t *neighbour;                          /* [neighbours][SIZE] lists; NULL on rows */
   double **chord;    /* [dimensions][neighbours * SIZE] lists: m, and their lengths behind them */
   double **particle; /* [2][SIZE] volumes, masses */
+  double advance;    /* s: short, then long, in turns */
 } body;
 
 static bool is_list(const body *b) {
@@ -313,6 +314,7 @@ static void draw_body(body *b, const pl_bond_class *bonds, const double *paramet
     for (long q = 0; q < (long)b->neighbours * SIZE; q++)
       b->bond_link[0][k][q] = b->bond_link[1][k][q] = draw_size(seed, -6, 0);
   clear_shared(b);
+  b->advance = b->advance < 1 ? 3e4 : 3e-4;
 }
 
 static bool has_bond(const body *b, int k, long q) {
@@ -435,6 +437,7 @@ static void run_part(const law_readers *l, const body *b, int side, pl_family_fu
                  .own_size = b->own_size + site,
                  .mass = b->particle[1] + site,
                  .time_step = 1.7e-7,
+                 .advance = b->advance,
                  .lost = {b->lost[side][0] + site, b->lost[side][1] + site}};
   f.shape = (const double *const *)from_site(&s, b->shape, PL_SHAPE_PLANES(law->dimensions), site);
   f.old_field = (const double *const *)from_site(&s, b->before, law->field_count, site);

@@ -11,7 +11,7 @@ enum { BATCH = 512 };
 typedef struct point_arrays {
   const pl_law *of;
   int strains, stresses, inputs;
-  double **in, **rate, **size, **field; /* shared */
+  double **in, **rate, **size, **field, **parameter; /* shared */
   double **new_field[2], **stress[2], **tangent[2], **observed[2], **lost[2];
 } point_arrays;
 
@@ -25,6 +25,7 @@ static point_arrays arrays_new(const pl_law *reader) {
   a.rate = planes_new(a.strains, BATCH);
   a.size = planes_new(1, BATCH);
   a.field = planes_new(reader->field_count, BATCH);
+  a.parameter = planes_new(reader->varying_count, BATCH);
   for (int side = 0; side < 2; side++) {
     a.new_field[side] = planes_new(reader->field_count, BATCH);
     a.stress[side] = planes_new(a.stresses, BATCH);
@@ -40,6 +41,7 @@ static void arrays_free(point_arrays *a) {
   planes_free(a->rate, a->strains);
   planes_free(a->size, 1);
   planes_free(a->field, a->of->field_count);
+  planes_free(a->parameter, a->of->varying_count);
   for (int side = 0; side < 2; side++) {
     planes_free(a->new_field[side], a->of->field_count);
     planes_free(a->stress[side], a->stresses);
@@ -47,6 +49,12 @@ static void arrays_free(point_arrays *a) {
     planes_free(a->observed[side], 1 + a->of->output_count);
     planes_free(a->lost[side], PL_LOSSES);
   }
+}
+
+static void draw_parameters(const point_arrays *a, const double *parameters, uint64_t *seed) {
+  for (int k = 0; k < a->of->varying_count; k++)
+    for (int q = 0; q < BATCH; q++)
+      a->parameter[k][q] = parameters[a->of->varying[k]] * draw_uniform(seed, 0.95, 1.05);
 }
 
 static void draw(const point_arrays *a, uint64_t *seed) {
@@ -71,13 +79,15 @@ static void ask_points(const point_arrays *a, int side, const pl_law *reader,
                        .strain = (const double *const *)a->in,
                        .strain_rate = (const double *const *)a->rate,
                        .cell_size = a->size[0],
+                       .parameter = (const double *const *)a->parameter,
                        .old_field = (const double *const *)a->field,
                        .new_field = a->new_field[side],
                        .stress = a->stress[side],
                        .tangent = a->tangent[side],
                        .observed = a->observed[side],
                        .lost = a->lost[side],
-                       .time_step = 1e-6};
+                       .time_step = 1e-6,
+                       .advance = 0.3};
   planes_poison(a->stress[side], a->stresses, BATCH);
   planes_poison(a->new_field[side], reader->field_count, BATCH);
   planes_poison(a->tangent[side], a->strains * a->strains, BATCH);
@@ -118,10 +128,12 @@ static void compare_step(const point_arrays *a, const pl_law *reader, const doub
                        .strain = (const double *const *)a->in,
                        .strain_rate = (const double *const *)a->rate,
                        .cell_size = a->size[0],
+                       .parameter = (const double *const *)a->parameter,
                        .old_field = (const double *const *)a->field,
                        .new_field = a->new_field[1],
                        .stress = a->stress[1],
-                       .time_step = 1e-6};
+                       .time_step = 1e-6,
+                       .advance = 0.3};
   planes_poison(a->stress[1], a->stresses, BATCH);
   planes_poison(a->new_field[1], reader->field_count, BATCH);
   reader->point_step(reader, uniforms, &p);
@@ -196,11 +208,13 @@ static void ask_row(const point_arrays *a, const rectangle_row *r, const pl_law 
                  .strain = (const double *const *)a->in,
                  .strain_rate = (const double *const *)a->rate,
                  .cell_size = a->size[0],
+                 .parameter = (const double *const *)a->parameter,
                  .old_field = (const double *const *)a->field,
                  .new_field = a->new_field[0],
                  .stress = a->stress[0],
                  .lost = a->lost[0],
-                 .time_step = 1e-6};
+                 .time_step = 1e-6,
+                 .advance = 0.3};
   double *const *sum = r->sum[1], *const low[] = {sum[OF_LOW], sum[SUMS + OF_LOW]},
                 *const above[] = {sum[OF_ABOVE], sum[SUMS + OF_ABOVE]};
   double right[AXES][2];
@@ -260,9 +274,10 @@ static void compare_rectangles(const point_arrays *a, const pl_law *reader, cons
 }
 
 void kernel_check_points(const pl_law *const readers[2], const double *const uniforms[2],
-                         long states, uint64_t *seed, comparison *c) {
+                         const double *parameters, long states, uint64_t *seed, comparison *c) {
   const bool tip = readers[0]->kind == PL_CRACK;
   point_arrays a = arrays_new(readers[0]);
+  draw_parameters(&a, parameters, seed);
   for (long done = 0; done < states; done += BATCH) {
     draw(&a, seed);
     for (int side = 0; side < 2; side++)

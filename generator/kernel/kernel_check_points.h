@@ -5,9 +5,10 @@
 
 #include "generator/kernel/kernel_check.h"
 
-/* readers[0] compiled, readers[1] interpreted, each with its uniforms. Strains are log-uniform in
+/* readers[0] compiled, readers[1] interpreted, each with its uniforms; `parameters` around which
+   those that differ in space are drawn. Strains are log-uniform in
    size from 1e-9 to 0.1, K from 1 to 1e9 Pa m^(1/2). */
 void kernel_check_points(const pl_law *const readers[2], const double *const uniforms[2],
-                         long states, uint64_t *seed, comparison *c);
+                         const double *parameters, long states, uint64_t *seed, comparison *c);
 
 #endif

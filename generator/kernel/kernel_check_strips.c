@@ -139,6 +139,7 @@ static pl_strip strip_of(const strip_arrays *a, int side) {
                 .flags = a->flags,
                 .unheld = a->unheld,
                 .time_step = 1.7e-7,
+                .advance = 0.3,
                 .parameter = (const double *const *)a->parameter,
                 .field = a->kept[side],
                 .force = a->force[side],

@@ -43,17 +43,21 @@ static void read_value(arena *a, source_set *sources, int file, uint32_t begin, 
   diagnostics trial;
   diag_begin(&trial, sources);
   namelist_read_values(a, sources, file, begin, key, &trial);
-  bool good = !key->broken && trial.errors == 0 && key->value_count == 1;
+  bool good = !key->broken && trial.errors == 0 && key->value_count >= 1 && key->value_count <= 3;
   diag_clear(&trial);
   if (!good) take_text(a, sources->items[file].text, begin, (uint16_t)file, key);
 }
 
-/* Those of `m` but the ones of a name. */
+static bool is_called(const deck_assignment *a, const char *name) {
+  return strcasecmp(a->name, name) == 0 || (a->vector && strcasecmp(a->vector, name) == 0);
+}
+
+/* Those of `m` but the ones of a name, or of a vector's. */
 static int remove_name(deck_material *m, const char *name) {
   int kept = 0;
   const int before = m->assignment_count;
   for (int k = 0; k < before; k++)
-    if (strcasecmp(m->assignments[k].name, name) != 0) m->assignments[kept++] = m->assignments[k];
+    if (!is_called(&m->assignments[k], name)) m->assignments[kept++] = m->assignments[k];
   m->assignment_count = kept;
   return before - kept;
 }

@@ -21,6 +21,10 @@ ir_node kinematics_input(ir *g, ends_input which) {
   return o->array == FROM_CLASS ? ir_mark_class(g, n) : n;
 }
 
+ir_node kinematics_advance(ir *g, placement on) {
+  return ir_input(g, IR_FROM_ENDS, ENDS_ADVANCE, ends_origins[ENDS_ADVANCE].name, on);
+}
+
 /* Names are for readers of dumps and of generated C; these values have no line in a model. */
 static ir_node named(ir *g, ir_node n, const char *name) {
   ir_set_name(g, n, name, (span){0, 0, 0});

@@ -14,7 +14,8 @@
    HELD: the same for particle i or j, in families; what belongs to particle i is ON_PARTICLE there.
    The rotation in a plane and the third direction share component 2; in space the rotations PHI_X,
    PHI_Y, PHI_Z follow. Of a bond in a plane that twists PHI_X and OMEGA_X are about the bond.
-   TIME_STEP: s, of the strip; ON_BOND because `prepare` does not know it. */
+   TIME_STEP: s, of the strip; ON_BOND because `prepare` does not know it. ADVANCE: s, `dt` of laws
+   (kinematics_advance). */
 /* X(code, name, where a strip keeps it, what it differs by, component) */
 #define ENDS_INPUTS(X)                                                                             \
   X(U_IX, "u_ix", FROM_DISPLACEMENT, OF_I, 0)                                                      \
@@ -52,6 +53,7 @@
   X(SIZE_J, "size_j", FROM_SIZE, OF_J, 0)                                                          \
   X(PROTECTED, "protected", FROM_FLAGS, OF_BOND, 0)                                                \
   X(TIME_STEP, "time_step", FROM_TIME, OF_STRIP, 0)                                                \
+  X(ADVANCE, "dt", FROM_TIME, OF_STRIP, 1)                                                         \
   X(PHI_IX, "phi_ix", FROM_DISPLACEMENT, OF_I, 3)                                                  \
   X(PHI_IY, "phi_iy", FROM_DISPLACEMENT, OF_I, 4)                                                  \
   X(PHI_IZ, "phi_iz", FROM_DISPLACEMENT, OF_I, 5)                                                  \
@@ -96,6 +98,10 @@ extern const ends_origin ends_origins[ENDS_COUNT];
 /* The input node. Its placement follows from what it is: CLASS_CHORD on the body; HELD_I, VOLUME_I,
    MASS_I, SHARE_I and SIZE_I on the particle; all others on the bond. */
 ir_node kinematics_input(ir *g, ends_input which);
+
+/* `dt`, which is the same for all of a strip or run. It stands where the first thing stands that
+   `prepare` does not know: on bonds, of laws of families on the particle, or on the point. */
+ir_node kinematics_advance(ir *g, placement on);
 
 /* asin(x)/x of the square of x, for |x| < 1/16. */
 ir_node kinematics_arc_sine_ratio(ir *g, ir_node square);

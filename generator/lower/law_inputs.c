@@ -7,7 +7,8 @@
 #include "dsl/base/elementary.h"
 
 const builtin_quantity law_motion[PL_STATE_INPUTS] = {
-    QUANTITY_STRETCH, QUANTITY_STRETCH_RATE, QUANTITY_THETA_I, QUANTITY_THETA_J, QUANTITY_LENGTH};
+    QUANTITY_STRETCH, QUANTITY_STRETCH_RATE, QUANTITY_THETA_I, QUANTITY_THETA_J, QUANTITY_LENGTH,
+    QUANTITY_DT};
 
 const ends_input law_chord[LAW_CHORD] = {ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y,
                                          ENDS_CLASS_CHORD_Z};
@@ -25,11 +26,11 @@ void law_state_inputs(pl_input out[PL_STATE_INPUTS]) {
   }
 }
 
-/* Motion, class, and what a law has in other ways: TWIST, RESOLVED, DIRECTION, and what is made
+/* Motion, class, and what a law has in other ways: PI, TWIST, RESOLVED, DIRECTION, and what is made
    of the motion: SLIP, GAP, SLIP_RATE; and what a point has: STRAIN, STRAIN_RATE, CELL_SIZE,
    and what a tip has (point_inputs.h). */
 #define X(code, value) +1
-_Static_assert(PL_STATE_INPUTS CLASS_QUANTITIES(X) + 17 == QUANTITY_COUNT,
+_Static_assert(PL_STATE_INPUTS CLASS_QUANTITIES(X) + 18 == QUANTITY_COUNT,
                "each quantity has a place where a law finds it");
 #undef X
 

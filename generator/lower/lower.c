@@ -10,7 +10,9 @@
 #include "generator/lower/lower_energy.h"
 #include "generator/lower/lower_family.h"
 #include "generator/lower/lower_inputs.h"
+#include "generator/lower/lower_rate.h"
 #include "generator/lower/lower_slip.h"
+#include "generator/lower/lower_solved.h"
 #include "generator/lower/lower_tensor.h"
 #include "generator/lower/lower_value.h"
 #include "generator/lower/point_inputs.h"
@@ -53,42 +55,6 @@ static void note_flow(lowering *c, const stmt *rule, ir_node when) {
   if (c->mode == LOWER_STEP) lower_note_flow(c, rule, when, overstress_of(c, rule->when));
 }
 
-/* What neighbours have, each behind an input of its own, so that it stays as it is. Returns how
-   many. */
-static int freeze_neighbours(lowering *c, ir_node *n, ir_node **what, ir_node **stand_in) {
-  ir *g = c->graph;
-  const int nodes = ir_count(g), fields = c->law->fields.count;
-  unsigned char *marks = must_calloc((size_t)nodes + 1, 1);
-  int count = 0;
-  ir_mark(g, n, 1, marks);
-  for (ir_node k = 0; k < nodes; k++)
-    count += marks[k] && ir_operation(g, k) == IR_NEIGHBOUR;
-  *what = arena_alloc(c->memory, ((size_t)count + 1) * sizeof **what);
-  *stand_in = arena_alloc(c->memory, ((size_t)count + 1) * sizeof **stand_in);
-  count = 0;
-  for (ir_node k = 0; k < nodes; k++) {
-    if (!marks[k] || ir_operation(g, k) != IR_NEIGHBOUR) continue;
-    (*what)[count] = k;
-    (*stand_in)[count] = ir_input(g, IR_FROM_FIELD, 2 * fields + 1 + k, "frozen", ir_place(g, k));
-    count++;
-  }
-  free(marks);
-  ir_substitute(g, n, 1, *what, *stand_in, count, n);
-  return count;
-}
-
-/* Whether a sum over the family moves with the flow. */
-static bool moves_a_sum(const ir *g, ir_node over, ir_node lambda) {
-  unsigned char *marks = must_calloc((size_t)ir_count(g) + 1, 1);
-  bool found = false;
-  ir_mark(g, &over, 1, marks);
-  for (ir_node n = 0; n <= over && !found; n++)
-    found =
-        marks[n] && ir_is_reduction(ir_operation(g, n)) && rewrite_depends(g, &n, 1, &lambda, 1);
-  free(marks);
-  return found;
-}
-
 /* old + lambda direction */
 static components along(ir *g, components old, ir_node lambda, components direction) {
   for (int k = 0; k < old.count; k++)
@@ -108,7 +74,7 @@ static int kept_fields(lowering *c, ir_node *from, ir_node *to) {
   int count = 0;
   for (int k = 0; k < fields->count; k++) {
     const symbol *s = fields->items[k];
-    if (!lower_is_returned(s->component_of ? s->component_of : s)) continue;
+    if (!lower_is_solved(s->component_of ? s->component_of : s)) continue;
     from[count] = lower_kept_field(c->graph, c->law, k);
     to[count++] = lower_field(c->graph, c->law, k);
   }
@@ -128,12 +94,6 @@ static ir_node before_flow(lowering *c, ir_node f, const ir_node *lambda) {
   return f;
 }
 
-/* 0, or no number: so that what is made of it is found, and told (explain_point.h). */
-static ir_node zero_if(ir *g, ir_node good) {
-  const ir_node zero = ir_constant(g, 0), bad = ir_constant(g, -1);
-  return ir_unary(g, IR_SQRT, ir_select(g, good, zero, bad));
-}
-
 /* Whether f is 0, to rounding. */
 static ir_node has_returned(ir *g, ir_node over) {
   static const double RETURNED = 1e-9; /* of what is added up to f */
@@ -147,7 +107,7 @@ static ir_node found_at_once(lowering *c, ir_node over, ir_node slope, ir_node l
   const ir_node start = before_flow(c, over, &lambda), minus = ir_constant(g, -1);
   const ir_node falls = ir_binary(g, IR_LT, slope, ir_constant(g, 0));
   const ir_node pace = ir_div(g, minus, ir_select(g, falls, slope, minus));
-  return ir_mul(g, start, ir_add(g, pace, zero_if(g, falls)));
+  return ir_mul(g, start, ir_add(g, pace, lower_zero_if(g, falls)));
 }
 
 /* Of the flow noted last: what explains that no return is found. */
@@ -184,7 +144,7 @@ static ir_node find_lambda(lowering *c, const stmt *rule, ir_node over, ir_node 
           .of[0];
   }
   if (!told) return found;
-  ir_node doubt = zero_if(g, has_returned(g, over));
+  ir_node doubt = lower_zero_if(g, has_returned(g, over));
   ir_substitute(g, &doubt, 1, &lambda, &found, 1, &doubt);
   return ir_add(g, found, doubt);
 }
@@ -201,12 +161,12 @@ static components flow_returned(lowering *c, const stmt *rule, components old,
                               "`returned when f >= 0`");
   ir_node when = before_flow(c, lower_expr(c, rule->when), NULL), *what, *stand_in;
   note_flow(c, rule, when);
-  const int frozen = freeze_neighbours(c, &over, &what, &stand_in);
+  const int frozen = lower_freeze_neighbours(c, &over, &what, &stand_in);
   ir_node lambda = ir_input(g, IR_FROM_FIELD, 2 * c->law->fields.count, "lambda",
                             !ir_is_uniform(g, over) ? ir_place(g, over) : ON_BOND);
   components moved = along(g, old, lambda, direction);
   ir_substitute(g, &over, 1, old.of, moved.of, old.count, &over);
-  if (ir_place(g, over) > ON_PARTICLE && moves_a_sum(g, over, lambda))
+  if (ir_place(g, over) > ON_PARTICLE && lower_moves_a_sum(g, over, lambda))
     return lower_failed_value(
         c, rule->where,
         "the flow toward one neighbour would change the guards of all others: a guard "
@@ -253,7 +213,9 @@ static ir_node of_both_ends(lowering *c, ir_node value) {
 
 /* The inputs at hand, what leaves the plane among them. */
 static components old_of(const lowering *c, const symbol *s) {
-  components old = {.count = s->shape == SHAPE_TENSOR ? TENSOR_COUNT : 1};
+  components old = {.count = s->shape == SHAPE_TENSOR   ? TENSOR_COUNT
+                             : s->shape == SHAPE_VECTOR ? VECTOR_COMPONENT_COUNT
+                                                        : 1};
   for (int k = 0; k < old.count; k++)
     if (law_field_of(s, k) >= 0) old.of[k] = lower_field(c->graph, c->law, law_field_of(s, k));
   return s->deviator ? tensor_as_deviator(c->graph, old) : old;
@@ -261,7 +223,9 @@ static components old_of(const lowering *c, const symbol *s) {
 
 static void set_rule(lowering *c, const stmt *rule, int field, ir_node old, ir_node value) {
   const symbol *s = c->law->fields.items[field];
-  if (s->component_of && lower_is_none(c->law, s->component)) value = ir_constant(c->graph, 0);
+  if (s->component_of && s->component_of->shape == SHAPE_TENSOR &&
+      lower_is_none(c->law, s->component))
+    value = ir_constant(c->graph, 0);
   if (s->place == ON_BOND && lower_is_state_law(c)) value = of_both_ends(c, value);
   if (c->mode == LOWER_STEP) c->text.rules[field] = value;
   if (s->kind == SYMBOL_DAMAGE) value = clamp_damage(c, s->place, old, value);
@@ -270,13 +234,26 @@ static void set_rule(lowering *c, const stmt *rule, int field, ir_node old, ir_n
   c->rule_order[c->rule_count++] = field;
 }
 
+/* Over a step in time; the rates at its end are kept. */
+static components go_on(lowering *c, const stmt *rule, components old, components rate) {
+  components rate_before = {.count = old.count}, rate_after;
+  for (int k = 0; k < old.count; k++) {
+    const int field = law_field_of(rule->symbol, k);
+    rate_before.of[k] =
+        field < 0 ? IR_NONE : lower_field(c->graph, c->law, law_rate_field(c->law, field));
+  }
+  const components now = lower_rate(c, rule, old, rate, rate_before, &rate_after);
+  for (int k = 0; k < old.count && !c->failed; k++) {
+    const int field = law_field_of(rule->symbol, k);
+    if (field < 0) continue;
+    set_rule(c, rule, law_rate_field(c->law, field), rate_before.of[k], rate_after.of[k]);
+  }
+  return now;
+}
+
 static void lower_field_rule(lowering *c, const stmt *rule) {
   const symbol *s = rule->symbol;
   if (c->mode == LOWER_FROZEN) return;
-  if (s->shape == SHAPE_VECTOR) {
-    lower_fail(c, s->where, "a state cannot be a vector: keep its parts");
-    return;
-  }
   if (s->shape == SHAPE_BENDING && c->law->bends_in_space) {
     lower_fail(c, s->where,
                "a state that is a bending quantity would have to turn with its bond "
@@ -290,8 +267,14 @@ static void lower_field_rule(lowering *c, const stmt *rule) {
   for (; value.count < old.count; value.count++) /* 0 is a tensor of zeros, too */
     value.of[value.count] = value.of[0];
   if (rule->kind == STMT_FLOW) value = flow_once(c, rule, old, value);
-  for (int k = 0; k < old.count && !c->failed; k++)
-    if (law_field_of(s, k) >= 0) set_rule(c, rule, law_field_of(s, k), old.of[k], value.of[k]);
+  const components rate = value;
+  if (rule->kind == STMT_RATE) value = go_on(c, rule, old, value);
+  for (int k = 0; k < old.count && !c->failed; k++) {
+    if (law_field_of(s, k) < 0) continue;
+    set_rule(c, rule, law_field_of(s, k), old.of[k], value.of[k]);
+    if (rule->kind == STMT_RATE && c->mode == LOWER_STEP)
+      c->text.rules[law_field_of(s, k)] = rate.of[k];
+  }
 }
 
 static void lower_rule(lowering *c, const stmt *rule) {
@@ -459,6 +442,7 @@ static void lower_tip(lowering *c, lowered_law *out) {
 static void lower_results(lowering *c, lowered_law *out) {
   const symbol_list *outputs = &c->law->outputs;
   out->W = result_node(c, RESULT_W);
+  if (c->law->rest) out->rest = value_of(c, c->law->rest);
   if (lower_is_state_law(c))
     lower_force_state(c, out);
   else if (c->law->tree->law == LAW_CONTINUUM)
@@ -541,15 +525,26 @@ static void resolve_fields(lowering *c, lowered_law *out) {
     pairs++;
   }
   ir_substitution_free(known);
-  ir_node *results[LOWERED_FORCES + 1];
+  ir_node *results[LOWERED_FORCES + 2];
   int count = lowered_forces(out, results);
   if (out->W != IR_NONE) results[count++] = &out->W;
+  if (out->rest != IR_NONE) results[count++] = &out->rest;
   for (int k = 0; k < count; k++)
     ir_substitute(g, results[k], 1, from, to, pairs, results[k]);
   ir_substitute(g, out->outputs, c->law->outputs.count, from, to, pairs, out->outputs);
   resolve_text(c, from, to, pairs);
   free(from);
   free(to);
+}
+
+/* By a state above, say. */
+static void refuse_moving_rest(lowering *c, const lowered_law *out) {
+  if (out->rest == IR_NONE) return;
+  ir_node moving[] = {lower_quantity(c->graph, QUANTITY_STRETCH),
+                      lower_quantity(c->graph, QUANTITY_STRETCH_RATE),
+                      lower_quantity(c->graph, QUANTITY_LENGTH)};
+  if (rewrite_depends(c->graph, &out->rest, 1, moving, 3))
+    lower_fail(c, c->law->rest->where, "the rest stretch may not follow the bond's own motion");
 }
 
 /* Stands for the new value of field k until all rules are known. */
@@ -568,7 +563,7 @@ bool lower_law_varying(const law *l, ir *g, lower_mode mode, const law_variation
   int fields = l->fields.count;
   size_t field_bytes = ((size_t)fields + 1) * sizeof(ir_node);
   lowering c = {.law = l, .graph = g, .mode = mode, .variation = v, .memory = memory, .said = d};
-  *out = (lowered_law){.N = IR_NONE, .T = IR_NONE, .F = IR_NONE, .W = IR_NONE};
+  *out = (lowered_law){.N = IR_NONE, .T = IR_NONE, .F = IR_NONE, .W = IR_NONE, .rest = IR_NONE};
   for (int k = 0; k < BENDING_AXES; k++)
     out->M_i[k] = out->M_j[k] = IR_NONE;
   for (int k = 0; k < LOWERED_STRESSES; k++)
@@ -589,6 +584,7 @@ bool lower_law_varying(const law *l, ir *g, lower_mode mode, const law_variation
     lower_rule(&c, l->rules[k]);
   if (!c.failed) lower_results(&c, out);
   if (!c.failed && mode != LOWER_FROZEN) resolve_fields(&c, out);
+  if (!c.failed) refuse_moving_rest(&c, out);
   lowered_text *t = &c.text;
   t->lines = keep(memory, t->lines, t->line_count, sizeof *t->lines);
   t->places = keep(memory, t->places, t->place_count, sizeof *t->places);

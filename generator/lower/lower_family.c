@@ -90,6 +90,62 @@ static components dyad(ir *g, const law *l) {
   return v;
 }
 
+/* --- vectors ---------------------------------------------------------------------------------- */
+
+static components vector_of_components(ir *g, const components *a, int count) {
+  components v = {.count = VECTOR_COMPONENT_COUNT};
+  for (int k = 0; k < v.count; k++)
+    v.of[k] = k < count ? a[k].of[0] : ir_constant(g, 0);
+  return v;
+}
+
+/* A vector; 0 stands for one of zeros. */
+static components wide(components a) {
+  for (; a.count < VECTOR_COMPONENT_COUNT; a.count++)
+    a.of[a.count] = a.of[0];
+  return a;
+}
+
+/* a b, without a node where one of them is 0. */
+static ir_node product_of(ir *g, ir_node a, ir_node b) {
+  return ir_is_number(g, b, 0) ? b : tensor_scaled(g, b, a);
+}
+
+static ir_node vector_dot(ir *g, components a, components b) {
+  ir_node sum = ir_constant(g, 0);
+  a = wide(a), b = wide(b);
+  for (int k = 0; k < VECTOR_COMPONENT_COUNT; k++) {
+    const ir_node part = product_of(g, a.of[k], b.of[k]);
+    sum = ir_add(g, sum, part);
+  }
+  return sum;
+}
+
+static components vector_cross(ir *g, components a, components b) {
+  components v = {.count = VECTOR_COMPONENT_COUNT};
+  a = wide(a), b = wide(b);
+  for (int k = 0; k < VECTOR_COMPONENT_COUNT; k++) {
+    const int p = (k + 1) % VECTOR_COMPONENT_COUNT, q = (k + 2) % VECTOR_COMPONENT_COUNT;
+    const ir_node first = product_of(g, a.of[p], b.of[q]);
+    const ir_node second = product_of(g, a.of[q], b.of[p]);
+    v.of[k] = ir_sub(g, first, second);
+  }
+  return v;
+}
+
+/* (a b + b a)/2 */
+static components vector_dyad(ir *g, components a, components b) {
+  static const int first[] = {0, 1, 2, 0, 1, 0}, second[] = {0, 1, 2, 1, 2, 2};
+  components v = {.count = TENSOR_COUNT};
+  a = wide(a), b = wide(b);
+  for (int k = 0; k < TENSOR_COUNT; k++) {
+    const ir_node one = product_of(g, a.of[first[k]], b.of[second[k]]);
+    const ir_node other = product_of(g, b.of[first[k]], a.of[second[k]]);
+    v.of[k] = one == other ? one : half(g, ir_add(g, one, other));
+  }
+  return v;
+}
+
 /* Which strains a family can resolve: all six, in a plane three. */
 static int strain_count(const law *l) {
   return is_plane(l) ? 3 : TENSOR_COUNT;
@@ -244,6 +300,14 @@ components lower_family_call(lowering *c, const expr *e, const components *a) {
     return scalar(tensor_J2(g, a[0]));
   case FUNCTION_VON_MISES:
     return scalar(ir_unary(g, IR_SQRT, ir_scaled(g, 3, tensor_J2(g, a[0]))));
+  case FUNCTION_VECTOR:
+    return vector_of_components(g, a, e->argument_count);
+  case FUNCTION_DOT:
+    return scalar(vector_dot(g, a[0], a[1]));
+  case FUNCTION_CROSS:
+    return vector_cross(g, a[0], a[1]);
+  case FUNCTION_DYAD:
+    return vector_dyad(g, a[0], a[1]);
   case FUNCTION_TENSOR: {
     components v = {.count = TENSOR_COUNT};
     bool zero = true;

@@ -12,6 +12,12 @@ ir_node lower_quantity(ir *g, builtin_quantity q) {
   return builtin_quantities[q].place == ON_BOND ? ir_mark_class(g, n) : n;
 }
 
+ir_node lower_advance(ir *g, const law *l) {
+  if (l->tree->law == LAW_STATE) return kinematics_advance(g, ON_PARTICLE);
+  if (l->tree->law == LAW_CONTINUUM) return kinematics_advance(g, ON_POINT);
+  return lower_quantity(g, QUANTITY_DT);
+}
+
 ir_node lower_bending(ir *g, const law *l, builtin_quantity theta, int axis) {
   static const char *const names[2][BENDING_AXES] = {{"theta_ix", "theta_iy", "theta_iz"},
                                                      {"theta_jx", "theta_jy", "theta_jz"}};
@@ -31,6 +37,10 @@ ir_node lower_field(ir *g, const law *l, int k) {
 
 bool lower_is_returned(const symbol *s) {
   return s->rule && s->rule->kind == STMT_FLOW && s->rule->returned;
+}
+
+bool lower_is_solved(const symbol *s) {
+  return s->rule && !s->rate_of && (s->rule->kind == STMT_RATE || lower_is_returned(s));
 }
 
 ir_node lower_kept_field(ir *g, const law *l, int k) {

@@ -17,8 +17,12 @@ ir_node lower_bending(ir *g, const law *l, builtin_quantity theta, int axis);
 /* The input node of parameter or field k. */
 ir_node lower_parameter(ir *g, const law *l, int k);
 ir_node lower_field(ir *g, const law *l, int k);
-/* Whether the rule of a state is a flow that is solved for. */
+/* `dt`, s. */
+ir_node lower_advance(ir *g, const law *l);
+/* Whether the rule of a state is a flow that returns; whether it is solved for the state, as a rate
+   is, too. */
 bool lower_is_returned(const symbol *s);
+bool lower_is_solved(const symbol *s);
 /* previous(field k) where that is so: stands in for field k until all rules are known. */
 ir_node lower_kept_field(ir *g, const law *l, int k);
 /* 2 in a plane, 3 in space. */

@@ -28,12 +28,14 @@ static components lower_tensor_of_point(const lowering *c, bool rate) {
 }
 
 static components lower_quantity_name(lowering *c, builtin_quantity q) {
+  if (q == QUANTITY_PI) return scalar(ir_constant(c->graph, HALF_TURN));
   if (q == QUANTITY_STRAIN || q == QUANTITY_STRAIN_RATE)
     return lower_tensor_of_point(c, q == QUANTITY_STRAIN_RATE);
   if (c->law->tree->law == LAW_CRACK) return scalar(lower_tip_quantity(c->graph, q));
   if (q == QUANTITY_CELL_SIZE) return scalar(point_input_node(c->graph, POINT_CELL_SIZE));
   if (q == QUANTITY_V) return scalar(lower_volume(c->graph, c->law));
   if (q == QUANTITY_RESOLVED) return scalar(lower_resolved(c->graph, c->law));
+  if (q == QUANTITY_DT) return scalar(lower_advance(c->graph, c->law));
   if (builtin_quantities[q].kinds == IN_SLIP) return lower_slip_quantity(c, q);
   if (builtin_quantities[q].shape == SHAPE_BENDING) return lower_bending_quantity(c, q);
   if (q == QUANTITY_TWIST && !c->law->twists) return scalar(ir_constant(c->graph, 0));
@@ -66,6 +68,12 @@ static ir_node lower_one_field(const lowering *c, int k, bool old) {
 
 /* Of a tensor in the plane what leaves it is 0. */
 static components lower_field_value(const lowering *c, const symbol *s, bool old) {
+  if (s->shape == SHAPE_VECTOR) {
+    components v = {.count = VECTOR_COMPONENT_COUNT};
+    for (int k = 0; k < v.count; k++)
+      v.of[k] = lower_one_field(c, law_field_of(s, k), old);
+    return v;
+  }
   if (s->shape != SHAPE_TENSOR) return scalar(lower_one_field(c, s->index, old));
   components v = {.count = TENSOR_COUNT};
   for (int k = 0; k < TENSOR_COUNT; k++) {
@@ -83,12 +91,20 @@ static ir_node lower_choice_name(lowering *c, const expr *e) {
   return ir_constant(c->graph, decided_to_hold(c->law, e));
 }
 
+static components lower_own_vector(const lowering *c, int first) {
+  components v = {.count = VECTOR_COMPONENT_COUNT};
+  for (int k = 0; k < v.count; k++)
+    v.of[k] = lower_own_parameter(c, first + k);
+  return v;
+}
+
 /* Of the particle, or of the bond seen from it. */
 static components lower_own_name(lowering *c, const expr *e) {
   switch (e->symbol->kind) {
   case SYMBOL_QUANTITY:
     return lower_quantity_name(c, (builtin_quantity)e->symbol->index);
   case SYMBOL_PARAMETER:
+    if (e->symbol->shape == SHAPE_VECTOR) return lower_own_vector(c, e->symbol->index);
     return scalar(lower_own_parameter(c, e->symbol->index));
   case SYMBOL_STATE:
   case SYMBOL_DAMAGE:
@@ -169,7 +185,7 @@ static components lower_binary(lowering *c, const expr *e) {
 
 static components lower_unary(lowering *c, const expr *e) {
   components a = lower_value(c, e->left);
-  if (e->unary == OP_COMPONENT) return scalar(a.of[a.count == 1 ? 0 : e->component]);
+  if (e->unary >= OP_COMPONENT) return scalar(a.of[a.count == 1 ? 0 : e->component]);
   if (e->unary == OP_NOT) return scalar(ir_unary(c->graph, IR_NOT, a.of[0]));
   for (int k = 0; k < a.count && e->unary == OP_NEG; k++)
     a.of[k] = ir_neg(c->graph, a.of[k]);
@@ -301,7 +317,7 @@ static components lower_previous(lowering *c, const expr *e) {
   if (!s || (s->kind != SYMBOL_STATE && s->kind != SYMBOL_DAMAGE))
     return lower_failed_value(c, e->where, "`previous` asks for a state or a damage");
   components old = lower_field_value(c, s, true);
-  for (int k = 0; k < old.count && c->mode != LOWER_FROZEN && lower_is_returned(s); k++)
+  for (int k = 0; k < old.count && c->mode != LOWER_FROZEN && lower_is_solved(s); k++)
     if (ir_operation(c->graph, old.of[k]) == IR_INPUT)
       old.of[k] = lower_kept_field(c->graph, c->law, law_field_of(s, k));
   return of_whom(c, name, tensor_settled(c->graph, old));
@@ -383,9 +399,11 @@ static components lower_of_family(lowering *c, const expr *e) {
   components a[MOST_ARGUMENTS] = {lower_value(c, e->arguments[0].value)};
   const bool which = e->builtin == FUNCTION_PRINCIPAL || e->builtin == FUNCTION_PRINCIPAL_DIRECTION;
   const int count = which ? 1 : e->argument_count;
+  const bool products = e->builtin == FUNCTION_PRODUCT || e->builtin == FUNCTION_DOT ||
+                        e->builtin == FUNCTION_CROSS || e->builtin == FUNCTION_DYAD;
   for (int k = 1; k < count && !c->failed; k++)
-    a[k] = e->builtin == FUNCTION_PRODUCT ? lower_value(c, e->arguments[k].value)
-                                          : scalar(lower_expr(c, e->arguments[k].value));
+    a[k] = products ? lower_value(c, e->arguments[k].value)
+                    : scalar(lower_expr(c, e->arguments[k].value));
   return c->failed ? a[0] : lower_family_call(c, e, a);
 }
 

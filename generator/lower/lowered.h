@@ -22,6 +22,9 @@ typedef struct law_variation {
   bool shares; /* force state and energy are those of a particle's share (pl_family) */
   bool sizes;  /* `spacing` and `horizon` are a particle's own (pl_family) */
   bool alone;  /* hosts take single families (pl_law.force_state) */
+  /* what is needed only where something grows is computed everywhere (plan/seldom.h): for
+     comparisons */
+  bool everywhere;
 } law_variation;
 
 /* What became of the law's text (LOWER_STEP only), for checks that speak about it. */
@@ -44,7 +47,9 @@ typedef struct lowered_flow {
   ir_node slope, slope_after;
 } lowered_flow;
 typedef struct lowered_text {
-  ir_node *rules; /* [law->fields.count] a damage's rule before it is kept in [0, 1] */
+  /* [law->fields.count] a damage's rule before it is kept in [0, 1]; the rate of a state that has
+     one */
+  ir_node *rules;
   lowered_line *lines;
   lowered_place *places;
   lowered_flow *flows;
@@ -65,7 +70,8 @@ typedef struct lowered_law {
   ir_node sigma[LOWERED_STRESSES]; /* of a continuum: xx, yy, zz, xy, yz, xz; Pa */
   ir_node tip[LOWERED_TIP];        /* of a crack */
   bool along_reference;            /* it acts along the reference bond */
-  ir_node W;                       /* the law's own `energy`, or IR_NONE */
+  ir_node rest;     /* stretch from which the input `stretch` of all this is measured; IR_NONE: 0 */
+  ir_node W;        /* the law's own `energy`, or IR_NONE */
   ir_node *fields;  /* [law->fields.count] new values (LOWER_FROZEN: the inputs themselves) */
   ir_node *outputs; /* [law->outputs.count] */
   lowered_text text;

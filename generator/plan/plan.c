@@ -10,6 +10,7 @@
 #include "generator/plan/plan_roots.h"
 #include "generator/plan/plan_strips.h"
 #include "generator/plan/program_facts.h"
+#include "generator/plan/seldom.h"
 
 kernel_plan *plan_begin(const law *l, kernel_form form) {
   kernel_plan *plan = must_calloc(1, sizeof *plan);
@@ -27,6 +28,7 @@ static kernel_plan *finish(kernel_plan *plan, bool good, diagnostics *d) {
     return NULL;
   }
   plan_count_cost(plan);
+  plan_seldom(plan);
   plan_hoist(plan);
   return plan;
 }

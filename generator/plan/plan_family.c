@@ -10,6 +10,7 @@
 #include "generator/lower/kinematics.h"
 #include "generator/lower/lower_energy.h"
 #include "generator/lower/lower_inputs.h"
+#include "generator/lower/lower_rest.h"
 #include "generator/plan/particle_parts.h"
 #include "generator/plan/plan_losses.h"
 #include "generator/plan/plan_roots.h"
@@ -18,6 +19,7 @@ typedef struct family_planner {
   kernel_plan *plan;
   ir *g;
   lowered_law step, frozen;
+  ir_node stored; /* J */
 } family_planner;
 
 /* Stand for the motion until it is known: components of the present direction; 1/length and chord,
@@ -166,8 +168,9 @@ static segment observe_roots(family_planner *p) {
   kernel_plan *plan = p->plan;
   const symbol_list *outputs = &plan->law->outputs;
   segment r = {.root_count = 0};
-  const ir_node stored = stored_energy(p);
-  plan->stores = stored != IR_NONE && plan->law->nonconservative == NULL;
+  const ir_node stored = p->stored;
+  plan->stores = stored != IR_NONE && plan->law->nonconservative == NULL &&
+                 !rest_changes(p->g, plan->law, &p->frozen);
   plan_want(plan, &r, stored != IR_NONE ? stored : ir_constant(p->g, 0), TO_OBSERVED,
             OVER_PARTICLES, 0);
   for (int k = 0; k < outputs->count; k++)
@@ -193,7 +196,7 @@ static segment loss_roots(family_planner *p, const law_energy *of, const segment
 
 /* --- motion ----------------------------------------------------------------------------------- */
 
-enum { MOST_MOTION = 4 + PRESENT_COUNT + 2 * BENDING_AXES };
+enum { MOST_MOTION = 5 + PRESENT_COUNT + 2 * BENDING_AXES };
 
 static int motion_in_plane(ir *g, const family_kinematics *k, ir_node *from, ir_node *to) {
   from[0] = lower_quantity(g, QUANTITY_THETA_I), to[0] = k->theta_i;
@@ -240,6 +243,7 @@ program_motion plan_motion(const kernel_plan *plan, bool reference) {
   from[n] = lower_quantity(g, QUANTITY_STRETCH), to[n++] = k.stretch;
   from[n] = lower_quantity(g, QUANTITY_STRETCH_RATE), to[n++] = k.stretch_rate;
   from[n] = lower_quantity(g, QUANTITY_LENGTH), to[n++] = k.length;
+  from[n] = lower_quantity(g, QUANTITY_DT), to[n++] = kinematics_advance(g, ON_PARTICLE);
   from[n] = present(g, PER_LENGTH);
   const ir_node s = lower_quantity(g, QUANTITY_S);
   to[n++] = reference ? ir_div(g, ir_constant(g, 1), s) : k.per_length;
@@ -487,6 +491,11 @@ static bool reads_thickness(const family_planner *p) {
   return rewrite_depends(p->g, p->step.fields, l->fields.count, &t, 1);
 }
 
+static void take_off_roots(const family_planner *p, const lowered_law *of, segment *a) {
+  for (int k = 0; k < a->root_count; k++)
+    rest_take_off(p->g, of, &a->roots[k].node, 1);
+}
+
 void plan_axes(kernel_plan *plan) {
   const bool turns = law_kind_turns(plan->law->tree->law);
   plan->dimensions = lower_dimensions(plan->law);
@@ -516,8 +525,9 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
     diag_hint(d, "say `for plane_stress` after `law state`, or give another value `when space`");
     return false;
   }
+  p.stored = stored_energy(&p);
   law_energy energy = {.frozen = &p.frozen,
-                       .stored = stored_energy(&p),
+                       .stored = p.stored,
                        .theta_rate = {IR_NONE, IR_NONE},
                        .forces = plan_force_fields(plan, &p.step, &p.frozen)};
   for (int end = 0; end < 2 && plan->rotations && plan->dimensions == 2; end++)
@@ -529,6 +539,10 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   rewrite_last(plan, (segment *[]){&step, &observe}, 2);
   segment alone = alone_roots(&p, &step);
   segment losses = loss_roots(&p, &energy, &step);
+  take_off_roots(&p, &p.step, &step);
+  take_off_roots(&p, &p.step, &alone);
+  take_off_roots(&p, &p.frozen, &observe);
+  take_off_roots(&p, &p.frozen, &losses);
   program_motion motion = plan_motion(plan, p.step.along_reference);
   fuse_motion(plan, &motion);
   if (l->irregular || v->masses) {

@@ -467,6 +467,14 @@ static void improve(planner *p, seen_points *t) {
   free(nodes);
 }
 
+/* A field that the law is given may change in time. */
+static bool is_given(const planner *p) {
+  const law_variation *v = &p->plan->variation;
+  for (int k = 0; k < v->varying_count; k++)
+    if (symbol_is_field(p->plan->law->parameters.items[v->varying[k]])) return true;
+  return false;
+}
+
 /* Neither strain, fields, rates nor the size of a cell are in the tangent, and without strain there
    is no stress. */
 static bool is_linear(planner *p) {
@@ -474,8 +482,8 @@ static bool is_linear(planner *p) {
   const int fields = p->plan->law->fields.count;
   if (fields > 0) return false;
   for (int k = 0; k < p->strains * p->strains; k++)
-    if (ir_place(g, p->tangent[k]) > ON_BODY &&
-        !(p->plan->variation.varying_count && ir_place(g, p->tangent[k]) == ON_POINT))
+    if (ir_place(g, p->tangent[k]) > ON_BODY && (is_given(p) || !p->plan->variation.varying_count ||
+                                                 ir_place(g, p->tangent[k]) != ON_POINT))
       return false;
   ir_node moving[2 * MOST_STRAINS + 1];
   int count = 0;

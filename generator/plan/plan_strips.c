@@ -10,6 +10,7 @@
 #include "generator/lower/law_inputs.h"
 #include "generator/lower/lower_energy.h"
 #include "generator/lower/lower_inputs.h"
+#include "generator/lower/lower_rest.h"
 #include "generator/plan/plan_roots.h"
 
 typedef struct planner {
@@ -22,7 +23,9 @@ typedef struct planner {
 typedef struct seen_law {
   bond_forces force;
   lowered_law step;
-  ir_node stored;     /* J, with the fields at hand */
+  ir_node stored; /* J, with the fields at hand */
+  ir_node held,
+      rest; /* of it: where the rest stretch has a stand-in; that with the fields at hand */
   ir_node rate_power; /* W, with the fields at hand; IR_NONE */
   ir_node *outputs;   /* with the fields at hand */
 } seen_law;
@@ -91,7 +94,7 @@ static int parameter_pairs(const kernel_plan *p, ir_node *from, ir_node *to) {
 /* Law-level inputs and the kinematics that take their place. */
 static int kinematic_pairs(ir *g, const bond_kinematics *k, ir_node *from, ir_node *to) {
   const ir_node values[PL_STATE_INPUTS] = {k->stretch, k->stretch_rate, k->theta_i, k->theta_j,
-                                           k->length};
+                                           k->length, kinematics_advance(g, ON_BOND)};
   int pairs = 0;
   for (int q = 0; q < PL_STATE_INPUTS; q++) {
     if (values[q] == IR_NONE) continue;
@@ -147,15 +150,22 @@ static seen_law see_law(planner *p) {
   t.force.twisting = t.step.T;
 
   t.stored = lower_stored_energy(g, l, &p->frozen);
+  rest_hold(g, l, &p->frozen, &t.stored);
   rewrite_reciprocals(g, &t.stored, 1, &t.stored);
   substitute(g, &t.stored, 1, from, to, pairs);
   t.rate_power = lower_rate_power(g, l, &p->frozen, k.theta_rate_i, k.theta_rate_j, k.twist_rate);
+  rest_take_off(g, &p->frozen, &t.rate_power, 1);
   if (t.rate_power != IR_NONE) rewrite_reciprocals(g, &t.rate_power, 1, &t.rate_power);
   substitute(g, &t.rate_power, 1, from, to, pairs);
   t.outputs = copy_nodes(memory, p->frozen.outputs, l->outputs.count);
+  rest_take_off(g, &p->frozen, t.outputs, l->outputs.count);
   rewrite_reciprocals(g, t.outputs, l->outputs.count, t.outputs);
   substitute(g, t.outputs, l->outputs.count, from, to, pairs);
   fuse(p, &t);
+  t.rest = p->frozen.rest;
+  substitute(g, &t.rest, 1, from, to, pairs);
+  t.held = t.stored;
+  t.stored = rest_filled_in(g, l, t.rest, t.held);
   return t;
 }
 
@@ -193,7 +203,8 @@ static void plan_step(planner *p, const seen_law *t, segment *a) {
 static void plan_ledger(planner *p, const seen_law *t, segment *a) {
   ir *g = p->plan->graph;
   plan_step(p, t, a);
-  ir_node kept = with_new_fields(p, t, t->stored), zero = ir_constant(g, 0);
+  const ir_node kept = rest_filled_in(g, p->plan->law, t->rest, with_new_fields(p, t, t->held)),
+                zero = ir_constant(g, 0);
   ir_node lost = kept == t->stored ? zero : ir_sub(g, t->stored, kept);
   ir_node rate_lost = zero;
   if (t->rate_power != IR_NONE) {
@@ -279,6 +290,7 @@ static bool lower_both(planner *p, diagnostics *d) {
   if (!lower_law(plan->law, plan->graph, LOWER_PROTECTABLE, plan->memory, &p->step, d) ||
       !lower_law(plan->law, plan->graph, LOWER_FROZEN, plan->memory, &p->frozen, d))
     return false;
+  rest_take_off_law(plan->graph, plan->law, &p->step);
   share_reciprocals(plan->graph, plan->law, &p->step);
   return true;
 }
@@ -293,7 +305,8 @@ bool plan_strips(kernel_plan *plan, diagnostics *d) {
   STRIP_PROGRAMS(X)
 #undef X
   lowered_law bare = unprotected_step(&p);
-  plan->stores = plan->law->nonconservative == NULL;
+  plan->stores =
+      plan->law->nonconservative == NULL && !rest_changes(plan->graph, plan->law, &p.frozen);
   plan->reads_rates = plan_reads_rates(plan, &bare);
   plan_states(&p, &bare);
   plan_tangent(&p, &bare);

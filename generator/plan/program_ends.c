@@ -12,6 +12,7 @@ enum { OF_NONE = 0, OF_OWN = 1, OF_FAR = 2, OF_BOTH = 3 };
 static int side_of_input(const ir *g, ir_node n) {
   switch (ir_input_source(g, n)) {
   case IR_FROM_ENDS: {
+    if (ir_input_index(g, n) == ENDS_ADVANCE) return OF_NONE;
     const ends_owner owner = ends_origins[ir_input_index(g, n)].owner;
     return owner == OF_I ? OF_OWN : owner == OF_J ? OF_FAR : OF_BOTH;
   }

@@ -40,7 +40,8 @@ static void write_bad_point(const run *r, const bad_state *b) {
 static point_fault explain_bad_point(const run *r, const bad_state *b) {
   const simulation_law *l = &r->laws[b->interaction];
   const point_state *p = b->point;
-  const asked_point at = {p->strain, p->field, p->size, simulation_step_limit(r->simulation)->step};
+  const asked_point at = {p->strain, p->field, p->size, simulation_step_limit(r->simulation)->step,
+                          b->advance};
   if (!r->model_of[b->interaction]) return POINT_FAULT_OTHER;
   return explain_point(r->model_of[b->interaction]->plan, l->parameters, &at, stderr);
 }

@@ -170,6 +170,16 @@ static void announce_stamp(const run *r, int number) {
   putchar('\n');
 }
 
+/* "accepted   patch of `beams`: as published" */
+static void announce_accepted(const run *r) {
+  const char *check, *why;
+  for (int n = 0; n < r->open_models; n++) {
+    const law *l = r->models[n].law;
+    for (int k = 0; l && law_says(l, k, &check, &why); k++)
+      printf("  accepted   %s of `%s`: %s\n", check, l->tree->name, why);
+  }
+}
+
 void announce(const run *r) {
   const deck_simulation *s = &simulation_deck(r->simulation)->simulation;
   printf("%s\n", s->title ? s->title : r->options->deck_path);
@@ -183,6 +193,7 @@ void announce(const run *r) {
     announce_notches(r, k);
     announce_laws(r, k);
   }
+  announce_accepted(r);
   announce_start(r);
   for (int p = 0; p < r->deck->point_mass_count; p++)
     announce_point_mass(r, p);

@@ -147,8 +147,12 @@ static void announce_planes(const run *r, int interaction) {
     const char *const places[] = {"region to region", "place to place", "place to place",
                                   particles ? "particle to particle" : "bond to bond"};
     static const char *const names[] = {"regions", "formula", "file", "field"};
-    printf("  %-10s %s differs from %s: %.5g to %.5g%s%s", names[f->source[k]], p->name,
-           places[f->source[k]], f->smallest[k], f->largest[k], *in ? " " : "", in);
+    const plane_change change = parameter_planes_change(f, k);
+    printf("  %-10s %s ", change == PLANE_STAYS ? names[f->source[k]] : "field", p->name);
+    if (change != PLANE_CHANGES_ALIKE) printf("differs from %s", places[f->source[k]]);
+    if (change != PLANE_STAYS)
+      fputs(change == PLANE_CHANGES ? " and changes in time" : "changes in time", stdout);
+    printf(": %.5g to %.5g%s%s", f->smallest[k], f->largest[k], *in ? " " : "", in);
     if (f->source[k] == PLANE_AT_RANDOM)
       printf(", mean of the distribution %.5g", l->parameters[l->law->varying[k]]);
     putchar('\n');

@@ -13,6 +13,7 @@ bool choice_is_by_protection(const emitter *e, ir_node n) {
 
 expectation choice_expectation(const emitter *e, ir_node condition) {
   const ir *g = e->graph;
+  if (!ir_is_expected_of_size(g, condition)) return (expectation){.count = 0, .limit = IR_NONE};
   assert(ir_operation(g, condition) == IR_LT);
   const ir_node size = ir_operand(g, condition, 0), limit = ir_operand(g, condition, 1);
   expectation x = {{size, IR_NONE}, 1, limit};
@@ -37,7 +38,8 @@ static int operands_of_expected(const emitter *e, ir_node n, ir_node operand[3])
   const expectation x = choice_expectation(e, ir_operand(e->graph, n, 0));
   for (int k = 0; k < x.count; k++)
     operand[1 + k] = x.size[k];
-  return 1 + x.count;
+  if (x.count == 0) operand[1] = ir_operand(e->graph, n, 0);
+  return 1 + (x.count ? x.count : 1);
 }
 
 int choice_operands(const emitter *e, ir_node n, unsigned relies, ir_node operand[3]) {
@@ -48,9 +50,11 @@ int choice_operands(const emitter *e, ir_node n, unsigned relies, ir_node operan
     operand[0] = ir_operand(e->graph, n, 2);
     return 1;
   }
-  for (int k = 0; k < count; k++)
-    operand[k] = ir_operand(e->graph, n, k);
-  return count;
+  /* the condition has no line of its own then; in strips it is counted as part of the choice */
+  const int first = !e->scope->strip && count == 3 && expression_is_extreme(e, n);
+  for (int k = first; k < count; k++)
+    operand[k - first] = ir_operand(e->graph, n, k);
+  return count - first;
 }
 
 void choice_mark_operands(const emitter *e, unsigned relies, unsigned char *mask) {

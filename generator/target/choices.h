@@ -11,7 +11,8 @@
 
 #include "generator/target/expression.h"
 
-/* A condition that is expected of the bonds of a strip: that a size is below a positive limit. */
+/* A condition that is expected of the bonds of a strip: that a size is below a positive limit; or
+   without a size any. */
 typedef struct expectation {
   ir_node size[2]; /* [count]; of two the larger absolute value is meant */
   int count;

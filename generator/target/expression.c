@@ -17,6 +17,15 @@ bool expression_is_ends_input(const emitter *e, ir_node n, ends_input which) {
          ir_input_index(e->graph, n) == (int)which;
 }
 
+bool expression_is_of_time(const emitter *e, ir_node n) {
+  return expression_is_ends_input(e, n, ENDS_TIME_STEP) ||
+         expression_is_ends_input(e, n, ENDS_ADVANCE);
+}
+
+const char *expression_time(emitter *e, ir_node n, word time_step, word advance) {
+  return spell(e, expression_is_ends_input(e, n, ENDS_ADVANCE) ? advance : time_step);
+}
+
 bool expression_reads(const emitter *e, ir_source from) {
   for (ir_node n = 0; n < e->node_count; n++)
     if (e->needed[n] && ir_operation(e->graph, n) == IR_INPUT &&
@@ -74,6 +83,10 @@ static const char *extreme_function(const emitter *e, ir_node n) {
   if (ir_operation(e->graph, asked) != IR_LT) return NULL;
   const ir_node x = ir_operand(e->graph, asked, 0), y = ir_operand(e->graph, asked, 1);
   return yes == x && no == y ? "smaller" : yes == y && no == x ? "larger" : NULL;
+}
+
+bool expression_is_extreme(const emitter *e, ir_node n) {
+  return extreme_function(e, n) != NULL;
 }
 
 /* May be part of a longer expression. A select goes into the last place of another one, as a chain
@@ -358,10 +371,11 @@ const char *expression_line_end(const emitter *e, ir_node n) {
 void expression_declare(emitter *e) {
   for (ir_node n = 0; n < e->node_count; n++) {
     if (!e->needed[n] || is_constant(e, n)) continue;
-    if (expression_is_uniform(e, n))
-      say(e, SAY_LINE, e->scope->before, e->name[n],
-          spell(e, e->scope->uniform, numeral(e, e->uniform_of[n])), expression_line_end(e, n));
-    else if (expression_is_input(e, n))
+    if (expression_is_uniform(e, n)) {
+      if (e->name[n]) /* the condition of the larger of two has none: nothing reads it */
+        say(e, SAY_LINE, e->scope->before, e->name[n],
+            spell(e, e->scope->uniform, numeral(e, e->uniform_of[n])), expression_line_end(e, n));
+    } else if (expression_is_input(e, n))
       e->scope->declare(e, n);
   }
 }
@@ -371,8 +385,7 @@ static const char *dropped(const emitter *e, ir_node n) {
 }
 
 void expression_line(emitter *e, ir_node n) {
-  if (!e->needed[n] || !e->name[n] || expression_is_uniform(e, n) ||
-      expression_is_ends_input(e, n, ENDS_TIME_STEP))
+  if (!e->needed[n] || !e->name[n] || expression_is_uniform(e, n) || expression_is_of_time(e, n))
     return;
   const char *value = e->dropped && e->dropped[n] ? dropped(e, n)
                       : expression_is_input(e, n) || ir_operation(e->graph, n) == IR_SEARCH

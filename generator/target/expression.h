@@ -85,10 +85,18 @@ static inline bool expression_is_input(const emitter *e, ir_node n) {
   return ir_operation(e->graph, n) == IR_INPUT && !expression_is_uniform(e, n);
 }
 bool expression_is_ends_input(const emitter *e, ir_node n, ends_input which);
+/* The time step or `dt`: one number of the whole record. The first two words are how a form reads
+   them. */
+bool expression_is_of_time(const emitter *e, ir_node n);
+const char *expression_time(emitter *e, ir_node n, word time_step, word advance);
 /* Whether the function needs an input from there. */
 bool expression_reads(const emitter *e, ir_source from);
 /* Whether node n, a condition, is that a bond of a strip is protected. */
 bool expression_asks_protected(const emitter *e, ir_node n);
+
+/* Whether node n, a choice, is written as the smaller or the larger of two, without its condition.
+ */
+bool expression_is_extreme(const emitter *e, ir_node n);
 
 /* Node n as an operand of a choice, as all of a statement's value, as a condition. */
 const char *expression_value(const emitter *e, ir_node n);

@@ -49,7 +49,9 @@ void words_reserve(c_names *names) {
       "UNIFORMS",    "are_equal",     "some_marked",   "store_at_ends", "changes",
       "bits",        "changed_plane", "changed_marks", "cells",         "slopes",
       "push",        "stride",        "lane",          "low",           "high",
-      "cell_stress", "pushed",        "cell_strain",   "cell_rate"};
+      "cell_stress", "pushed",        "cell_strain",   "cell_rate",
+      "from",        "until",         "span",          "which",         "way",
+      "alike",       "alike_toward",  "end_of_alike"};
   for (size_t k = 0; k < sizeof own / sizeof *own; k++)
     c_names_reserve(names, own[k]);
 #define X(task, member) c_names_reserve(names, #member "_unusual");

@@ -83,6 +83,7 @@
   X(POINT_SIZE, "points->cell_size")                                                               \
   X(POINT_PARAMETER, "points->parameter[$1]")                                                      \
   X(POINT_TIME_STEP, "points->time_step")                                                          \
+  X(POINT_ADVANCE, "points->advance")                                                              \
   X(POINT_OLD_FIELD, "points->old_field[$1]")                                                      \
   X(POINT_NEW_FIELD, "points->new_field[$1]")                                                      \
   X(POINT_STRESS, "points->stress[$1]")                                                            \
@@ -102,10 +103,12 @@
     "  for (long d = 0; d < 2; d++) pl_rectangle_begin(&ends[d], cells->right[d]);\n")             \
   X(RECTANGLE_FIELD, "  const double *restrict along_x_$1 = cells->$2[0];\n"                       \
     "  const double *restrict along_y_$1 = cells->$2[1];\n")                                       \
-  X(RECTANGLE_FORCE, "  double *restrict at_force_$1 = cells->force[$1];\n"                       \
+  X(RECTANGLE_FORCE, "  double *restrict at_force_$1 = cells->force[$1];\n"                        \
     "  double *restrict at_above_$1 = cells->above[$1];\n")                                        \
-  X(RECTANGLE_LOOP, "  for (long first = 0; first < cells->count; first += PL_LANES) {\n"          \
-    "  PL_INDEPENDENT\n  for (long lane = 0; lane < PL_LANES; lane++) {\n"                         \
+  X(RECTANGLE_LOOP, "  enum { BLOCK = 4*PL_LANES };\n"                                             \
+    "  for (long first = 0; first < cells->count; first += PL_LANES) {\n"                          \
+    "  const long begin = 4*first, end = begin + BLOCK;\n  (void)begin, (void)end;\n")             \
+  X(RECTANGLE_LANES, "  PL_INDEPENDENT\n  for (long lane = 0; lane < PL_LANES; lane++) {\n"        \
     "    const long low = first + lane, high = low + stride;\n"                                    \
     "    double cell_stress[3][4], pushed[2][4];\n")                                               \
   X(RECTANGLE_STRAINS, "    double $1[3][4];\n"                                                    \
@@ -123,6 +126,9 @@
   X(RECTANGLE_SUM, "  pl_rectangle_sum(&ends[$1], cells->cells - first,\n"                         \
     "                   at_force_$1 + first, at_above_$1 + first);\n")                             \
   X(RECTANGLE_END, "  pl_rectangle_end(&ends[$1], cells->right[$1]);\n")                           \
+  /* losses where what is expected may not be so: added once all points of the block are known */  \
+  X(LOSS_WAITS, "  _Alignas(PL_ALIGNMENT) double lost_$1[BLOCK];\n")                               \
+  X(LOSS_THAT_WAITS, "lost_$1[q - begin]")                                                         \
   /* searches: block by block, all points of one as long as one goes on */                         \
   X(SEARCH_BLOCKS, "  enum { BLOCK = $1 };\n"                                                      \
     "  for (long begin = 0; begin < count; begin += BLOCK) {\n"                                    \
@@ -160,6 +166,7 @@
   X(STRIP_MOTION, "strip->$1$2[$3]")                                                               \
   X(STRIP_PARAMETER, "strip->parameter[$1]")                                                       \
   X(STRIP_TIME_STEP, "strip->time_step")                                                           \
+  X(STRIP_ADVANCE, "strip->advance")                                                               \
   X(STRIP_FORCE, "strip->force[$1]")                                                               \
   X(STRIP_FIELD, "strip->field[$1]")                                                               \
   X(STRIP_STATE_LOSS, "strip->dissipated_state")                                                   \
@@ -195,6 +202,11 @@
   X(GATHER_LARGEST, "    const uint64_t size_$1 = $2;\n"                                           \
     "    largest_$1 = size_$1 > largest_$1 ? size_$1 : largest_$1;\n")                             \
   X(IS_LARGEST, "largest_$1 >= $2")                                                                \
+  X(NO_OTHER, "  uint64_t other_$1 = 0;\n")                                                        \
+  X(GATHER_OTHER, "    const double other_here_$1 = $3 ? 0.0 : 1.0;\n"                             \
+    "    const double other_bond_$1 = present != 0 ? other_here_$1 : 0.0;\n"                       \
+    "    $2 = other_bond_$1;\n    other_$1 |= pl_to_bits(other_bond_$1);\n")                       \
+  X(IS_OTHER, "other_$1 != 0")                                                                     \
   X(NO_CHANGES, "  uint64_t changed = 0;\n")                                                       \
   X(CHANGE, "($1 - pl_to_bits($2[q]))")                                                            \
   X(GATHER_CHANGES, "    changed |= present != 0 ? $1 : 0;\n")                                     \
@@ -206,18 +218,25 @@
     "    $2_unusual(law, uniforms, strip, first, last, (double *[]){$3}, $4);\n")                  \
   X(UNEXPECTED_HEAD, "  (void)law, (void)lent, (void)kept;\n"                                      \
     "  const int64_t *restrict flags = strip->flags;\n"                                            \
-    "  const int64_t present_bit = (int64_t)PL_PRESENT(strip->direction);\n")                      \
+    "  const int64_t present_bit = (int64_t)PL_PRESENT(strip->direction);\n"                       \
+    "  (void)flags, (void)present_bit;\n")                                                         \
   X(ARRAY_GIVEN, "lent[$1]")                                                                       \
-  X(OVER_GROUPS, "  for (long group = 0; group < last; group += PL_LANES) {\n")                    \
-  X(SEARCH, "  int64_t unusual = 0;\n  PL_INDEPENDENT\n"                                           \
+  X(OVER_GROUPS, "  uint64_t unusual[$1] = {0};\n"                                                 \
+    "  for (long group = 0; group < last; group += PL_LANES) {\n  uint64_t some = 0;\n")           \
+  X(SEARCH, "  PL_INDEPENDENT\n"                                                                   \
     "  for (long k = group; k < group + PL_LANES; k++) {\n"                                        \
     "    const long q = first + k;\n")                                                             \
   X(SEARCH_END, "    const int64_t present = flags[q] & present_bit;\n"                            \
-    "    unusual |= ($1) ? 0 : present;\n  }\n"                                                    \
-    "  if (unusual != 0) { /* both sides of what was expected */\n")                               \
-  X(BOTH_SIDES, "  PL_INDEPENDENT\n  for (long k = group; k < group + PL_LANES; k++) {\n"          \
-    "    const long q = first + k;\n")                                                             \
-  X(BOTH_SIDES_END, "  }\n  }\n  }\n")                                                             \
+    "    some |= ($1) ? 0 : (uint64_t)present;\n  }\n")                                            \
+  X(SEARCH_KEPT_FLAGS, "  for (long k = group; k < group + PL_LANES; k++)\n"                       \
+    "    some |= pl_to_bits($1);\n")                                                               \
+  X(OVER_UNEXPECTED, "  unusual[group / PL_LANES] = some;\n  }\n"                                  \
+    "  for (long group = 0, end; group < last; group = end) {\n"                                   \
+    "  end = group + PL_LANES;\n  if (unusual[group / PL_LANES] == 0) continue;\n"                 \
+    "  while (unusual[end / PL_LANES] != 0) end += PL_LANES;\n")                                   \
+  X(BOTH_SIDES, "  /* both sides of what was expected */\n  PL_INDEPENDENT\n"                      \
+    "  for (long k = group; k < end; k++) {\n    const long q = first + k;\n    (void)q;\n")       \
+  X(BOTH_SIDES_END, "  }\n  }\n")                                                                  \
                                                                                                    \
   /* --- families: $1: number of the array, $2: first particle of the chunk, $3: neighbour --- */  \
   X(PROTECTED_PARTICLES, "family->held$2")                                                         \
@@ -241,6 +260,7 @@
   X(OBSERVED, "family->observed[$1]$2")                                                            \
   X(LOST, "family->lost[$1]$2")                                                                    \
   X(FAMILY_TIME_STEP, "family->time_step")                                                         \
+  X(FAMILY_ADVANCE, "family->advance")                                                             \
   X(OBSERVED_TOWARD, "family->observed[$1]$2 + $3*family->new_plane")                              \
   X(LINK, "family->link[$1]$2")                                                                    \
   X(BOND_LINK, "family->bond_link[$1]$2 + $3*family->link_plane")                                  \
@@ -301,10 +321,42 @@
     "(k < half ? k : back) & 1) == 0) {\n")                                                        \
   X(ZEROS, "        double *restrict absent_$1 = $2;\n"                                            \
     "        for (long q = 0; q < lanes; q++)\n          absent_$1[q] = 0.0;\n")                   \
+  X(ZEROS_OF_SPAN, "        double *restrict absent_$1 = $2;\n"                                    \
+    "        for (long q = from; q < until; q++)\n          absent_$1[q] = 0.0;\n")                \
   X(NEXT_NEIGHBOUR, "        continue;\n      }\n")                                                \
   X(BONDS_OF_LIST, "      const uint64_t *restrict bonds = (k < half ? family->bonds : "           \
     "family->incoming) + first;\n"                                                                 \
     "      const uint64_t present_bit = UINT64_C(1) << (k < half ? k : back);\n")                  \
+  X(LIST_FUNCTIONS,                                                                                \
+    "/* What PL_LANES particles after the other have toward a neighbour; NULL: each its own. */\n" \
+    "static inline const int32_t *alike_toward(const pl_family *family, long first, long k) {\n"   \
+    "  if (!PL_HAS(family, way) || !family->way) return (const int32_t *)0;\n"                     \
+    "  return family->alike + first / PL_LANES*family->neighbours + k;\n"                          \
+    "}\n\n"                                                                                        \
+    "static inline long end_of_alike(const int32_t *alike, long step, long from, long lanes) {\n"  \
+    "  long until = from + PL_LANES;\n"                                                            \
+    "  if (!alike) return lanes;\n"                                                                \
+    "  while (until < lanes && alike[until / PL_LANES*step] == alike[from / PL_LANES*step])\n"     \
+    "    until += PL_LANES;\n"                                                                     \
+    "  return until;\n"                                                                            \
+    "}\n\n")                                                                                       \
+  X(FETCH_NEXT, "      for (long q = 0; q < CHUNK; q += PL_LANES)\n"                               \
+    "        __builtin_prefetch($1 + CHUNK + q, $2);\n")                                           \
+  X(ONE_SPAN, "      {\n      const long from = 0, span = lanes;\n")                               \
+  X(OVER_SPANS, "      const int32_t *alike = alike_toward(family, first, k);\n"                   \
+    "      for (long from = 0, until; from < lanes; from = until) { "                              \
+    "/* particles that are alike */\n"                                                             \
+    "      const int32_t which = "                                                                 \
+    "alike ? alike[from / PL_LANES*family->neighbours] : PL_OWN_WAYS;\n"                           \
+    "      until = end_of_alike(alike, family->neighbours, from, lanes);\n"                        \
+    "      const long span = (until - from) / PL_LANES * PL_LANES;\n"                              \
+    "      if (which == PL_NO_WAY) {\n")                                                           \
+  X(IF_ALIKE, "      if (which >= 0) {\n      const pl_way *way = family->way + which;\n"            \
+    "      (void)way;\n")                                                                          \
+  X(OVER_SPAN, "      PL_INDEPENDENT\n      for (long q = from; q < from + span; q++) {\n")        \
+  X(AT_FROM, "$1[from]")                                                                           \
+  X(WAY_LENGTH, "way->length")                                                                     \
+  X(WAY_CHORD, "way->chord[$1]")                                                                   \
   X(PRESENT_BY_BIT, "        const int64_t present = (bonds[q] & present_bit) != 0;\n")            \
   X(SIGN, "      const double sign = k < half ? 1.0 : -1.0;\n")                                    \
   X(OWNER, "      const long owned = k < half ? k : back, owner = k < half ? 0 : link_to;\n")      \

@@ -51,7 +51,7 @@ void bond_probe_reset(bond_probe *p) {
 
 static void move(bond_probe *p, bond_motion m) {
   const double motion[PL_STATE_INPUTS] = {m.stretch, m.rate, m.theta_i, m.theta_j,
-                                          p->s * (1 + m.stretch)};
+                                          p->s * (1 + m.stretch), 0};
   memcpy(p->motion, motion, sizeof motion);
 }
 

@@ -1,12 +1,14 @@
 #include "runtime/analysis/material.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "dsl/base/arena.h"
 #include "dsl/base/units.h"
+#include "runtime/deck/deck_value.h"
 #include "runtime/lattice/place_table.h"
 #include "runtime/lattice/placed_values.h"
 
@@ -21,14 +23,82 @@ static int find_parameter(const pl_law *law, const char *name) {
   return -1;
 }
 
+bool material_is_given(const pl_law *law, int parameter) {
+  for (int k = 0; PL_HAS(law, given) && k < law->given_count; k++)
+    if (law->given[k] == parameter) return true;
+  return false;
+}
+
+/* Whether the law has a vector of this name, as parameters name_x, name_y and name_z. */
+static bool has_vector(const pl_law *law, const char *name) {
+  static const char *const axes[] = {"x", "y", "z"};
+  char component[128];
+  int found = 0;
+  for (int k = 0; k < 3; k++) {
+    snprintf(component, sizeof component, "%s_%s", name, axes[k]);
+    found += find_parameter(law, component) >= 0;
+  }
+  return found == 3;
+}
+
+/* A list where the law has a number, or a number where it has a list. False: neither. */
+static bool is_miscounted(const deck_assignment *a, const pl_law *law, diagnostics *d) {
+  const bool number = a->vector && find_parameter(law, a->vector) >= 0;
+  if (!number && (a->vector || !has_vector(law, a->name))) return false;
+  if (number && a->name[strlen(a->name) - 1] != 'x') return true; /* said of the first */
+  if (number) {
+    diag_report(d, DIAG_BAD_VALUE, a->value_where, "`%s` takes 1 value, but %d are given",
+                a->vector, a->listed);
+    if (a->listed == 2 && !a->has_unit)
+      diag_hint(d, "decimals are written with a point, not a comma");
+  } else {
+    diag_report(d, DIAG_BAD_VALUE, a->value_where, "`%s` is a vector, but one number is given",
+                a->name);
+    diag_hint(d, "give its components: `%s = 1, 0, 0`; in the plane two are enough", a->name);
+  }
+  return true;
+}
+
+/* Names of the law's parameters, of its vectors (`fibre` of fibre_x) or of what it is given;
+   [law->parameter_count] and what they are made of. */
+static int known_names(arena *memory, const pl_law *law, const deck_assignment *a,
+                       const char **names) {
+  int count = 0;
+  for (int p = 0; p < law->parameter_count; p++) {
+    const char *name = law->parameters[p].name;
+    const size_t n = strlen(name);
+    if (a->vector && n > 2 && strcmp(name + n - 2, "_x") == 0)
+      names[count++] = arena_text(memory, name, n - 2);
+    else if (!a->vector && (!a->of_field || material_is_given(law, p)))
+      names[count++] = name;
+  }
+  return count;
+}
+
 static bool unknown(const deck_assignment *a, const pl_law *law, diagnostics *d) {
-  const char **names = must_calloc((size_t)law->parameter_count + 1, sizeof *names);
-  for (int p = 0; p < law->parameter_count; p++)
-    names[p] = law->parameters[p].name;
-  diag_report(d, DIAG_UNKNOWN_KEY, a->name_where, "the law `%s` has no parameter `%s`", law->name,
-              a->name);
-  diag_suggest(d, a->name, names, law->parameter_count);
-  free(names);
+  if (is_miscounted(a, law, d)) return false;
+  if (a->vector && a->name[strlen(a->name) - 1] != 'x') return false; /* said of the first */
+  const char *name = a->vector ? a->vector : a->name;
+  arena *memory = arena_new();
+  const char **names = arena_alloc(memory, ((size_t)law->parameter_count + 1) * sizeof *names);
+  const int count = known_names(memory, law, a, names);
+  diag_report(d, DIAG_UNKNOWN_KEY, a->name_where, "the law `%s` has no %s `%s`", law->name,
+              a->of_field ? "field" : a->vector ? "vector" : "parameter", name);
+  if (!a->of_field)
+    diag_suggest(d, name, names, count);
+  else if (count)
+    deck_suggest(d, name, names, count, "its fields are");
+  else
+    diag_hint(d, "a law declares what it is given: `field %s [K] on particle = 293 [K]`", name);
+  arena_free(memory);
+  return false;
+}
+
+static bool no_field(const deck_assignment *a, const pl_law *law, diagnostics *d) {
+  diag_report(d, DIAG_CONFLICT, a->name_where, "`%s` is a parameter of the law `%s`, not a field",
+              a->name, law->name);
+  diag_hint(d, "give it in &material, where it may be a formula of the place, too; or declare it "
+               "`field` in the law");
   return false;
 }
 
@@ -61,7 +131,9 @@ static bool take_mean(const deck_assignment *a, const pl_law *law, int parameter
 static bool assign(const deck_assignment *a, const pl_law *law, double *values, span *where,
                    bool *given, diagnostics *d) {
   const int p = find_parameter(law, a->name);
+  if (p < 0 && a->of_field && a->anyway) return true;
   if (p < 0) return unknown(a, law, d);
+  if (a->of_field && !material_is_given(law, p)) return no_field(a, law, d);
   if (a->word) {
     diag_report(d, DIAG_BAD_VALUE, a->value_where, "`%s` needs a number, not the word '%s'",
                 law->parameters[p].name, a->word);

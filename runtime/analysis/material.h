@@ -13,6 +13,9 @@ C_LINKAGE_BEGIN
    entries. */
 bool material_parameters(const deck_material *m, const pl_law *law, double *values, diagnostics *d);
 
+/* The law declares the parameter as a field, which may change in time. */
+bool material_is_given(const pl_law *law, int parameter);
+
 /* The mass density (kg/m^3) that a law with these parameter values gives its particles, or 0. */
 double material_density(const pl_law *law, const double *values);
 

@@ -401,7 +401,8 @@ static void run_pass(patch *p, pl_family_function pass, long first, long count, 
                    .held_near = 1,
                    .mass = p->mass + first,
                    .share = p->share ? p->share + first : NULL,
-                   .time_step = p->time_step};
+                   .time_step = p->time_step,
+                   .advance = p->advance};
   run.shape = (const double *const *)from_first(&s, p->shape, PL_SHAPE_PLANES(law->dimensions));
   run.parameter = (const double *const *)from_first(&s, p->parameter, law->varying_count);
   run.old_field = (const double *const *)from_first(&s, p->field, law->field_count);

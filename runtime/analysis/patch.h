@@ -35,7 +35,7 @@ typedef struct patch {
   uint64_t *marks[3]; /* [size] of all fields: filled everywhere, settled nowhere */
   double **observed;  /* [observed_count] */
   int observed_count;
-  double time_step;
+  double time_step, advance; /* s, as of pl_family; `advance` is 0 until it is set */
 } patch;
 
 /* Margins that the law's patch of the lattice has: how far its chords reach. */

@@ -60,6 +60,8 @@ typedef struct body {
   const rows *lattice;
   int dimensions, dof;
   double time;       /* s: of the places */
+  double reached;    /* s: of the states of the laws */
+  double advance;    /* s: from these to the places; `dt` of laws */
   double time_step;  /* s */
   double decay;      /* factor of mass damping on the velocities in the coming step; 1: none */
   double gravity[3]; /* m/s^2 in the coming step */
@@ -69,6 +71,7 @@ typedef struct body {
   bool ledger;             /* energies are kept */
   bool forces;             /* somebody looks at the forces of every step */
   bool works;              /* of the energies, the work against the forces of the bonds is kept */
+  bool forces_alone;       /* nobody looks at energies or outputs when it is observed next */
   bool timed;              /* blocks keep the times of their parts of a step */
   double mass[PL_MAX_DOF]; /* kg, kg m^2; of the mean particle where they are not alike */
   /* [size] of a particle, over the mean, of its motion along the axes and about them (body_turns);

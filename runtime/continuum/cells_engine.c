@@ -37,6 +37,7 @@ typedef struct cells_engine {
   double
       *row_rate; /* [row_count] J: taken by what beta_1 adds, up to the middle of the last step */
   bool begun;    /* there is a state before */
+  double *nodes; /* [nodes] of what is given by node */
 } cells_engine;
 
 static cells_engine *own(const sweep *w) {
@@ -46,7 +47,7 @@ static cells_engine *own(const sweep *w) {
 static point_motion motion_of(const sweep *w) {
   return (point_motion){(const double *const *)w->body->displacement,
                         (const double *const *)w->body->velocity, w->body->time,
-                        w->body->time_step};
+                        w->body->time_step, w->body->advance};
 }
 
 static double *const *linear_forces(const cells_engine *e) {
@@ -358,6 +359,7 @@ static void free_own(sweep *w) {
     if (n > 0) sweep_free(e->parts[n].state);
   }
   free(e->parts);
+  free(e->nodes);
   free(e);
 }
 
@@ -413,6 +415,7 @@ sweep *cells_sweep(cells *c, const deck *k, const tip_law *cracks, double time_s
   sweep *w = sweep_new(of, first->law, first->parameters, NULL);
   cells_engine *e = must_calloc(1, sizeof *e);
   e->of = c;
+  e->nodes = must_calloc((size_t)mesh_node_count(&c->mesh) + 1, sizeof *e->nodes);
   open_forces(e, of);
   open_parts(e, w, states);
   if (c->tips) {
@@ -435,6 +438,21 @@ sweep *cells_sweep(cells *c, const deck *k, const tip_law *cracks, double time_s
 }
 
 /* --- what others ask -------------------------------------------------------------------------- */
+
+static const cells_part *part_of(const sweep *law) {
+  return law->beside ? law->engine.own : &own(law)->parts[0];
+}
+
+void cells_give(const sweep *law, double *const *planes) {
+  const cells_part *part = part_of(law);
+  const cells *c = part->engine->of;
+  double *nodes = part->engine->nodes;
+  for (int k = 0; k < law->law->varying_count; k++) {
+    for (int n = 0; n < mesh_node_count(&c->mesh); n++)
+      nodes[n] = planes[k][cells_site(c, n)];
+    point_forces_give(c->by_points[part->number], k, nodes);
+  }
+}
 
 void cells_look_at_tips(const sweep *w) {
   const cells *c = own(w)->of;

@@ -21,6 +21,9 @@
    is what is returned, and moves the body. */
 sweep *cells_sweep(cells *c, const deck *k, const tip_law *cracks, double time_step, int threads,
                    body_ledger ledger, sweep **states);
+/* Parameters that the law reads point by point, from now on: planes[varying][size of the body] SI
+   at the nodes. */
+void cells_give(const sweep *law, double *const *planes);
 /* Where a node had a velocity that is no number or too large: of the points that push it the one
    with the largest stress, with the nodes where they were before the step. Number of its law; -1
    where all around are linear. `out` has memory for any law's fields. */

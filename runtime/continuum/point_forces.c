@@ -23,7 +23,7 @@ typedef struct point_scratch {
   double *strain[STRAINS], *rate[STRAINS], *stress[STRESSES], *traction[STRAINS],
       *tangent[TANGENTS], *bound, *by_cell[RECTANGLE_PUSHES], *low[2];
   rectangle_rows sums;
-  double **old_field, **new_field, **observed;
+  double **old_field, **new_field, **observed, **parameter;
 } point_scratch;
 
 /* --- set-up ----------------------------------------------------------------------------------- */
@@ -69,6 +69,27 @@ static void open_scratch(point_forces *p, point_scratch *s) {
   s->old_field = must_calloc((size_t)p->law->field_count + 1, sizeof(double *));
   s->new_field = must_calloc((size_t)p->law->field_count + 1, sizeof(double *));
   s->observed = must_calloc((size_t)p->law->output_count + 1, sizeof(double *));
+  s->parameter = must_calloc((size_t)p->law->varying_count + 1, sizeof(double *));
+}
+
+static void open_parameters(point_forces *p, const double *parameters) {
+  const long count = p->strips.count;
+  if (p->law->varying_count == 0) return;
+  point_values_open(&p->shapes, p->of, p->points);
+  p->parameter = doubles(p, p->law->varying_count * count);
+  for (int k = 0; k < p->law->varying_count; k++)
+    for (long n = 0; n < count; n++)
+      p->parameter[k * count + n] = parameters[p->law->varying[k]];
+}
+
+void point_forces_give(point_forces *p, int k, const double *nodes) {
+  double *values = p->parameter + k * (long)p->strips.count;
+  for (int n = 0; n < p->points->count; n++) {
+    const int cell = p->points->cell[n];
+    if (!point_forces_has(p, cell)) continue;
+    const long at = p->strips.of_cell[cell] + (long)(n - p->points->first[cell]) * PL_LANES;
+    values[at] = point_values_at(&p->shapes, n, nodes);
+  }
 }
 
 static void open_states(point_forces *p, bool ledger) {
@@ -199,6 +220,7 @@ point_forces *point_forces_new(const mesh *m, const unsigned char *own,
   law->prepare(law, parameters, &none, p->uniforms);
   cell_strips_open(&p->strips, m, points, own);
   open_states(p, ledger);
+  open_parameters(p, parameters);
   for (int d = 0; d < 2; d++)
     p->pushed[d] = doubles(p, cell_strips_pushed(&p->strips));
   find_sizes(p, m);
@@ -221,6 +243,7 @@ void point_forces_free(point_forces *p) {
     free(p->scratch[b].old_field);
     free(p->scratch[b].new_field);
     free(p->scratch[b].observed);
+    free(p->scratch[b].parameter);
   }
   free(p->scratch);
   free(p->rows);
@@ -230,6 +253,7 @@ void point_forces_free(point_forces *p) {
   free(p->summed);
   free(p->dead);
   free(p->uniforms);
+  point_values_close(&p->shapes);
   cell_strips_close(&p->strips);
   pool_free(p->memory);
   free(p);
@@ -260,17 +284,21 @@ static pl_points view_of(const point_forces *p, const point_strip *s, point_scra
     own->old_field[f] = p->old_field + f * all + s->at;
     own->new_field[f] = p->new_field + f * all + s->at;
   }
+  for (int k = 0; k < p->law->varying_count; k++)
+    own->parameter[k] = p->parameter + k * all + s->at;
   return (pl_points){.size = sizeof(pl_points),
                      .count = s->count,
                      .strain = (const double *const *)own->strain,
                      .strain_rate = (const double *const *)own->rate,
                      .cell_size = p->size + s->at,
+                     .parameter = (const double *const *)own->parameter,
                      .old_field = (const double *const *)own->old_field,
                      .new_field = own->new_field,
                      .stress = own->stress,
                      .tangent = own->tangent,
                      .time = at->time,
-                     .time_step = at->time_step};
+                     .time_step = at->time_step,
+                     .advance = at->advance};
 }
 
 /* Takes the cells' mean dilatation in place of the points' own, of strains xx, yy; and of tractions

@@ -20,6 +20,7 @@
 #include "runtime/base/pool.h"
 #include "runtime/kernel.h"
 #include "runtime/mesh/point_strips.h"
+#include "runtime/mesh/point_values.h"
 
 /* What is known of a row of cells in the state observed, J; and how much stiffer than at rest one
    of its points is: the largest eigenvalue of the tangent by that at rest. */
@@ -37,12 +38,14 @@ typedef struct point_forces {
   bool loses; /* the law has states or rates, and energies are kept */
   /* [fields][strips.count] SI, when the step begins and after it */
   double *old_field, *new_field;
-  double *lost;       /* [PL_LOSSES][strips.count] J/m^3 since the start; NULL unless it loses */
-  double *lost_now;   /* [PL_LOSSES][strips.count] by the state observed */
-  double *observed;   /* [1 + outputs][strips.count] in the state observed: J/m^3, then outputs */
-  double *stress;     /* [PL_STRESSES(2)][strips.count] Pa, in the state observed */
-  double *pushed[2];  /* [cell_strips_pushed] N */
-  double *size;       /* [strips.count] m: of the points' cells */
+  double *lost;      /* [PL_LOSSES][strips.count] J/m^3 since the start; NULL unless it loses */
+  double *lost_now;  /* [PL_LOSSES][strips.count] by the state observed */
+  double *observed;  /* [1 + outputs][strips.count] in the state observed: J/m^3, then outputs */
+  double *stress;    /* [PL_STRESSES(2)][strips.count] Pa, in the state observed */
+  double *pushed[2]; /* [cell_strips_pushed] N */
+  double *size;      /* [strips.count] m: of the points' cells */
+  double *parameter; /* [varying][strips.count] SI: those that differ in space */
+  point_values shapes;
   double scale[3][3]; /* Pa^(-1/2): L^-1 of the tangent at rest, L L^T */
   double strip;       /* Pa: element_strip_stiffness of that tangent */
   /* Of element_modes.h; NULL without. Mean dilatation: [groups][PL_LANES] 1 where a cell takes it,
@@ -74,11 +77,15 @@ point_forces *point_forces_new(const mesh *m, const unsigned char *own, const in
                                bool ledger);
 void point_forces_free(point_forces *p);
 
+/* Values of law->varying[k] from now on: nodes[nodes of the mesh], SI. A point has what its shape
+   functions make of them; before the first call that of the parameters. Nothing is allocated. */
+void point_forces_give(point_forces *p, int k, const double *nodes);
+
 /* The motion that points see: displacements of the present state and velocities half a step before,
    laid out as node_layout. */
 typedef struct point_motion {
   const double *const *displacement, *const *velocity; /* [2] m, m/s */
-  double time, time_step;                              /* s */
+  double time, time_step, advance;                     /* s; `dt` of laws */
 } point_motion;
 
 /* Stresses and new states of the points of the rows of cells from <= j < to, and what they push.

@@ -25,7 +25,8 @@ struct point_law {
   double strain[STRAINS][PL_LANES], rate[STRAINS][PL_LANES], size[PL_LANES];
   double *out;       /* [PL_LANES] each: the most that one function writes */
   double *old, *new; /* [fields][PL_LANES] */
-  double **old_at, **new_at, **out_at;
+  double *parameter; /* [varying][PL_LANES]: those given */
+  double **old_at, **new_at, **out_at, **parameter_at;
 };
 
 static double *lanes(int count) {
@@ -55,6 +56,11 @@ point_law *point_law_new(const pl_law *law, const double *parameters) {
   p->out_at = planes(p->out, most_written(law));
   p->old_at = planes(p->old, law->field_count);
   p->new_at = planes(p->new, law->field_count);
+  p->parameter = lanes(law->varying_count);
+  p->parameter_at = planes(p->parameter, law->varying_count);
+  for (int k = 0; k < law->varying_count; k++)
+    for (int lane = 0; lane < PL_LANES; lane++)
+      p->parameter_at[k][lane] = parameters[law->varying[k]];
   law->prepare(law, parameters, &none, p->uniforms);
   point_law_states(p, NULL);
   return p;
@@ -66,6 +72,8 @@ void point_law_free(point_law *p) {
   free(p->out);
   free(p->old);
   free(p->new);
+  free(p->parameter);
+  free(p->parameter_at);
   free(p->out_at);
   free(p->old_at);
   free(p->new_at);
@@ -94,6 +102,7 @@ static void run(point_law *p, pl_point_function function, const double strain[3]
                             .strain = strain_at,
                             .strain_rate = rate_at,
                             .cell_size = p->size,
+                            .parameter = (const double *const *)p->parameter_at,
                             .old_field = (const double *const *)p->old_at,
                             .new_field = p->new_at,
                             .stress = p->out_at,

@@ -7,6 +7,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "dsl/base/units.h"
 #include "runtime/crack/hoop_stress.h"
 #include "runtime/mesh/mesh_fields.h"
 
@@ -326,7 +327,7 @@ static double toughness_of(const tip_law *l) {
   double found = 0;
   int count = 0;
   for (int n = 0; n < l->law->parameter_count; n++)
-    if (strcmp(l->law->parameters[n].unit, "Pa*m^(1/2)") == 0) {
+    if (dim_equal(dimension_of(l->law->parameters[n].unit), dimension_of("Pa*sqrt(m)"))) {
       found = l->parameters[n];
       count++;
     }

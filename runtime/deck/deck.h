@@ -126,18 +126,25 @@ typedef struct deck_placed {     /* a value that may differ from place to place 
   const char *path;              /* of a table or result with places and values; or NULL */
   const char *column;            /* its column or field; NULL: the only one */
   const char *unit_text;         /* SI */
-  int component;                 /* of a field of vectors; negative: there is none */
-  const char *lattice; /* whose particles are meant: of a result the values of that name */
+  bool grid; /* a table whose places are a grid: straight between them, else the nearest counts */
+  int component;                /* of a field of vectors; negative: there is none */
+  const char *lattice;          /* whose particles are meant: of a result the values of that name */
+  const time_function *in_time; /* the same everywhere, instead: a table in time; or NULL */
 } deck_placed;
 
-typedef struct deck_assignment { /* parameter = value in a &material */
+typedef struct deck_assignment { /* parameter = value in a &material, or of a &field */
   const char *name;              /* as written */
+  const char *vector;            /* of a component of a list, `fibre = 1, 0`: its name; else NULL */
+  int listed;                    /* numbers in that list */
   double value; /* SI; of a formula in the middle of the lattice's or region's bodies */
   bool has_unit;
   dimension dim;             /* when has_unit */
   const deck_placed *placed; /* where it differs from place to place: a formula, or a file */
   const char *word;          /* a string that is not a number: an option's choice; else NULL */
   span name_where, value_where;
+  /* of a &field: the law must declare one of that name; `anyway`: but for this law, which is beside
+     that of the lattice */
+  bool of_field, anyway;
 } deck_assignment;
 
 typedef struct deck_material {
@@ -204,9 +211,11 @@ typedef struct deck_number { /* in the unit of a parameter, which the law knows 
 /* Bonds or particles: as the law has its parameters; a bond has the mean of its ends'. */
 typedef enum field_place { FIELD_BY_LAW, FIELD_ON_BONDS, FIELD_ON_PARTICLES } field_place;
 
-typedef struct deck_field { /* a parameter that differs in space at random */
+typedef struct deck_field { /* what a law is given, or a parameter that differs at random */
   deck_item item;
   const char *lattice, *parameter;
+  const char *name, *mesh; /* of a field that the law declares; else NULL */
+  bool random;             /* the values below hold */
   field_place on;
   field_kind kind;
   deck_number mean, low, high, scale; /* mean not given: the material's value */

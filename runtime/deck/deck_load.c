@@ -79,6 +79,15 @@ static bool check_times(const namelist_key *key, const double *times, diagnostic
   return true;
 }
 
+static bool as_many(const namelist_key *times, const namelist_key *values, diagnostics *d) {
+  if (times->value_count == values->value_count) return true;
+  diag_report(d, DIAG_BAD_VALUE, values->value_where,
+              "`times` and `values` must be equally many, but they are %d and %d",
+              times->value_count, values->value_count);
+  diag_note(d, times->value_where, "the times");
+  return false;
+}
+
 /* Takes over values of the load itself. */
 static void set_table(arena *a, const double *times, double *values, int count, time_function *f) {
   double *integrals = arena_alloc(a, (size_t)count * sizeof *integrals);
@@ -90,7 +99,7 @@ static void set_table(arena *a, const double *times, double *values, int count, 
 }
 
 static bool report_large(span where, diagnostics *d) {
-  diag_report(d, DIAG_BAD_NUMBER, where, "the value of the load is too large");
+  diag_report(d, DIAG_BAD_NUMBER, where, "the value is too large");
   return false;
 }
 
@@ -105,14 +114,7 @@ static bool read_table(arena *a, const namelist_group *g, double full, time_func
       diag_hint(d, "`values` are factors on the full value");
     return false;
   }
-  if (!check_times(times, t, d)) return false;
-  if (times->value_count != values->value_count) {
-    diag_report(d, DIAG_BAD_VALUE, values->value_where,
-                "`times` and `values` must be equally many, but they are %d and %d",
-                times->value_count, values->value_count);
-    diag_note(d, times->value_where, "the times");
-    return false;
-  }
+  if (!check_times(times, t, d) || !as_many(times, values, d)) return false;
   for (int i = 0; i < values->value_count; i++) {
     v[i] *= full;
     if (!isfinite(v[i])) return report_large(values->values[i].where, d);
@@ -127,14 +129,16 @@ enum { TIME, VALUE, PAIR };
 
 typedef struct load_file {
   text_table text;
-  int column[PAIR]; /* of time and value */
+  int column[PAIR];       /* of time and value */
+  const char *key, *what; /* "file", "a load" */
 } load_file;
 
 static bool report_columns(const load_file *l, span where, diagnostics *d) {
-  diag_report(d, DIAG_BAD_VALUE, where, "`%s` has %d column%s; a load has two, time and value",
-              l->text.file.path, l->text.column_count, l->text.column_count == 1 ? "" : "s");
+  diag_report(d, DIAG_BAD_VALUE, where, "`%s` has %d column%s; %s has two, time and value",
+              l->text.file.path, l->text.column_count, l->text.column_count == 1 ? "" : "s",
+              l->what);
   if (l->text.column_count > PAIR)
-    diag_hint(d, "say which, by names or numbers: file = 'FILE:%s,%s'",
+    diag_hint(d, "say which, by names or numbers: %s = 'FILE:%s,%s'", l->key,
               *l->text.columns[0].name ? l->text.columns[0].name : "1",
               *l->text.columns[1].name ? l->text.columns[1].name : "2");
   return false;
@@ -145,8 +149,8 @@ static bool choose_columns(load_file *l, const char *columns, span where, diagno
   bool good =
       columns ? text_table_names(columns, names, PAIR) == PAIR : l->text.column_count == PAIR;
   if (!good && columns)
-    diag_report(d, DIAG_BAD_VALUE, where,
-                "a load has two columns, time and value: FILE:TIME,VALUE");
+    diag_report(d, DIAG_BAD_VALUE, where, "%s has two columns, time and value: FILE:TIME,VALUE",
+                l->what);
   if (!good && !columns) report_columns(l, where, d);
   for (int c = 0; c < PAIR; c++) {
     if (good) l->column[c] = columns ? text_table_column(&l->text, names[c], where, d) : c;
@@ -157,14 +161,16 @@ static bool choose_columns(load_file *l, const char *columns, span where, diagno
 }
 
 /* Its text stays among the sources. To be freed in either case. */
-static bool open_file(load_file *l, const namelist_group *g, diagnostics *d) {
-  const namelist_key *key = namelist_find(g, "file");
+static bool open_file(load_file *l, const namelist_group *g, const char *name_of_key,
+                      diagnostics *d) {
+  const namelist_key *key = namelist_find(g, name_of_key);
   const char *columns;
-  *l = (load_file){.column = {0}};
+  *l = (load_file){.key = name_of_key,
+                   .what = strcmp(name_of_key, "file") == 0 ? "a load" : "a table in time"};
   if (!deck_values_counted(key, 1, d)) return false;
   const namelist_value *v = &key->values[0];
   if (v->kind != NAMELIST_TEXT || !*v->text) {
-    diag_report(d, DIAG_BAD_VALUE, v->where, "`file` is the name of a table in quotes");
+    diag_report(d, DIAG_BAD_VALUE, v->where, "`%s` is the name of a table in quotes", name_of_key);
     return false;
   }
   char *name = text_table_split(v->text, &columns);
@@ -245,7 +251,7 @@ static bool read_file(arena *a, const namelist_group *g, const deck_load_kind *k
                       time_function *f, diagnostics *d) {
   load_file l;
   const namelist_key *given = namelist_find(g, kind->key);
-  const bool good = open_file(&l, g, d) && unit_suits(&l, given, kind, d) &&
+  const bool good = open_file(&l, g, "file", d) && unit_suits(&l, given, kind, d) &&
                     take_columns(a, &l, given ? "1" : kind->unit, full, f, d);
   text_table_free(&l.text);
   return good;
@@ -311,7 +317,7 @@ static int kind_by_unit(arena *a, const namelist_group *g, const deck_load_kind 
   int found = -1;
   const char *bad;
   size_t bad_length;
-  bool good = open_file(&l, g, d) && text_table_unit(&l.text, l.column[VALUE], &given, d) &&
+  bool good = open_file(&l, g, "file", d) && text_table_unit(&l.text, l.column[VALUE], &given, d) &&
               unit_suits(&l, NULL, &kinds[0], d);
   for (int k = 0; good && k < count && found < 0; k++)
     if (unit_parse(kinds[k].unit, strlen(kinds[k].unit), &of_kind, &bad, &bad_length) &&
@@ -382,4 +388,62 @@ bool deck_load_read(arena *a, const namelist_group *g, const deck_load_kind *kin
       !key || (deck_values_counted(key, 1, d) &&
                deck_real_read(&key->values[0], key->name, kind->unit, BOUND_NONE, &f->value, d));
   return read_times(a, g, kind, f->value, f, d) && good;
+}
+
+/* --- quantities in time ----------------------------------------------------------------------- */
+
+/* All of one unit; plain numbers fit any. */
+static double *read_quantities(arena *a, const namelist_key *key, deck_quantity *unit_of,
+                               diagnostics *d) {
+  double *list = arena_alloc(a, (size_t)key->value_count * sizeof(double));
+  for (int i = 0; i < key->value_count; i++) {
+    deck_quantity q;
+    if (!deck_quantity_read(&key->values[i], key->name, &q, d)) return NULL;
+    list[i] = q.value;
+    if (q.has_unit && unit_of->has_unit && !dim_equal(q.dim, unit_of->dim)) {
+      diag_report(d, DIAG_UNITS, key->values[i].where, "the `%s` of a table have one unit",
+                  key->name);
+      return NULL;
+    }
+    if (q.has_unit) *unit_of = q;
+  }
+  return list;
+}
+
+static bool read_table_of_quantity(arena *a, const namelist_group *g, time_function *f,
+                                   deck_quantity *unit_of, diagnostics *d) {
+  const namelist_key *times = namelist_find(g, "times"), *values = namelist_find(g, "values");
+  if (!times || !values) {
+    diag_report(d, DIAG_MISSING_KEY, g->where, "`times` and `values` belong together");
+    return false;
+  }
+  double *t = read_list(a, times, "times", "s", d);
+  double *v = t ? read_quantities(a, values, unit_of, d) : NULL;
+  if (!v || !check_times(times, t, d) || !as_many(times, values, d)) return false;
+  set_table(a, t, v, times->value_count, f);
+  return true;
+}
+
+static bool read_file_of_quantity(arena *a, const namelist_group *g, time_function *f,
+                                  deck_quantity *unit_of, diagnostics *d) {
+  load_file l;
+  unit u = {DIMENSIONLESS, 1};
+  char si[64];
+  bool good = open_file(&l, g, "table", d) && text_table_unit(&l.text, l.column[VALUE], &u, d);
+  if (good) {
+    unit_of->has_unit = text_table_has_unit(&l.text, l.column[VALUE]);
+    unit_of->dim = u.dim;
+    dim_unit(u.dim, si, sizeof si);
+    good = take_columns(a, &l, si, 1, f, d);
+  }
+  text_table_free(&l.text);
+  return good;
+}
+
+bool deck_quantity_in_time_read(arena *a, const namelist_group *g, time_function *f,
+                                deck_quantity *unit_of, diagnostics *d) {
+  *f = (time_function){.shape = TIME_TABLE, .value = 1};
+  *unit_of = (deck_quantity){.dim = DIMENSIONLESS};
+  return (namelist_find(g, "table") ? read_file_of_quantity : read_table_of_quantity)(a, g, f,
+                                                                                      unit_of, d);
 }

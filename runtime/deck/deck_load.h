@@ -75,6 +75,11 @@ int deck_load_kind_of(arena *a, const namelist_group *g, const deck_load_kind *k
 bool deck_load_read(arena *a, const namelist_group *g, const deck_load_kind *kind, time_function *f,
                     diagnostics *d);
 
+/* A quantity that is no load, by a table in time: the group's `times` and `values`, or the two
+   columns of its `table`. `unit_of`: the unit of the values. False after messages. */
+bool deck_quantity_in_time_read(arena *a, const namelist_group *g, time_function *f,
+                                deck_quantity *unit_of, diagnostics *d);
+
 /* The same of a factor that goes from 0 to 1, on what `key` gives. */
 bool deck_factor_read(arena *a, const namelist_group *g, const char *key, time_function *f,
                       diagnostics *d);

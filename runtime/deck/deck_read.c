@@ -525,7 +525,7 @@ static void find_middle(const deck *k, const char *lattice, const char *of_regio
 static void take_middles(deck_reader *r) {
   for (int i = 0; i < r->k->material_count; i++) {
     const deck_material *m = &r->k->materials[i];
-    double middle[3];
+    double middle[FORMULA_VARIABLES] = {0};
     find_middle(r->k, m->lattice, m->region, middle);
     for (int n = 0; n < m->assignment_count; n++) {
       deck_assignment *a = &m->assignments[n];

@@ -8,6 +8,7 @@
 #include "dsl/semantics/formula.h"
 #include "runtime/deck/deck_check.h"
 #include "runtime/deck/deck_formula.h"
+#include "runtime/deck/deck_load.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/lattice_kind.h"
 
@@ -365,20 +366,22 @@ static const deck_placed *placed_by(arena *memory, deck_placed by) {
   return p;
 }
 
-/* The law knows the unit. */
+/* The law knows the unit. A table of a field is a grid, but for places of a result. */
 static bool read_place_file(arena *memory, uint16_t file, const char *lattice,
                             const namelist_value *v, deck_assignment *a, diagnostics *d) {
   deck_placed p = {.component = -1, .lattice = lattice};
   if (!deck_place_file_read(memory, file, v, &p, d)) return false;
+  const size_t length = strlen(p.path);
+  p.grid = a->of_field && (length < 3 || strcmp(p.path + length - 3, ".h5") != 0);
   a->placed = placed_by(memory, p);
   return true;
 }
 
 /* One that reads no place is a number. */
-static bool read_formula(arena *memory, const namelist_value *v, deck_assignment *a,
-                         diagnostics *d) {
+static bool read_formula(arena *memory, const namelist_value *v, const char *key,
+                         const formula_scope *scope, deck_assignment *a, diagnostics *d) {
   static const double anywhere[FORMULA_VARIABLES];
-  const formula *f = deck_formula_read(memory, v, a->name, &deck_formula_of_place, NULL, d);
+  const formula *f = deck_formula_read(memory, v, key, scope, NULL, d);
   if (!f) return false;
   a->has_unit = !formula_is_zero(f);
   a->dim = formula_dimension(f);
@@ -390,36 +393,61 @@ static bool read_formula(arena *memory, const namelist_value *v, deck_assignment
   return false;
 }
 
-static bool read_assignment(arena *memory, const namelist_group *g, const namelist_key *key,
+static bool read_assignment(arena *memory, const namelist_group *g, const namelist_value *v,
                             const char *lattice, deck_assignment *a, diagnostics *d) {
-  if (!deck_values_counted(key, 1, d)) return false;
-  const namelist_value *v = &key->values[0];
-  *a = (deck_assignment){
-      .name = key->name, .name_where = key->name_where, .value_where = key->value_where};
   const char *text = v->kind == NAMELIST_TEXT ? v->text + strspn(v->text, " \t") : "0";
   if (deck_is_place_file(v)) return read_place_file(memory, g->where.file, lattice, v, a, d);
-  if (deck_is_formula(v)) return read_formula(memory, v, a, d);
+  if (deck_is_formula(v)) return read_formula(memory, v, a->name, &deck_formula_of_place, a, d);
   if (isalpha((unsigned char)*text) || *text == '_') {
     a->word = text;
     return true;
   }
   deck_quantity q;
-  if (!deck_quantity_read(v, key->name, &q, d)) return false;
+  if (!deck_quantity_read(v, a->name, &q, d)) return false;
   a->value = q.value;
   a->has_unit = q.has_unit;
   a->dim = q.dim;
   return true;
 }
 
+/* `fibre = 1, 0, 0` is fibre_x, fibre_y and fibre_z; the third is 0 where it is left out. */
+static int read_list(arena *memory, const namelist_group *g, const namelist_key *key,
+                     const char *lattice, deck_assignment *into, diagnostics *d) {
+  static const char axes[] = "xyz";
+  int count = 0;
+  for (int k = 0; axes[k]; k++) {
+    deck_assignment *a = &into[count];
+    const bool given = k < key->value_count;
+    *a = (deck_assignment){.name = arena_printf(memory, "%s_%c", key->name, axes[k]),
+                           .vector = key->name,
+                           .listed = key->value_count,
+                           .name_where = key->name_where,
+                           .value_where = given ? key->values[k].where : key->value_where};
+    count += !given || read_assignment(memory, g, &key->values[k], lattice, a, d);
+  }
+  return count;
+}
+
+/* How many assignments a key is. */
+static int read_assignments(arena *memory, const namelist_group *g, const namelist_key *key,
+                            const char *lattice, deck_assignment *into, diagnostics *d) {
+  if (key->value_count == 2 || key->value_count == 3)
+    return read_list(memory, g, key, lattice, into, d);
+  if (!deck_values_counted(key, 1, d)) return 0;
+  *into = (deck_assignment){
+      .name = key->name, .name_where = key->name_where, .value_where = key->value_where};
+  return read_assignment(memory, g, &key->values[0], lattice, into, d);
+}
+
 bool deck_assignments_read(arena *memory, const namelist_group *g, const deck_group_info *info,
                            deck_material *m, diagnostics *d) {
   const int errors = d->errors;
-  m->assignments = arena_alloc(memory, (size_t)g->key_count * sizeof *m->assignments);
+  enum { MOST = 3 }; /* assignments of a key */
+  m->assignments = arena_alloc(memory, MOST * (size_t)g->key_count * sizeof *m->assignments);
   for (int i = 0; i < g->key_count; i++) {
     if (deck_key_find(info, g->keys[i].name) >= 0) continue;
-    if (read_assignment(memory, g, &g->keys[i], m->lattice, &m->assignments[m->assignment_count],
-                        d))
-      m->assignment_count++;
+    m->assignment_count += read_assignments(memory, g, &g->keys[i], m->lattice,
+                                            &m->assignments[m->assignment_count], d);
   }
   return d->errors == errors;
 }
@@ -473,21 +501,52 @@ DECK_LIST(
         "other key "
         "sets a "
         "parameter or an option of the law, e.g. `E = '30 GPa'`, or by place `E = '30 [GPa]*(1 + "
-        "x/2 [m])'` or `E = 'field.csv:E'`.");
+        "x/2 [m])'` or `E = 'field.csv:E'`, and a vector by a list: `fibre = 1, 0.5`.");
 
 /* --- random fields ---------------------------------------------------------------------------- */
 
 static const deck_key_info field_keys[] = {
+    {.name = "name",
+     .type = DECK_NAME,
+     DECK_AT(field, name),
+     .doc = "of a `field` that the law declares"},
     {.name = "parameter",
      .type = DECK_NAME,
-     .required = true,
      DECK_AT(field, parameter),
-     .doc = "of the law"},
+     .doc = "instead: a parameter of the law that differs at random"},
     {.name = "lattice",
      .type = DECK_NAME,
      .fallback = "= the only one",
      DECK_AT(field, lattice),
      .doc = "name of the lattice; needed when there are several"},
+    {.name = "mesh", .type = DECK_NAME, DECK_AT(field, mesh), .doc = "instead: name of the mesh"},
+    {.name = "value",
+     .type = DECK_LATER,
+     .unit = "as the field",
+     DECK_NOT_KEPT,
+     .doc = "of a field: its value, or a formula of `x`, `y`, `z`, where a particle stands, and of "
+            "the time `t`"},
+    {.name = "file",
+     .type = DECK_LATER,
+     DECK_NOT_KEPT,
+     .doc =
+         "of a field: a table beside the deck with columns `x`, `y`, in space `z`, and values on "
+         "a rectangular grid, straight between them; or a result, whose nearest particle "
+         "counts; `'temperature.csv:T'`"},
+    {.name = "times",
+     .type = DECK_LATER,
+     .unit = "s",
+     DECK_NOT_KEPT,
+     .doc = "of a field that is the same everywhere: times, ascending"},
+    {.name = "values",
+     .type = DECK_LATER,
+     .unit = "as the field",
+     DECK_NOT_KEPT,
+     .doc = "its values at those times, straight lines between, held before and after"},
+    {.name = "table",
+     .type = DECK_LATER,
+     DECK_NOT_KEPT,
+     .doc = "in place of `times` and `values`, two columns of a text file beside the deck"},
     {.name = "on",
      .type = DECK_WORD,
      .choices = "bond|particle",
@@ -497,9 +556,8 @@ static const deck_key_info field_keys[] = {
     {.name = "distribution",
      .type = DECK_CHOICE,
      .choices = "uniform|normal|lognormal|weibull",
-     .required = true,
      DECK_AT(field, kind),
-     .doc = "of the values"},
+     .doc = "at random: of the values"},
     {.name = "mean",
      .type = DECK_LATER,
      .unit = "as the parameter",
@@ -615,8 +673,26 @@ static void add_varying(deck_reader *r, deck_material *m, const deck_field *f) {
   m->varying_count++;
 }
 
-static void check_field(deck_reader *r, const namelist_group *from, void *into) {
-  deck_field *item = into;
+/* The lattice or mesh that is meant; false where it is not known. */
+static bool take_field_lattice(deck_reader *r, const namelist_group *from, deck_field *item) {
+  deck_refuse_both(r, from, "lattice", "mesh");
+  if (item->mesh) {
+    item->lattice = item->mesh;
+    return deck_mesh_known(r, &item->item, item->mesh);
+  }
+  if (item->lattice) return deck_lattice_known(r, &item->item, item->lattice);
+  if (r->k->lattice_count == 1) {
+    item->lattice = r->k->lattices[0].name;
+    return true;
+  }
+  if (r->names_known && r->k->lattice_count > 1) {
+    diag_report(r->d, DIAG_MISSING_KEY, item->item.where, "`&field` needs `lattice` here");
+    diag_hint(r->d, "the deck has %d lattices", r->k->lattice_count);
+  }
+  return false;
+}
+
+static void check_random(deck_reader *r, const namelist_group *from, deck_field *item) {
   const namelist_key *on = namelist_find(from, "on");
   if (on)
     item->on = deck_choice_read(r->memory, on, "bond|particle", r->d) == 1 ? FIELD_ON_PARTICLES
@@ -627,25 +703,131 @@ static void check_field(deck_reader *r, const namelist_group *from, void *into) 
   good &= read_number(r, from, "high", &item->high);
   good &= read_number(r, from, "scale", &item->scale);
   if (good) check_distribution(r, from, item);
-  if (item->lattice) {
-    if (!deck_lattice_known(r, &item->item, item->lattice)) return;
-  } else if (r->k->lattice_count == 1) {
-    item->lattice = r->k->lattices[0].name;
-  } else {
-    if (r->names_known && r->k->lattice_count > 1) {
-      diag_report(r->d, DIAG_MISSING_KEY, item->item.where, "`&field` needs `lattice` here");
-      diag_hint(r->d, "the deck has %d lattices", r->k->lattice_count);
-    }
-    return;
-  }
+  if (!take_field_lattice(r, from, item)) return;
   for (int i = 0; i < r->k->material_count; i++)
     if (deck_same_name(r->k->materials[i].lattice, item->lattice) && !r->k->materials[i].region)
       add_varying(r, (deck_material *)(uintptr_t)&r->k->materials[i], item); /* still being read */
 }
 
+/* --- fields of the law ------------------------------------------------------------------------ */
+
+static bool read_field_table(deck_reader *r, const namelist_group *from, deck_assignment *a) {
+  time_function *f = arena_alloc(r->memory, sizeof *f);
+  deck_quantity q;
+  if (!deck_quantity_in_time_read(r->memory, from, f, &q, r->d)) return false;
+  a->has_unit = q.has_unit;
+  a->dim = q.dim;
+  a->value = time_function_at(f, 0);
+  a->placed = placed_by(r->memory, (deck_placed){.in_time = f});
+  return true;
+}
+
+static bool read_field_value(deck_reader *r, const namelist_key *key, deck_assignment *a) {
+  if (!deck_values_counted(key, 1, r->d)) return false;
+  const namelist_value *v = &key->values[0];
+  deck_quantity q;
+  if (deck_is_formula(v))
+    return read_formula(r->memory, v, key->name, &deck_formula_of_all, a, r->d);
+  if (!deck_quantity_read(v, key->name, &q, r->d)) return false;
+  a->value = q.value;
+  a->has_unit = q.has_unit;
+  a->dim = q.dim;
+  return true;
+}
+
+static bool read_field_file(deck_reader *r, const namelist_group *from, const namelist_key *key,
+                            const char *lattice, deck_assignment *a) {
+  if (!deck_values_counted(key, 1, r->d)) return false;
+  const namelist_value *v = &key->values[0];
+  if (v->kind == NAMELIST_TEXT && *v->text)
+    return read_place_file(r->memory, from->where.file, lattice, v, a, r->d);
+  diag_report(r->d, DIAG_BAD_VALUE, v->where, "`file` is the name of a table or result in quotes");
+  return false;
+}
+
+/* The key that gives the field; NULL after a message. */
+static const namelist_key *field_source_key(deck_reader *r, const namelist_group *from) {
+  static const char *const ways[] = {"value", "file", "times", "table", "distribution"};
+  const namelist_key *found = NULL;
+  for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
+    const namelist_key *key = namelist_find(from, ways[k]);
+    if (!key) continue;
+    if (found) {
+      diag_report(r->d, DIAG_CONFLICT, key->name_where, "`%s` and `%s` exclude each other",
+                  found->name, key->name);
+      diag_note(r->d, found->name_where, "`%s` is given here", found->name);
+      return NULL;
+    }
+    found = key;
+  }
+  if (found) return found;
+  diag_report(r->d, DIAG_MISSING_KEY, from->where, "this field has no value");
+  diag_hint(r->d, "give it a `value`, a `file` of places, `times` and `values`, a `table` in time, "
+                  "or a `distribution`");
+  return NULL;
+}
+
+/* An assignment of all materials of the lattice: what is asked of these goes for it, too. */
+static void give_field(deck_reader *r, const deck_field *item, const deck_assignment *a) {
+  const int whole = deck_find_material(r->k, item->lattice);
+  for (int i = 0; i < r->k->material_count; i++) {
+    deck_material *m = (deck_material *)(uintptr_t)&r->k->materials[i]; /* still being read */
+    if (!deck_same_name(m->lattice, item->lattice)) continue;
+    deck_assignment *all =
+        arena_alloc(r->memory, ((size_t)m->assignment_count + 2) * sizeof *all); /* and a density */
+    for (int n = 0; n < m->assignment_count; n++)
+      all[n] = m->assignments[n];
+    all[m->assignment_count] = *a;
+    all[m->assignment_count].anyway =
+        whole >= 0 && !deck_same_name(m->model, r->k->materials[whole].model);
+    m->assignments = all;
+    m->assignment_count++;
+  }
+}
+
+static void check_given(deck_reader *r, const namelist_group *from, deck_field *item) {
+  const namelist_key *key = field_source_key(r, from);
+  deck_assignment a = {
+      .name = item->name, .name_where = deck_where(&item->item, "name"), .of_field = true};
+  if (!key) return;
+  a.value_where = key->value_where;
+  if (!take_field_lattice(r, from, item)) return;
+  const bool good = strcmp(key->name, "value") == 0 ? read_field_value(r, key, &a)
+                    : strcmp(key->name, "file") == 0
+                        ? read_field_file(r, from, key, item->lattice, &a)
+                        : read_field_table(r, from, &a);
+  if (good) give_field(r, item, &a);
+}
+
+static void check_field(deck_reader *r, const namelist_group *from, void *into) {
+  deck_field *item = into;
+  deck_refuse_both(r, from, "name", "parameter");
+  if (item->name && item->parameter) return;
+  item->random = namelist_find(from, "distribution") != NULL;
+  if (!item->name && !item->parameter) {
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&field` needs `name` or `parameter`");
+    diag_hint(r->d, "name: a `field` that the law declares; parameter: one that differs at random");
+  } else if (item->name && !item->random) {
+    check_given(r, from, item);
+  } else if (!item->random) {
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&field` needs `distribution`");
+    diag_hint(r->d,
+              "a field of the law is named by `name`; a parameter by place stands in "
+              "&material: %s = '...'",
+              deck_shown(r->memory, item->parameter));
+  } else {
+    if (item->name && !field_source_key(r, from)) return;
+    if (item->name) item->parameter = item->name;
+    check_random(r, from, item);
+  }
+}
+
 DECK_LIST(
-    field, .identity = "parameter", .check = check_field,
+    field, .identity = "parameter", .parts = {"name"}, .check = check_field,
     .doc =
-        "A parameter of the law that differs in space at random, the same for the same "
+        "What a law is given in place and time, see [Fields in place and time]"
+        "(#fields-in-place-and-time); or a parameter of the law that differs in space at random, "
+        "the "
+        "same for the same "
         "seed whatever the threads. Uniform: `low` and `high`, or `cv`; normal, lognormal: `cv`; "
         "Weibull: `shape`, or `cv`.");

@@ -88,7 +88,8 @@ static void evaluate(const bond_forces *f, row_part at, int direction) {
                 .field = f->field,
                 .force = f->force,
                 .time = w->body->time,
-                .time_step = w->body->time_step};
+                .time_step = w->body->time_step,
+                .advance = w->body->advance};
   for (int k = 0; k < w->law->varying_count; k++)
     f->parameter[k] = w->parameter[k] + slot;
   for (int k = 0; k < w->law->field_count; k++)

@@ -142,13 +142,14 @@ static void observe_rows(sweep *w, int block) {
     forces_of_row(w, b, row, false, force);
     advance_kick(w->body, b, row, force);
     motion_observe(w->body, b, row);
+    if (w->body->forces_alone) continue;
     w->body->observed[row].stored = family_stored_in_row(w, row);
     family_add_losses(w, row);
   }
 }
 
 /* Forces and new fields of the present state: the passes of a step, whose new fields are written
-   again by the next one. Then energy and outputs with these. */
+   again by the next one. Then, where somebody wants them, energy and outputs with these. */
 static void observe(sweep *w, int stage, int block) {
   const family *f = family_of(w);
   const int forces = program_stages(f, f->march),
@@ -156,10 +157,10 @@ static void observe(sweep *w, int stage, int block) {
   if (stage == 0) look(w, block);
   if (stage < forces)
     run_program(w, f->march, stage, block);
-  else if (stage < all)
-    run_program(w, &w->law->observe, stage - forces, block);
-  else
+  else if (stage == all)
     observe_rows(w, block);
+  else if (!w->body->forces_alone)
+    run_program(w, &w->law->observe, stage - forces, block);
 }
 
 static void output_values(sweep *w, int output, double *values) {
@@ -261,12 +262,24 @@ static void free_own(sweep *w) {
   free(f);
 }
 
-/* On lists neighbours may be anywhere. */
+/* Rows from a particle to the farthest of its neighbours. */
+static int reach_of_list(const rows *g) {
+  long most = 0;
+  for (long q = 0; q < g->size; q++)
+    for (int k = 0; k < g->directions; k++)
+      if (rows_has_bond(g, q, k)) {
+        const long rows_to = rows_partner(g, q, k) / g->pitch - q / g->pitch;
+        most = labs(rows_to) > most ? labs(rows_to) : most;
+      }
+  return (int)most;
+}
+
 static int reach_of(const rows *g) {
   double most = 0;
+  if (g->list) return reach_of_list(g);
   for (int k = 0; k < g->directions; k++)
     most = pl_fmax(most, rint((double)g->offset[0][k] / (double)g->pitch));
-  return g->list ? g->row_count : (int)most;
+  return (int)most;
 }
 
 /* Losses are not kept where a law at work on the body does not say what it takes. */

@@ -28,6 +28,8 @@ static void point_at_neighbours(const rows *g, int row, long start, pl_family *r
   run->neighbour = l->neighbour + start;
   run->incoming = l->incoming + start;
   run->length = l->length + start;
+  run->alike = l->alike ? l->alike + start / PL_LANES * 2 * g->directions : NULL;
+  run->way = l->way;
   for (int d = 0; d < g->dimensions; d++)
     run->chord[d] = l->chord[d] + start;
   run->volume = g->site_volume + start;
@@ -50,7 +52,8 @@ void family_run_begin(const sweep *w, const pl_program *program, int block, pl_f
                      .force = b->force,
                      .observed = b->observed,
                      .time = w->body->time,
-                     .time_step = w->body->time_step};
+                     .time_step = w->body->time_step,
+                     .advance = w->body->advance};
 }
 
 void family_run_part(const sweep *w, int block, const row_part *at, pl_family *run) {

@@ -7,6 +7,7 @@
 static int end_of_alike(const sweep *w, int row, int last) {
   const unsigned char *kind = w->lattice->row_class + w->lattice->margin;
   int end = row + 1;
+  if (w->lattice->list && w->lattice->list->way) return end;
   while (end < last && w->body->count[row] > 0 && w->body->count[end] > 0 && kind[end] == kind[row])
     end++;
   return end;

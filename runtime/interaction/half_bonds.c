@@ -16,7 +16,7 @@ typedef struct direction_bonds {
   int64_t *flags;                      /* [room] */
   double *ends[4][PL_MAX_DOF];         /* [room] places and velocities of i, of j */
   double **field, **force, **observed; /* [fields], [planes], [1 + outputs][room] */
-  const double **parameter;            /* [varying][room] */
+  double **parameter;                  /* [varying][room] */
   double *lost[2];                     /* [room] J: by states, by rates */
 } direction_bonds;
 
@@ -50,16 +50,16 @@ static void prepare(half_bonds *h, direction_bonds *p, const double *parameters)
   h->of->law->prepare(h->of->law, parameters, &c, p->uniforms);
 }
 
-static void take_parameters(half_bonds *h, direction_bonds *p) {
+static void take_parameters(const half_bonds *h, const direction_bonds *p) {
   const sweep *w = h->of;
-  p->parameter =
-      arena_alloc(h->pointers, ((size_t)w->law->varying_count + 1) * sizeof *p->parameter);
-  for (int k = 0; k < w->law->varying_count; k++) {
-    double *values = doubles(h, p->room);
+  for (int k = 0; k < w->law->varying_count; k++)
     for (long n = 0; n < p->count; n++)
-      values[n] = w->parameter[k][p->direction * w->lattice->size + p->bonds[n].site];
-    p->parameter[k] = values;
-  }
+      p->parameter[k][n] = w->parameter[k][p->direction * w->lattice->size + p->bonds[n].site];
+}
+
+/* Those that the law declares as fields may change in time. */
+static bool may_change(const pl_law *law) {
+  return law->varying_count > 0 && PL_HAS(law, given) && law->given_count > 0;
 }
 
 static void open_direction(half_bonds *h, direction_bonds *p, const double *parameters) {
@@ -77,6 +77,7 @@ static void open_direction(half_bonds *h, direction_bonds *p, const double *para
   for (int k = 0; k < 2; k++)
     p->lost[k] = doubles(h, p->room);
   prepare(h, p, parameters);
+  p->parameter = planes(h, law->varying_count, p->room);
   take_parameters(h, p);
 }
 
@@ -130,14 +131,15 @@ static pl_strip strip_of(const half_bonds *h, const direction_bonds *p) {
                 .count = p->room,
                 .direction = p->direction,
                 .flags = p->flags,
-                .parameter = p->parameter,
+                .parameter = (const double *const *)p->parameter,
                 .field = p->field,
                 .force = p->force,
                 .dissipated_state = p->lost[0],
                 .dissipated_rate = p->lost[1],
                 .observed = p->observed,
                 .time = of->time,
-                .time_step = of->time_step};
+                .time_step = of->time_step,
+                .advance = of->advance};
   for (int d = 0; d < of->dof; d++) {
     s.displacement_i[d] = p->ends[0][d];
     s.displacement_j[d] = p->ends[1][d];
@@ -161,6 +163,7 @@ void half_bonds_find(half_bonds *h, bool stepped) {
     direction_bonds *p = &h->parts[k];
     if (p->count == 0) continue;
     take_ends(h, p);
+    if (may_change(law)) take_parameters(h, p);
     for (int f = 0; f < law->field_count; f++)
       for (long n = 0; n < p->room; n++)
         p->field[f][n] = law->fields[f].initial;

@@ -97,6 +97,7 @@ static void observe_rows(sweep *w, int block) {
     forces_of_row(w->body, row, force);
     advance_kick(w->body, b, row, force);
     motion_observe(w->body, b, row);
+    if (w->body->forces_alone) continue;
     w->body->observed[row].stored = 0;
     for (int k = 0; k < own(w)->count; k++)
       w->body->observed[row].stored += family_stored_in_row(own(w)->parts[k], row);

@@ -91,6 +91,7 @@ static void strip_ends(const sweep *w, pairwise_block *b, int row, int direction
   s->unheld = (own(w)->some[row] & PL_PROTECTED(direction)) == 0;
   s->time = w->body->time;
   s->time_step = w->body->time_step;
+  s->advance = w->body->advance;
   s->parameter = b->parameters;
   for (int k = 0; k < w->law->varying_count; k++)
     b->parameters[k] = w->parameter[k] + direction * g->size + near;

@@ -181,3 +181,46 @@ int bond_numbers(const point_pairs *pairs, long particles, numbered_bond *bonds)
   free(c.path);
   return c.numbers;
 }
+
+/* --- by ways ---------------------------------------------------------------------------------- */
+
+/* The lowest number, not below `least`, that is free at both; MOST_NUMBERS: none. */
+static int lowest_free(uint64_t here, uint64_t there, int least) {
+  const uint64_t both = ~(here | there) & (least < MOST_NUMBERS ? UINT64_MAX << least : 0);
+  return both ? __builtin_ctzll(both) : MOST_NUMBERS;
+}
+
+/* The end that owns a bond of an uncommon way is that which leaves the lower number, else the way's
+   beginning. */
+static void number_uncommon(uint64_t *taken[2], int least, int32_t from, int32_t to,
+                            numbered_bond *bond) {
+  const int ahead = lowest_free(taken[OWNER][from], taken[OTHER][to], least),
+            back = lowest_free(taken[OWNER][to], taken[OTHER][from], least);
+  *bond = ahead <= back ? (numbered_bond){from, to, ahead} : (numbered_bond){to, from, back};
+}
+
+int bond_numbers_by_ways(const point_pairs *pairs, long particles, const bond_ways *ways,
+                         numbered_bond *bonds) {
+  uint64_t *taken[2];
+  int numbers = ways->common;
+  for (int side = OWNER; side <= OTHER; side++)
+    taken[side] = must_calloc((size_t)particles + 1, sizeof *taken[side]);
+  for (long m = 0; m < pairs->count && numbers <= MOST_NUMBERS; m++) {
+    const point_pair ends = pairs->items[m];
+    const int way = abs(ways->of[m]) - 1;
+    const int32_t from = ways->of[m] < 0 ? ends.j : ends.i, to = ends.i + ends.j - from;
+    if (way >= 0 && way < ways->common)
+      bonds[m] = (numbered_bond){from, to, way};
+    else
+      number_uncommon(taken, ways->common, from, to, &bonds[m]);
+    if (bonds[m].number >= numbers) numbers = bonds[m].number + 1;
+    const uint64_t bit = bonds[m].number < MOST_NUMBERS ? UINT64_C(1) << bonds[m].number : 0;
+    if ((taken[OWNER][bonds[m].owner] | taken[OTHER][bonds[m].other]) & bit)
+      numbers = MOST_NUMBERS + 1; /* two particles at one place */
+    taken[OWNER][bonds[m].owner] |= bit;
+    taken[OTHER][bonds[m].other] |= bit;
+  }
+  free(taken[OWNER]);
+  free(taken[OTHER]);
+  return numbers <= MOST_NUMBERS ? numbers : 0;
+}

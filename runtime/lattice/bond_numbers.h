@@ -7,6 +7,7 @@
 #define PERILAT_RUNTIME_BOND_NUMBERS_H
 
 #include "runtime/geometry/neighbour_search.h"
+#include "runtime/lattice/bond_ways.h"
 
 typedef struct numbered_bond {
   int32_t owner, other;
@@ -17,5 +18,11 @@ typedef struct numbered_bond {
    more than 128. Returns how many numbers there are: at most half of the bonds of the particle that
    has most, rounded up. */
 int bond_numbers(const point_pairs *pairs, long particles, numbered_bond *bonds);
+
+/* The same for particles most of whose bonds go common ways (bond_ways.h): of these the number is
+   that of the way, and its beginning the owner; those of all others are higher. 0 where there
+   would be more than 64. */
+int bond_numbers_by_ways(const point_pairs *pairs, long particles, const bond_ways *ways,
+                         numbered_bond *bonds);
 
 #endif

@@ -36,7 +36,7 @@ static bool on_particles(const value_places *p) {
 }
 
 static value_places places_new(const rows *w, const unsigned char *own, const pl_law *law) {
-  const bool particles = law->varying_place == PL_ON_PARTICLE;
+  const bool particles = law->varying_place == PL_ON_PARTICLE || law->kind == PL_CONTINUUM;
   return (value_places){.rows = w,
                         .law = law,
                         .own = own,
@@ -207,6 +207,7 @@ typedef struct value_sources {
   int regions;
   int *region_of;        /* [size] number in `regional`, or -1: the material without region; NULL */
   const double *density; /* [size] of particles, once it is known; NULL where all have one */
+  double time;           /* s */
 } value_sources;
 
 /* Position of a parameter in law->varying, or -1 after a message. */
@@ -226,7 +227,7 @@ static bool open_fields(const deck *k, int lattice, double *parameters, value_so
   bool good = true;
   for (int i = 0; i < k->field_count; i++) {
     const deck_field *f = &k->fields[i];
-    if (strcmp(f->lattice, k->lattices[lattice].name) != 0 || s->whole->region ||
+    if (!f->random || strcmp(f->lattice, k->lattices[lattice].name) != 0 || s->whole->region ||
         s->whole->between[0])
       continue;
     const int plane = find_plane(law, f->parameter, deck_where(&f->item, "parameter"), d);
@@ -395,12 +396,14 @@ static double value_of_material(const value_sources *s, int plane, int64_t site)
   const pl_law *law = s->places->law;
   const int region = s->region_of ? s->region_of[site] : -1;
   const int number = (region + 1) * law->varying_count + plane;
-  double at[3];
+  double at[FORMULA_VARIABLES] = {[FORMULA_T] = s->time};
   if (s->of_file[number]) return s->of_file[number][site];
   if (!s->placed[number])
     return (region < 0 ? s->parameters : s->regional[region].parameters)[law->varying[plane]];
+  const deck_placed *from = s->placed[number]->placed;
+  if (from->in_time) return time_function_at(from->in_time, s->time);
   rows_place(s->places->rows, site, at);
-  return formula_value(s->placed[number]->placed->formula, at);
+  return formula_value(from->formula, at);
 }
 
 static double value_of(const value_sources *s, int plane, const value_place *at) {
@@ -476,20 +479,21 @@ static int plane_of(const pl_law *law, int parameter) {
   return -1;
 }
 
-/* "in the bond from (x, y) mm to (x, y) mm" */
-static void name_place(const value_places *p, const value_place *at, char *text, size_t size) {
-  const rows *w = p->rows;
-  char ends[2][ROWS_PLACE_TEXT];
+/* "in the bond from (x, y) mm to (x, y) mm", perhaps " at 2 ms" */
+static void name_place(const value_sources *s, const value_place *at, char *text, size_t size) {
+  const rows *w = s->places->rows;
+  char ends[2][ROWS_PLACE_TEXT], when[40] = "";
   double here[3];
+  if (s->time > 0) snprintf(when, sizeof when, " at %.4g ms", 1e3 * s->time);
   rows_place(w, at->site, here);
   rows_place_text(w->dimensions, here, ends[0]);
   if (at->partner < 0) {
-    snprintf(text, size, "in the particle at %s", ends[0]);
+    snprintf(text, size, "in the particle at %s%s", ends[0], when);
     return;
   }
   rows_place(w, at->partner, here);
-  snprintf(text, size, "in the bond from %s to %s", ends[0],
-           rows_place_text(w->dimensions, here, ends[1]));
+  snprintf(text, size, "in the bond from %s to %s%s", ends[0],
+           rows_place_text(w->dimensions, here, ends[1]), when);
 }
 
 /* The group of the deck that a value comes from; where it is of no plane, the first one. */
@@ -510,7 +514,7 @@ static void report_fault(const value_sources *s, long number, const bounds_of *b
   const value_place at = place_of(s->places, number);
   const int plane = plane_of(law, fault);
   char text[3 * ROWS_PLACE_TEXT];
-  name_place(s->places, &at, text, sizeof text);
+  name_place(s, &at, text, sizeof text);
   if (!isfinite(b->values[fault])) {
     diag_report(d, DIAG_BAD_NUMBER, where_of(s, plane),
                 "`%s` has no finite value %s; %ld of %ld %s are out of range",
@@ -575,6 +579,7 @@ static bool check_values(parameter_planes *r, const value_sources *s, diagnostic
 
 /* --- the planes ------------------------------------------------------------------------------- */
 
+/* Of the values at hand and those seen before. */
 static void find_extremes(parameter_planes *r, const value_sources *s) {
   for (int k = 0; k < r->count; k++) {
     const int parameter = s->places->law->varying[k];
@@ -590,8 +595,8 @@ static void find_extremes(parameter_planes *r, const value_sources *s) {
       low = pl_fmin(low, value);
       high = pl_fmax(high, value);
     }
-    r->smallest[k] = p->count ? low : s->parameters[parameter];
-    r->largest[k] = p->count ? high : s->parameters[parameter];
+    r->smallest[k] = pl_fmin(r->smallest[k], p->count ? low : s->parameters[parameter]);
+    r->largest[k] = pl_fmax(r->largest[k], p->count ? high : s->parameters[parameter]);
   }
 }
 
@@ -610,6 +615,10 @@ static parameter_planes *planes_new(const value_places *p) {
   r->smallest = must_calloc(count, sizeof *r->smallest);
   r->largest = must_calloc(count, sizeof *r->largest);
   r->source = must_calloc(count, sizeof *r->source);
+  for (int k = 0; k < r->count; k++) {
+    r->smallest[k] = INFINITY;
+    r->largest[k] = -INFINITY;
+  }
   return r;
 }
 
@@ -648,35 +657,195 @@ static void sources_free(value_sources *s) {
   free(s->region_of);
 }
 
+/* --- what changes in time --------------------------------------------------------------------- */
+
+typedef struct changing_plane {
+  int plane;
+  bool everywhere; /* the same at all places */
+  double last;     /* of these: the value at hand */
+} changing_plane;
+
+struct plane_clock {
+  value_places places;
+  value_sources sources;
+  changing_plane *planes; /* [count] */
+  int count;
+  double *mine; /* [size] of particles */
+};
+
+static bool changes(const deck_placed *p) {
+  return p->in_time || (p->formula && formula_reads(p->formula, FORMULA_T));
+}
+
+static bool is_everywhere(const deck_placed *p) {
+  for (int k = FORMULA_X; k <= FORMULA_Z; k++)
+    if (!p->in_time && formula_reads(p->formula, k)) return false;
+  return true;
+}
+
+static void find_changing(struct plane_clock *c) {
+  const value_sources *s = &c->sources;
+  const int planes = c->places.law->varying_count;
+  c->planes = must_calloc((size_t)planes + 1, sizeof *c->planes);
+  for (int k = 0; k < planes; k++) {
+    bool any = false;
+    for (int region = 0; region <= s->regions && !any; region++) {
+      const deck_assignment *a = s->placed[region * planes + k];
+      any = a && changes(a->placed);
+    }
+    if (!any || s->field[k].field) continue;
+    const deck_assignment *whole = s->placed[k];
+    c->planes[c->count++] = (changing_plane){
+        .plane = k, .everywhere = s->regions == 0 && is_everywhere(whole->placed), .last = NAN};
+  }
+  if (c->count) c->mine = must_calloc((size_t)c->places.rows->size, sizeof *c->mine);
+}
+
+static bool fill_everywhere(parameter_planes *r, struct plane_clock *c, changing_plane *p) {
+  const rows *w = c->places.rows;
+  const double value = value_of_material(&c->sources, p->plane, w->particle_site[0]);
+  if (value == p->last) return false;
+  p->last = value;
+  for (size_t q = 0; q < r->plane_size; q++)
+    r->value[p->plane][q] = value;
+  return true;
+}
+
+/* As fill_plane: a bond has the mean of its ends. */
+static void fill_again(const parameter_planes *r, struct plane_clock *c, const changing_plane *p) {
+  const rows *w = c->places.rows;
+  for (long n = 0; n < w->particle_count; n++) {
+    const int64_t site = w->particle_site[n];
+    c->mine[site] = value_of_material(&c->sources, p->plane, site);
+  }
+  for (long m = 0; m < c->places.count; m++) {
+    const value_place at = place_of(&c->places, m);
+    if (!is_read(&c->places, &at)) continue;
+    const double mine = c->mine[at.site];
+    put(r->value[p->plane], &at, at.partner < 0 ? mine : 0.5 * (mine + c->mine[at.partner]));
+  }
+}
+
+bool parameter_planes_go_to(parameter_planes *p, double time) {
+  if (!p || !p->changing || p->time == time) return false;
+  struct plane_clock *c = p->clock;
+  bool other = false;
+  p->time = c->sources.time = time;
+  for (int k = 0; k < c->count && c->places.rows->particle_count > 0; k++) {
+    if (c->planes[k].everywhere) {
+      other = fill_everywhere(p, c, &c->planes[k]) || other;
+    } else {
+      fill_again(p, c, &c->planes[k]);
+      other = true;
+    }
+  }
+  return other;
+}
+
+plane_change parameter_planes_change(const parameter_planes *p, int plane) {
+  for (int k = 0; p->changing && k < p->clock->count; k++)
+    if (p->clock->planes[k].plane == plane)
+      return p->clock->planes[k].everywhere ? PLANE_CHANGES_ALIKE : PLANE_CHANGES;
+  return PLANE_STAYS;
+}
+
+static int add_corners(const time_function *f, double end, double *times, int count) {
+  for (int k = 0; f && k < f->count; k++)
+    if (f->times[k] < end) times[count++] = f->times[k];
+  return count;
+}
+
+int parameter_planes_times(const parameter_planes *p, double end, double **times) {
+  enum { EVENLY = 16 };
+  const value_sources *s = p && p->changing ? &p->clock->sources : NULL;
+  const int most = s ? (s->regions + 1) * s->places->law->varying_count : 0;
+  size_t room = EVENLY + 1;
+  for (int k = 0; k < most; k++)
+    if (s->placed[k] && s->placed[k]->placed->in_time)
+      room += (size_t)s->placed[k]->placed->in_time->count;
+  *times = must_calloc(room, sizeof **times);
+  int count = 0;
+  for (int k = 0; s && k <= EVENLY; k++)
+    (*times)[count++] = end * k / EVENLY;
+  for (int k = 0; k < most; k++)
+    if (s->placed[k]) count = add_corners(s->placed[k]->placed->in_time, end, *times, count);
+  return count;
+}
+
+/* At the times that are looked at, and at last at the start. */
+static bool check_in_time(parameter_planes *r, struct plane_clock *c, double end, diagnostics *d) {
+  double *times;
+  const int count = parameter_planes_times(r, end, &times);
+  bool good = true;
+  for (int k = 0; k < count && good; k++) {
+    parameter_planes_go_to(r, times[k]);
+    good = check_values(r, &c->sources, d);
+    if (good) find_extremes(r, &c->sources);
+  }
+  free(times);
+  parameter_planes_go_to(r, 0);
+  return good;
+}
+
+static void clock_free(struct plane_clock *c) {
+  if (!c) return;
+  sources_free(&c->sources);
+  free(c->places.bonds);
+  free(c->planes);
+  free(c->mine);
+  free(c);
+}
+
+static void take_clock(parameter_planes *r, struct plane_clock *c) {
+  find_changing(c);
+  r->changing = c->count > 0;
+  r->clock = c;
+}
+
+/* --- all of them ------------------------------------------------------------------------------ */
+
+static struct plane_clock *open_sources(const deck_material *whole, const rows *w,
+                                        const unsigned char *own, const pl_law *law,
+                                        const regional_values *regional, int regional_count) {
+  struct plane_clock *c = must_calloc(1, sizeof *c);
+  const size_t planes = (size_t)law->varying_count + 1,
+               most = (size_t)(regional_count + 1) * planes;
+  c->places = places_new(w, own, law);
+  c->sources = (value_sources){.places = &c->places,
+                               .whole = whole,
+                               .own = own,
+                               .regional = regional,
+                               .regions = regional_count,
+                               .field = must_calloc(planes, sizeof *c->sources.field),
+                               .placed = must_calloc(most, sizeof *c->sources.placed),
+                               .of_file = must_calloc(most, sizeof *c->sources.of_file)};
+  return c;
+}
+
 parameter_planes *parameter_planes_new(const deck *k, int lattice, const deck_material *whole,
                                        const rows *w, const unsigned char *own, const pl_law *law,
                                        double *parameters, const regional_values *regional,
                                        int regional_count, diagnostics *d) {
-  value_places places = places_new(w, own, law);
-  value_sources s = {.places = &places,
-                     .whole = whole,
-                     .own = own,
-                     .parameters = parameters,
-                     .regional = regional,
-                     .regions = regional_count};
-  parameter_planes *r = planes_new(&places);
-  s.field = must_calloc((size_t)r->count + 1, sizeof *s.field);
-  const size_t most = (size_t)(regional_count + 1) * (size_t)(r->count + 1);
-  s.placed = must_calloc(most, sizeof *s.placed);
-  s.of_file = must_calloc(most, sizeof *s.of_file);
-  bool good = open_fields(k, lattice, parameters, &s, d);
-  good = open_placed(regional_count, &s, d) && good;
-  good =
-      open_regions(k, regional_count, &s, d) && good && read_files(&s, d) && find_density(r, &s, d);
+  struct plane_clock *c = open_sources(whole, w, own, law, regional, regional_count);
+  value_sources *s = &c->sources;
+  parameter_planes *r = planes_new(&c->places);
+  s->parameters = parameters;
+  bool good = open_fields(k, lattice, parameters, s, d);
+  good = open_placed(regional_count, s, d) && good;
+  good = open_regions(k, regional_count, s, d) && good && read_files(s, d) && find_density(r, s, d);
   for (int n = 0; good && n < r->count; n++) {
-    r->source[n] = source_of(&s, n);
-    r->value[n] = new_plane(r, &places);
-    fill_plane(&s, n, r->value[n]);
+    r->source[n] = source_of(s, n);
+    r->value[n] = new_plane(r, &c->places);
+    fill_plane(s, n, r->value[n]);
   }
-  good = good && check_values(r, &s, d);
-  if (good) find_extremes(r, &s);
-  sources_free(&s);
-  free(places.bonds);
+  good = good && check_values(r, s, d);
+  if (good) find_extremes(r, s);
+  if (good) take_clock(r, c);
+  good = good && check_in_time(r, c, k->simulation.end_time, d);
+  if (!r->changing) {
+    clock_free(c);
+    r->clock = NULL;
+  }
   if (good) return r;
   parameter_planes_free(r);
   return NULL;
@@ -702,5 +871,6 @@ void parameter_planes_free(parameter_planes *p) {
   free(p->smallest);
   free(p->largest);
   free(p->source);
+  clock_free(p->clock);
   free(p);
 }

@@ -31,8 +31,11 @@ typedef struct parameter_planes {
                      [directions * size], of laws of families [2 directions * size]; the mean where
                      there is no particle or bond */
   double *density;            /* [size] kg/m^3 of the particles; NULL where all have one */
-  double *smallest, *largest; /* [count] of the particles or bonds there are */
+  double *smallest, *largest; /* [count] of the particles or bonds there are, at all times */
   plane_source *source;       /* [count] */
+  bool changing;              /* some change in time */
+  double time;                /* s: of `value` */
+  struct plane_clock *clock;  /* how they change; NULL where none does */
   size_t plane_size;          /* doubles of one of `value` */
   size_t bytes;
 } parameter_planes;
@@ -47,6 +50,16 @@ parameter_planes *parameter_planes_new(const deck *k, int lattice, const deck_ma
                                        const rows *w, const unsigned char *own, const pl_law *law,
                                        double *parameters, const regional_values *regional,
                                        int regional_count, diagnostics *d);
+/* The values of a time (s), a function of it alone. Nothing is allocated, and what stays is not
+   touched. NULL is allowed. False where all stays. */
+bool parameter_planes_go_to(parameter_planes *p, double time);
+/* How one of them changes in time. */
+typedef enum plane_change { PLANE_STAYS, PLANE_CHANGES_ALIKE, PLANE_CHANGES } plane_change;
+plane_change parameter_planes_change(const parameter_planes *p, int plane);
+/* Times (s) up to `end` at which values that change are looked at before a run: evenly, and the
+   corners of tables. Returns how many; *times is to be freed. */
+int parameter_planes_times(const parameter_planes *p, double end, double **times);
+
 /* Tells values of other files from each other; 0 without a file. */
 uint64_t parameter_planes_fingerprint(const parameter_planes *p);
 void parameter_planes_free(parameter_planes *p);

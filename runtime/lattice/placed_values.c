@@ -5,7 +5,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/semantics/formula.h"
-#include "runtime/lattice/place_table.h"
+#include "runtime/lattice/place_grid.h"
 
 deck_placed placed_of_parameter(const deck_assignment *a, const pl_parameter *p) {
   deck_placed placed = *a->placed;
@@ -46,11 +46,28 @@ static bool look_up(const place_table *t, const rows *w, const int32_t *particle
   return true;
 }
 
+static bool interpolate(const place_table *t, const rows *w, const int32_t *particles, long count,
+                        span where, double *values, diagnostics *d) {
+  place_grid g;
+  bool good = place_grid_open(&g, t, where, d);
+  for (long k = 0; k < count && good; k++) {
+    double at[3];
+    rows_place(w, w->particle_site[particles[k]], at);
+    good = place_grid_holds(&g, at) ||
+           report(w, at, "the grid of the file does not reach to the particle at", where, d);
+    values[k] = good ? place_grid_at(&g, at) : 0;
+    if (good && !isfinite(values[k]))
+      good = report(w, at, "the file has no finite value for the particle at", where, d);
+  }
+  place_grid_free(&g);
+  return good;
+}
+
 static bool from_file(const deck_placed *p, const rows *w, const int32_t *particles, long count,
                       span where, double *values, diagnostics *d) {
   place_table t;
   const bool good = place_table_read(&t, p, w->dimensions, rows_largest_spacing(w), where, d) &&
-                    look_up(&t, w, particles, count, where, values, d);
+                    (p->grid ? interpolate : look_up)(&t, w, particles, count, where, values, d);
   place_table_free(&t);
   return good;
 }

@@ -80,6 +80,8 @@ static void free_list(neighbour_list *l) {
   free(l->neighbour);
   free(l->incoming);
   free(l->length);
+  free(l->alike);
+  free(l->way);
   for (int a = 0; a < 3; a++)
     free(l->chord[a]);
   free(l);

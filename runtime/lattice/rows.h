@@ -49,6 +49,8 @@ typedef struct neighbour_list {
   int32_t *neighbour; /* [2 directions][size] how much further the neighbour stands than the site */
   uint64_t *incoming; /* [size] bit k: bond k + directions exists */
   double *length, *chord[3]; /* [2 directions][size] m; of reference chords to the neighbours */
+  int32_t *alike; /* pl_family.alike and .way; NULL where particles stand on no lattice */
+  pl_way *way;
 } neighbour_list;
 
 enum { ROWS_CLASSES = 2, ROWS_MAX_NEIGHBOURS = 2 * PL_MAX_DIRECTIONS };

@@ -9,12 +9,15 @@
 #include "runtime/geometry/hilbert.h"
 #include "runtime/geometry/shape.h"
 #include "runtime/lattice/bond_numbers.h"
+#include "runtime/lattice/bond_ways.h"
+#include "runtime/lattice/list_lines.h"
+#include "runtime/lattice/list_ways.h"
 #include "runtime/lattice/shape_matrix.h"
 #include "runtime/particles/gradation.h"
 #include "runtime/particles/particle_set.h"
 #include "runtime/particles/site_marks.h"
 
-enum { ROW_SITES = 512, PITCH = ROW_SITES + PL_LANES };
+enum { ROW_SITES = 512 };
 
 /* --- particles to sites ----------------------------------------------------------------------- */
 
@@ -24,16 +27,16 @@ typedef struct builder {
   double *at[3];  /* [count] their places, in that order */
   point_cloud points;
   point_pairs pairs; /* of these */
+  bond_ways ways;    /* of these; without `of` where most have their own */
+  int32_t *site;     /* [count] of the particles in that order */
+  long pitch, row_count;
+  unsigned char *is_line; /* [row_count] the row is a line; NULL: there are none */
   rows *rows;
 } builder;
 
-static long site_of(long rank) {
-  return rank / ROW_SITES * PITCH + rank % ROW_SITES;
-}
-
 /* Where missing neighbours of the site stand. */
-static long absent_of(long site) {
-  return site / PITCH * PITCH + ROW_SITES;
+static long absent_of(const rows *w, long site) {
+  return site / w->pitch * w->pitch + w->pitch - 1;
 }
 
 static void order_points(builder *b) {
@@ -53,7 +56,10 @@ static void free_builder(builder *b) {
   for (int a = 0; a < 3; a++)
     free(b->at[a]);
   free(b->order);
+  free(b->site);
+  free(b->is_line);
   free(b->pairs.items);
+  bond_ways_free(&b->ways);
 }
 
 /* Summed along the curve: the same to the last bit for other numbers. */
@@ -114,14 +120,13 @@ static bool new_rows(builder *b, int numbers) {
   const scattered *from = b->from;
   const bool plane = from->points.dimensions == 2 && from->area == 0;
   const double measure = mean_measure(b);
-  const long row_count = (from->points.count + ROW_SITES - 1) / ROW_SITES;
   rows *w = b->rows = must_calloc(1, sizeof *w);
   *w = (rows){.infinite = {.dimensions = from->points.dimensions, .spacing = from->spacing},
               .dimensions = from->points.dimensions,
-              .row_count = (int)row_count,
-              .layer_rows = (int)row_count,
-              .pitch = PITCH,
-              .size = row_count * PITCH,
+              .row_count = (int)b->row_count,
+              .layer_rows = (int)b->row_count,
+              .pitch = b->pitch,
+              .size = b->row_count * b->pitch,
               .directions = numbers > 0 ? numbers : 1,
               .horizon = horizon_of(b),
               .spacing = from->spacing,
@@ -150,7 +155,7 @@ static void place_particles(builder *b) {
       at[a][q] = b->at[a][0];
   }
   for (long r = 0; r < w->particle_count; r++) {
-    const long site = site_of(r);
+    const long site = b->site[r];
     const int32_t particle = b->order[r];
     w->present[site] = 1;
     w->site_particle[site] = particle;
@@ -170,35 +175,51 @@ static void place_particles(builder *b) {
 static void clear_neighbours(rows *w) {
   for (long k = 0; k < 2 * w->directions; k++)
     for (long q = 0; q < w->size; q++) {
-      w->list->neighbour[k * w->size + q] = (int32_t)(absent_of(q) - q);
+      w->list->neighbour[k * w->size + q] = (int32_t)(absent_of(w, q) - q);
       w->list->length[k * w->size + q] = w->list->chord[0][k * w->size + q] = w->spacing;
     }
 }
 
-static void set_neighbour(rows *w, long here, long there, int number) {
+static void set_neighbour(rows *w, long here, long there, int number, const double chord[3],
+                          double sign) {
   const long slot = number * w->size + here;
-  double from[3], to[3], square = 0;
-  rows_place(w, here, from);
-  rows_place(w, there, to);
+  double square = 0;
   for (int a = 0; a < w->dimensions; a++) {
-    w->list->chord[a][slot] = to[a] - from[a];
-    square += (to[a] - from[a]) * (to[a] - from[a]);
+    w->list->chord[a][slot] = sign * chord[a];
+    square += chord[a] * chord[a];
   }
   w->list->length[slot] = sqrt(square);
   w->list->neighbour[slot] = (int32_t)(there - here);
 }
 
-static void join_neighbours(rows *w, const numbered_bond *bonds, long count) {
+/* From owner to other; that of its way, where there is one. */
+static void chord_of(const builder *b, long bond, long owner, long other, double chord[3]) {
+  const int way = b->ways.of ? abs(b->ways.of[bond]) - 1 : -1;
+  double from[3], to[3], along = 0;
+  rows_place(b->rows, owner, from);
+  rows_place(b->rows, other, to);
+  for (int a = 0; a < 3; a++) {
+    chord[a] = to[a] - from[a];
+    along += way < 0 ? 0 : chord[a] * b->ways.chord[way][a];
+  }
+  for (int a = 0; a < 3 && way >= 0; a++)
+    chord[a] = along < 0 ? -b->ways.chord[way][a] : b->ways.chord[way][a];
+}
+
+static void join_neighbours(builder *b, const numbered_bond *bonds) {
+  rows *w = b->rows;
   clear_neighbours(w);
-  for (long m = 0; m < count; m++) {
-    const long owner = site_of(bonds[m].owner), other = site_of(bonds[m].other);
+  for (long m = 0; m < b->pairs.count; m++) {
+    const long owner = b->site[bonds[m].owner], other = b->site[bonds[m].other];
     const uint64_t bit = UINT64_C(1) << bonds[m].number;
+    double chord[3];
+    chord_of(b, m, owner, other, chord);
     w->bonds[owner] |= bit;
     w->list->incoming[other] |= bit;
-    set_neighbour(w, owner, other, bonds[m].number);
-    set_neighbour(w, other, owner, bonds[m].number + w->directions);
+    set_neighbour(w, owner, other, bonds[m].number, chord, 1);
+    set_neighbour(w, other, owner, bonds[m].number + w->directions, chord, -1);
   }
-  w->bond_count = count;
+  w->bond_count = b->pairs.count;
 }
 
 typedef struct packed { /* a particle of a row, by the numbers of its bonds */
@@ -227,28 +248,91 @@ static void renumber(builder *b, const packed *p, int32_t *moved) {
       b->at[a][r] = b->from->points.at[a][order[r]];
 }
 
-/* Particles of a row that need as many numbers stand together: loops over some of them leave out
-   the numbers that none of these has. */
-static void pack_rows(builder *b, numbered_bond *bonds) {
-  const long count = b->points.count;
-  packed *p = must_alloc(((size_t)count + 1) * sizeof *p);
-  int32_t *moved = must_alloc(((size_t)count + 1) * sizeof *moved);
-  for (long r = 0; r < count; r++)
-    p[r] = (packed){(int32_t)r, 0};
-  for (long m = 0; m < b->pairs.count; m++) {
-    packed *const ends[] = {&p[bonds[m].owner], &p[bonds[m].other]};
-    for (int side = 0; side < 2; side++)
-      if (bonds[m].number > ends[side]->highest) ends[side]->highest = bonds[m].number;
-  }
-  for (long r = 0; r < count; r += ROW_SITES)
-    qsort(p + r, (size_t)(count - r < ROW_SITES ? count - r : ROW_SITES), sizeof *p, by_highest);
+/* Particles take their places p[] along the curve, and bonds go with them. */
+static void move_particles(builder *b, const packed *p, numbered_bond *bonds) {
+  int32_t *moved = must_alloc(((size_t)b->points.count + 1) * sizeof *moved);
   renumber(b, p, moved);
   for (long m = 0; m < b->pairs.count; m++) {
     bonds[m].owner = moved[bonds[m].owner];
     bonds[m].other = moved[bonds[m].other];
   }
-  free(p);
   free(moved);
+}
+
+/* The highest number that a particle has a bond of. */
+static void find_highest(const builder *b, const numbered_bond *bonds, int32_t *highest) {
+  for (long m = 0; m < b->pairs.count; m++) {
+    int32_t *const ends[] = {&highest[bonds[m].owner], &highest[bonds[m].other]};
+    for (int side = 0; side < 2; side++)
+      if (bonds[m].number > *ends[side]) *ends[side] = bonds[m].number;
+  }
+}
+
+/* Particles of a row that need as many numbers stand together: loops over some of them leave out
+   the numbers that none of these has. */
+static void pack_rows(builder *b, numbered_bond *bonds) {
+  const long count = b->points.count;
+  packed *p = must_alloc(((size_t)count + 1) * sizeof *p);
+  int32_t *highest = must_calloc((size_t)count + 1, sizeof *highest);
+  find_highest(b, bonds, highest);
+  for (long r = 0; r < count; r++)
+    p[r] = (packed){(int32_t)r, highest[r]};
+  for (long r = 0; r < count; r += ROW_SITES)
+    qsort(p + r, (size_t)(count - r < ROW_SITES ? count - r : ROW_SITES), sizeof *p, by_highest);
+  move_particles(b, p, bonds);
+  free(highest);
+  free(p);
+}
+
+static void place_in_rows(builder *b) {
+  b->pitch = ROW_SITES + PL_LANES;
+  b->row_count = (b->points.count + ROW_SITES - 1) / ROW_SITES;
+  for (long r = 0; r < b->points.count; r++)
+    b->site[r] = (int32_t)(r / ROW_SITES * b->pitch + r % ROW_SITES);
+}
+
+/* --- lines as rows ---------------------------------------------------------------------------- */
+
+static void stand_in_lines(builder *b, const list_lines *l, numbered_bond *bonds) {
+  const size_t count = (size_t)b->points.count + 1;
+  packed *p = must_calloc(count, sizeof *p);
+  int32_t *highest = must_calloc(count, sizeof *highest);
+  for (long r = 0; r < b->points.count; r++)
+    p[r].rank = l->order[r];
+  move_particles(b, p, bonds);
+  find_highest(b, bonds, highest);
+  b->pitch = l->pitch;
+  b->row_count = list_lines_place(l, highest, b->ways.common, b->site, &b->is_line);
+  free(highest);
+  free(p);
+}
+
+/* Particles with bonds that go no common way. */
+static long count_aside(const builder *b, const numbered_bond *bonds) {
+  int32_t *highest = must_calloc((size_t)b->points.count + 1, sizeof *highest);
+  long aside = 0;
+  find_highest(b, bonds, highest);
+  for (long r = 0; r < b->points.count; r++)
+    aside += highest[r] >= b->ways.common;
+  free(highest);
+  return aside;
+}
+
+/* Where most bonds go common ways and lines pay: bonds by their ways, particles in lines. Returns
+   how many numbers there are, or 0: nothing is done. */
+static int line_up(builder *b, numbered_bond *bonds) {
+  if (!bond_ways_find(&b->points, &b->pairs, b->from->spacing, &b->ways)) return 0;
+  int numbers = bond_numbers_by_ways(&b->pairs, b->points.count, &b->ways, bonds);
+  if (numbers > 0) {
+    list_lines l = list_lines_find(&b->ways, &b->points, b->from->spacing);
+    if (list_lines_pay(&l, b->points.count, count_aside(b, bonds)))
+      stand_in_lines(b, &l, bonds);
+    else
+      numbers = 0;
+    list_lines_free(&l);
+  }
+  if (numbers == 0) bond_ways_free(&b->ways);
+  return numbers;
 }
 
 static int by_rank(const void *a, const void *b) {
@@ -306,12 +390,18 @@ rows *scattered_rows(const scattered *from, long *crowded) {
     return NULL;
   }
   numbered_bond *bonds = must_alloc(((size_t)b.pairs.count + 1) * sizeof *bonds);
-  const int numbers = bond_numbers(&b.pairs, b.points.count, bonds);
-  pack_rows(&b, bonds);
+  b.site = must_alloc(((size_t)b.points.count + 1) * sizeof *b.site);
+  int numbers = line_up(&b, bonds);
+  if (numbers == 0) {
+    numbers = bond_numbers(&b.pairs, b.points.count, bonds);
+    pack_rows(&b, bonds);
+    place_in_rows(&b);
+  }
   const bool good = new_rows(&b, numbers);
   if (good) {
     place_particles(&b);
-    join_neighbours(b.rows, bonds, b.pairs.count);
+    join_neighbours(&b, bonds);
+    if (b.is_line) list_ways_find(b.rows, b.is_line);
   } else {
     rows_free(b.rows);
     b.rows = NULL;

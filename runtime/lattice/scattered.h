@@ -1,7 +1,8 @@
 /* Particles that stand anywhere, as rows (rows.h) with explicit neighbours. Sites follow a Hilbert
    curve, so that those of a row are near each other; a row has 512 of them, whatever the threads,
-   and some absent ones at its end: the first of these is where neighbours lead that are not there.
-   Particles keep the numbers that they come with, which are those of results.
+   and some absent ones at its end: the last of these is where neighbours lead that are not there.
+   Where most stand on a lattice, rows are its lines instead (list_lines.h). Particles keep the
+   numbers that they come with, which are those of results.
 
    Forces and everything else that depends on the order of sites and bonds does not depend on those
    numbers. */

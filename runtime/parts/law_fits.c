@@ -3,6 +3,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "runtime/analysis/material.h"
 #include "runtime/deck/group_monitor.h"
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/mesh/element_modes.h"
@@ -150,6 +151,13 @@ static bool cracks_fit(const pl_law *law, const deck *k, const deck_mesh *m, dia
   return true;
 }
 
+/* All that differs in space is what the law declares as fields. */
+static bool all_are_given(const pl_law *law) {
+  for (int k = 0; k < law->varying_count; k++)
+    if (!material_is_given(law, law->varying[k])) return false;
+  return true;
+}
+
 /* What meshes do not do as yet, and what of the deck would have to be done. */
 static bool mesh_can_have(const pl_law *law, const deck_material *of, span where, const deck *k,
                           int lattice, diagnostics *d) {
@@ -171,11 +179,11 @@ static bool mesh_can_have(const pl_law *law, const deck_material *of, span where
     why = "a material between two regions, as it has no bonds;";
   }
   for (int n = 0; n < k->field_count && !item; n++)
-    if (k->fields[n].lattice && strcmp(k->fields[n].lattice, m->name) == 0) {
+    if (k->fields[n].random && k->fields[n].lattice && strcmp(k->fields[n].lattice, m->name) == 0) {
       item = &k->fields[n].item;
       why = "a random field";
     }
-  if (!item && law->varying_count > 0) {
+  if (!item && !all_are_given(law)) {
     item = of ? &of->item : &k->materials[deck_find_material(k, m->name)].item;
     why = "parameters that differ from place to place";
   }

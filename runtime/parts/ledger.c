@@ -26,6 +26,11 @@ const char *ledger_unchecked(const pl_law *law, bool kept) {
              : "the law does not say what it takes";
 }
 
+const char *ledger_why(const ledger_laws *of) {
+  if (of->unchecked) return of->unchecked;
+  return of->given ? "a field changes in time, and gives or takes energy" : NULL;
+}
+
 void ledger_add_law(ledger_laws *of, const pl_law *law, bool kept) {
   if (!of->unchecked) of->unchecked = ledger_unchecked(law, kept);
   of->families = of->families || law->kind == PL_STATE;
@@ -49,7 +54,7 @@ static bool is_sound(const ledger *g, const ledger_laws *of, double step, const 
 
 static double imbalance(const ledger *g, const ledger_laws *of, const double *terms) {
   const double held = terms[LEDGER_KINETIC] + terms[LEDGER_STORED];
-  if (of->unchecked) return NAN;
+  if (ledger_why(of)) return NAN;
   return terms[LEDGER_EXTERNAL] - (held - g->initial) - terms[LEDGER_DISSIPATED_DAMAGE] -
          terms[LEDGER_DISSIPATED_DAMPING];
 }

@@ -29,7 +29,8 @@
    dissipated_damage is then the work done against the forces of the bonds, -f (v- + v+)/2 dt for
    each step and half of it for step n, less the change of the stored energy. It holds all that the
    law takes, its dampers too, and the error of the steps; the imbalance would be 0 by definition,
-   and is NaN. */
+   and is NaN. So it is where a field that the law reads changes in time: what is stored changes
+   with it, and what the field gives or takes is just what is missing in the balance. */
 #ifndef PERILAT_RUNTIME_LEDGER_H
 #define PERILAT_RUNTIME_LEDGER_H
 
@@ -77,7 +78,10 @@ typedef struct ledger_laws {
   bool families;         /* some are laws of families */
   bool silent;           /* some say nothing of what they store */
   bool reads_rates;
+  bool given; /* fields that they read change in time, and give or take energy (not counted) */
 } ledger_laws;
+/* Why the imbalance says nothing; NULL where it does. */
+const char *ledger_why(const ledger_laws *of);
 void ledger_add_law(ledger_laws *of, const pl_law *law, bool kept);
 
 /* Terms of the state observed last. False where the steps make energy. With the velocity v of the

@@ -27,7 +27,7 @@
 
 static bool has_field(const deck *k, const char *lattice) {
   for (int f = 0; f < k->field_count; f++)
-    if (strcmp(k->fields[f].lattice, lattice) == 0) return true;
+    if (k->fields[f].random && strcmp(k->fields[f].lattice, lattice) == 0) return true;
   return false;
 }
 
@@ -45,6 +45,14 @@ static bool open_planes(const run_body *b, run_law *l, const deck *k, diagnostic
   l->planes = parameter_planes_new(k, b->lattice, m, l->rows, l->own, l->law, l->parameters,
                                    l->regional, l->regional_count, d);
   return l->planes != NULL;
+}
+
+void run_body_go_to(run_body *b, double time) {
+  for (int n = 0; n < b->law_count; n++) {
+    const run_law *l = &b->laws[n];
+    if (parameter_planes_go_to(l->planes, time) && b->cells && l->state)
+      cells_give(l->state, l->planes->value);
+  }
 }
 
 static bool all_have_parameters(const run_body *b) {
@@ -168,12 +176,59 @@ static bool is_isotropic(const run_body *b, diagnostics *d) {
   return false;
 }
 
-static void give_laws(const run_body *b) {
+/* Where the law is stiffest at rest between the smallest and the largest values that it is given:
+   `values` of these; so many looks at each. */
+static void take_stiffest(const run_body *b, int number, double *values) {
+  const run_law *l = &b->laws[number];
+  const int fields = l->law->varying_count, looks = fields == 1 ? 17 : fields == 2 ? 9 : 3;
+  const size_t bytes = ((size_t)l->law->parameter_count + 1) * sizeof(double);
+  double *now = must_alloc(bytes), most = -INFINITY;
+  long cases = 1;
+  for (int k = 0; k < fields && cases < 1000; k++)
+    cases *= looks;
+  memcpy(now, values, bytes);
+  for (long n = 0; n < cases; n++) {
+    double D[3][3];
+    long rest = n;
+    for (int k = 0; k < fields; k++, rest /= looks)
+      now[l->law->varying[k]] =
+          l->planes->smallest[k] +
+          (l->planes->largest[k] - l->planes->smallest[k]) * (double)(rest % looks) / (looks - 1);
+    point_forces_rest(&b->cells->mesh, cell_laws_own(&b->cells->where, number), l->law, now, false,
+                      D);
+    const double trace = D[0][0] + D[1][1] + D[2][2];
+    if (!(trace > most)) continue;
+    most = trace;
+    memcpy(values, now, bytes);
+  }
+  free(now);
+}
+
+/* Cells ask how stiff points are at rest: of a law that is given fields where it is stiffest. */
+static void give_laws(run_body *b) {
   cells_law *laws = must_calloc((size_t)b->law_count, sizeof *laws);
-  for (int n = 0; n < b->law_count; n++)
-    laws[n] = (cells_law){b->laws[n].law, b->laws[n].parameters};
+  for (int n = 0; n < b->law_count; n++) {
+    run_law *l = &b->laws[n];
+    const size_t bytes = ((size_t)l->law->parameter_count + 1) * sizeof(double);
+    laws[n] = (cells_law){l->law, l->parameters};
+    if (!l->planes || l->law->varying_count == 0) continue;
+    l->stiffest = must_alloc(bytes);
+    memcpy(l->stiffest, l->parameters, bytes - sizeof(double));
+    take_stiffest(b, n, l->stiffest);
+    laws[n].parameters = l->stiffest;
+  }
   cells_take_laws(b->cells, laws);
   free(laws);
+}
+
+/* Points have what is given at the nodes. */
+static void give_points(run_body *b) {
+  for (int n = 0; n < b->law_count; n++) {
+    run_law *l = &b->laws[n];
+    if (!l->planes || l->law->varying_count == 0) continue;
+    l->state->parameter = l->planes->value;
+    cells_give(l->state, l->planes->value);
+  }
 }
 
 static bool cracks_suit_laws(const run_body *b, const deck *k, diagnostics *d) {
@@ -209,9 +264,8 @@ static bool find_limit_of_cells(run_body *b, const deck *k, diagnostics *d) {
   return step_limit_check(k, law_fits_where(k, b->lattice), b->law, &b->limit, d);
 }
 
-static bool find_limit(run_body *b, const deck *k, diagnostics *d) {
+static bool find_limit_now(run_body *b, const deck *k, diagnostics *d) {
   const run_law *l = &b->laws[0];
-  if (b->cells) return b->loads && find_limit_of_cells(b, k, d);
   if (b->law_count == 1)
     return step_limit_of(k, b->lattice, l->law, l->parameters, l->planes, b->lattice_rows,
                          &b->limit, d);
@@ -220,6 +274,38 @@ static bool find_limit(run_body *b, const deck *k, diagnostics *d) {
   free(laws);
   l = law_at_fault(b);
   return step_limit_check(k, deck_where(&l->from->material->item, "model"), l->law, &b->limit, d);
+}
+
+static const parameter_planes *changing_planes(const run_body *b) {
+  for (int n = 0; n < b->law_count; n++)
+    if (b->laws[n].planes && b->laws[n].planes->changing) return b->laws[n].planes;
+  return NULL;
+}
+
+/* Fields that change in time make the body stiffer or softer: the least of some times counts. */
+static bool find_limit_in_time(run_body *b, const deck *k, diagnostics *d) {
+  enum { LOOKS = 8 };
+  double *times;
+  const int count = parameter_planes_times(changing_planes(b), k->simulation.end_time, &times);
+  const int apart = count > LOOKS ? count / LOOKS : 1;
+  step_limit least = b->limit;
+  bool good = true;
+  for (int n = apart; n < count && good; n += apart) {
+    run_body_go_to(b, times[n]);
+    b->limit = (step_limit){0};
+    good = find_limit_now(b, k, d);
+    if (good && b->limit.limit < least.limit) least = b->limit;
+  }
+  free(times);
+  run_body_go_to(b, 0);
+  b->limit = least;
+  return good;
+}
+
+static bool find_limit(run_body *b, const deck *k, diagnostics *d) {
+  if (b->cells) return b->loads && find_limit_of_cells(b, k, d);
+  if (!find_limit_now(b, k, d)) return false;
+  return !changing_planes(b) || find_limit_in_time(b, k, d);
 }
 
 /* Of the nodes of a mesh with several laws. */
@@ -608,6 +694,7 @@ static void open_state(run_body *b, const deck *k, double step) {
     for (int n = 0; n < b->law_count; n++)
       b->laws[n].state = states[n];
     free(states);
+    give_points(b);
     return;
   }
   if (b->law_count == 1 && !run_body_is_link(b)) {
@@ -644,6 +731,7 @@ bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d) {
     b->laws[n].bonds = rows_bonds(b->laws[n].rows);
     ledger_add_law(&b->energies, b->laws[n].law, k->output.losses);
   }
+  b->energies.given = changing_planes(b) != NULL;
   mark_loaded(b);
   open_state(b, k, step);
   b->body = b->state->body;
@@ -707,6 +795,7 @@ void run_body_free(run_body *b) {
   sweep_free(b->state);
   for (int n = 0; n < b->law_count; n++) {
     parameter_planes_free(b->laws[n].planes);
+    free(b->laws[n].stiffest);
     free(b->laws[n].bonds);
   }
   law_parts_free(b->parts, b->law_count);

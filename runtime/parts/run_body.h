@@ -25,6 +25,8 @@ typedef struct run_law { /* a law at work on a body: an interaction of the run *
   const regional_values *regional; /* [regional_count] the caller's */
   int regional_count;
   parameter_planes *planes; /* what differs in space; NULL without */
+  double
+      *stiffest; /* of a mesh whose law is given fields: where it is stiffest at rest, else NULL */
   const rows *rows;         /* the body's, with the bonds that the law has a part in */
   const unsigned char *own; /* [size] 1 where a particle is of this law; NULL of the only one */
   const double *share;      /* as sweep.share */
@@ -89,6 +91,8 @@ static inline long run_body_particles(const run_body *b) {
    parameters may be missing where they are wrong themselves: then the deck is checked as far as it
    does not depend on them. */
 bool run_body_open(run_body *b, const deck *k, rows **built, diagnostics *d);
+/* What the laws are given in place and time, at that time (s). */
+void run_body_go_to(run_body *b, double time);
 /* The state at rest, with the step that the run takes. False with a diagnostic where it cannot
    begin so. */
 bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d);

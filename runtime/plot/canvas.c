@@ -126,13 +126,25 @@ const char *readable_unit(const char *si_unit, double largest, double *factor) {
   static const struct {
     const char *si, *shown;
     double factor, from; /* used for largest values of at least `from` (SI) */
-  } table[] = {
-      {"m", "m", 1, 0.5},       {"m", "mm", 1e3, 5e-4}, {"m", "µm", 1e6, 0},
-      {"N", "MN", 1e-6, 1e6},   {"N", "kN", 1e-3, 1e3}, {"N", "N", 1, 0},
-      {"J", "MJ", 1e-6, 1e6},   {"J", "kJ", 1e-3, 1e3}, {"J", "J", 1, 0.5},
-      {"J", "mJ", 1e3, 5e-4},   {"J", "µJ", 1e6, 0},    {"s", "s", 1, 0.5},
-      {"s", "ms", 1e3, 5e-4},   {"s", "µs", 1e6, 0},    {"Pa", "GPa", 1e-9, 1e9},
-      {"Pa", "MPa", 1e-6, 1e5}, {"Pa", "Pa", 1, 0},     {"Pa*m^(1/2)", "MPa√m", 1e-6, 1e4}};
+  } table[] = {{"m", "m", 1, 0.5},
+               {"m", "mm", 1e3, 5e-4},
+               {"m", "µm", 1e6, 0},
+               {"N", "MN", 1e-6, 1e6},
+               {"N", "kN", 1e-3, 1e3},
+               {"N", "N", 1, 0},
+               {"J", "MJ", 1e-6, 1e6},
+               {"J", "kJ", 1e-3, 1e3},
+               {"J", "J", 1, 0.5},
+               {"J", "mJ", 1e3, 5e-4},
+               {"J", "µJ", 1e6, 0},
+               {"s", "s", 1, 0.5},
+               {"s", "ms", 1e3, 5e-4},
+               {"s", "µs", 1e6, 0},
+               {"Pa", "GPa", 1e-9, 1e9},
+               {"Pa", "MPa", 1e-6, 1e5},
+               {"Pa", "Pa", 1, 0},
+               {"Pa*m^(1/2)", "MPa√m", 1e-6, 1e4},
+               {"Pa*sqrt(m)", "MPa√m", 1e-6, 1e4}};
   for (size_t k = 0; k < sizeof table / sizeof *table; k++)
     if (strcmp(table[k].si, si_unit) == 0 && largest >= table[k].from) {
       *factor = table[k].factor;

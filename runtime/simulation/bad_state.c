@@ -211,6 +211,7 @@ void bad_search_velocity(bad_search *s) {
                          .interaction = (int)(s->law - s->bodies[0].laws),
                          .step = (long)s->clock->at.step,
                          .time = run_clock_time(s->clock),
+                         .advance = s->of->body->advance,
                          .particle = in_results(s, particle),
                          .bond_particle = -1};
   rows_place(s->of->lattice_rows, at->bad_site, s->found.place);

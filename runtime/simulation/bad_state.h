@@ -26,7 +26,7 @@ typedef struct bad_neighbour {  /* of a law of families */
 typedef struct bad_state {
   int body, interaction; /* of the run */
   long step;
-  double time;
+  double time, advance; /* s; `dt` of laws in the step */
   long particle;
   double place[3];                                /* m; in the plane [2] is 0 */
   long bond_particle;                             /* partner of the first bad bond, or -1 */

@@ -7,6 +7,7 @@
 #include <strings.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/analysis/material.h"
 #include "runtime/analysis/particle_tensors.h"
 #include "runtime/continuum/crack_paths.h"
 #include "runtime/continuum/node_fields.h"
@@ -144,7 +145,8 @@ static void values_of_cell_output(const frames_of *of, const frame_source *from,
 static void values_of_parameter(const frames_of *of, const frame_source *from, double *values) {
   const bool density = is_density(of->law->law, from->index);
   const double *array = density ? of->law->planes->density : of->law->state->parameter[from->index];
-  if (density || of->law->law->varying_place == PL_ON_PARTICLE)
+  const pl_law *law = of->law->law;
+  if (density || law->varying_place == PL_ON_PARTICLE || law->kind == PL_CONTINUUM)
     law_site_values(of, array, values);
   else
     bond_values(of, array, values);
@@ -559,7 +561,7 @@ static bool varies(const pl_law *law, int parameter) {
 
 /* Beside other laws one that is the same everywhere is worth a field. */
 static bool is_field(const run_law *of, int parameter) {
-  return of->own || varies(of->law, parameter);
+  return of->own || varies(of->law, parameter) || material_is_given(of->law, parameter);
 }
 
 static void add_parameter(frame_set *f, int n, int parameter, values_of *values, int index) {

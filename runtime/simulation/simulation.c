@@ -579,7 +579,7 @@ char *simulation_series_words(const simulation *s, int k, arena *a) {
 int simulation_imbalance(const simulation *s, const char **unchecked) {
   *unchecked = NULL;
   for (int b = 0; b < s->body_count && !*unchecked; b++)
-    *unchecked = s->bodies[b].energies.unchecked;
+    *unchecked = ledger_why(&s->bodies[b].energies);
   return history_imbalance(&s->history, -1);
 }
 
@@ -590,7 +590,7 @@ double simulation_largest_energy(const simulation *s) {
 bool simulation_judges(const simulation *s, int series, const char **unchecked) {
   if (series == simulation_imbalance(s, unchecked)) return true;
   for (int b = 0; b < s->body_count; b++) {
-    *unchecked = s->bodies[b].energies.unchecked;
+    *unchecked = ledger_why(&s->bodies[b].energies);
     if (series == history_imbalance(&s->history, b)) return true;
   }
   *unchecked = NULL;

@@ -70,6 +70,7 @@ static void add_state(part_list *l, const run_body *of) {
   add_part(l, "dissipated_mass", w->body->row_mass, row);
   add_part(l, "internal", w->body->row_internal, row);
   add_part(l, "decay", &w->body->decay, sizeof(double));
+  add_part(l, "time of the states", &w->body->reached, sizeof(double));
   if (!of->cells) return;
   cells_memory m = cells_remembered(of->state);
   add_cells(l, &m, of->cells->tips);

@@ -132,11 +132,14 @@ static bool some_body_is_bad(const simulation *s) {
   return false;
 }
 
-/* The deck's time of the present places, for the laws. */
+/* The deck's time of the present places, for the laws, how far it has gone on from that of their
+   states, and what they are given then. */
 static void set_time(simulation *s) {
   for (int b = 0; b < s->body_count; b++) {
     body *of = s->bodies[b].body;
     of->time = load_clock_time(&s->bodies[b].loads->clock, of, parts_done(s));
+    of->advance = of->time - of->reached;
+    run_body_go_to(&s->bodies[b], of->time);
   }
 }
 
@@ -195,6 +198,7 @@ static void after_moving(simulation *s) {
   }
   for (int b = 0; b < s->body_count; b++) {
     sweep_turn(s->bodies[b].state);
+    s->bodies[b].body->reached = s->bodies[b].body->time;
     load_steps_turn(s->bodies[b].loads, s->bodies[b].body, parts_done(s));
   }
   run_clock_go_on(&s->clock);
@@ -251,11 +255,32 @@ static void look_at_cells(simulation *s) {
   }
 }
 
+/* Kinds of monitors that read places, velocities, forces and damage of the state observed. */
+static const uint64_t READ_FORCES =
+    UINT64_C(1) << MONITOR_REACTION | UINT64_C(1) << MONITOR_REACTIONS |
+    UINT64_C(1) << MONITOR_APPLIED | UINT64_C(1) << MONITOR_DISPLACEMENT |
+    UINT64_C(1) << MONITOR_VELOCITY | UINT64_C(1) << MONITOR_ACCELERATION |
+    UINT64_C(1) << MONITOR_OPENING | UINT64_C(1) << MONITOR_DAMAGED | UINT64_C(1) << MONITOR_BROKEN;
+
+/* Nobody wants energies, or what the law says beside. A frame looks once more. */
+static bool wants_forces_alone(const simulation *s) {
+  bool alone = !s->deck->output.energy && !s->relaxation;
+  for (int k = 0; k < s->deck->monitor_count; k++)
+    alone = alone && (READ_FORCES >> s->deck->monitors[k].kind & 1) != 0;
+  return alone;
+}
+
+static void look_for_forces_alone(simulation *s, bool alone) {
+  for (int b = 0; b < s->body_count; b++)
+    s->bodies[b].body->forces_alone = alone;
+}
+
 static void after_observing(simulation *s) {
   look_at_loads(s);
   look_at_cells(s);
   s->observe = false;
-  s->observed_step = s->clock.at.step;
+  s->observed_step = wants_forces_alone(s) ? -1 : s->clock.at.step;
+  look_for_forces_alone(s, false);
   if (s->relaxation && s->clock.at.step > 0) {
     end_increment(s);
     return;
@@ -324,6 +349,7 @@ static int next_task(simulation *s) {
   set_time(s);
   for (int b = 0; b < s->body_count; b++)
     s->bodies[b].body->timed = s->profile && !s->observe;
+  if (s->observe) look_for_forces_alone(s, wants_forces_alone(s));
   return s->observe ? first_of_observing(s) : s->go_on ? 0 : TEAM_END;
 }
 

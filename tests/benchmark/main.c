@@ -1,7 +1,7 @@
 /* The benchmark: ratios of programs that compute the same thing, taken in turn in one process,
    medians of at least five rounds. Prints tables and writes a flat object of named figures.
 
-   benchmark [--parts bonds,families,meshes,points,runs,lammps] [result.json] */
+   benchmark [--parts bonds,families,meshes,points,growth,runs,lammps] [result.json] */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,7 +16,8 @@ typedef struct part {
 
 static const part parts[] = {{"bonds", benchmark_bonds},   {"families", benchmark_families},
                              {"meshes", benchmark_meshes}, {"points", benchmark_points},
-                             {"runs", benchmark_runs},     {"lammps", benchmark_lammps}};
+                             {"growth", benchmark_growth}, {"runs", benchmark_runs},
+                             {"lammps", benchmark_lammps}};
 enum { PARTS = sizeof parts / sizeof *parts };
 
 static void name_machine(figures *f) {
@@ -60,6 +61,10 @@ static const aim aims[] = {
      0.95},
     {"von_mises_generated_of_handwritten", "von_mises, plane strain, of hand-written", true, 0.85,
      0.95},
+    {"cohesive_hexagon_growth_0_times_everywhere", "cohesive, exponential, nothing grows", true,
+     1.5, 1.5},
+    {"mazars_plane_stress_growth_5_times_everywhere", "mazars, plane stress, 5 % grow", true, 1.5,
+     1.5},
     {"mplm_bilinear_generated_times_naive", "mplm_bilinear, times naive", true, 10, 15},
     {"splm_concrete_generated_times_naive", "splm_concrete, times naive", true, 10, 15},
     {"splm_elastic_hexagon_generated_times_naive", "splm_elastic, times naive", true, 10, 15},
@@ -72,6 +77,8 @@ static const aim aims[] = {
      3},
     {"lps_cubic_generated_times_list", "lps, 122 neighbours, times list", true, 2.5, 3},
     {"threads_2_over_1", "two threads over one", true, 1.7, 1.85},
+    {"threads_2_over_1_8000_particles", "two threads over one, 8000 particles", true, 1.7, 1.85},
+    {"threads_2_over_1_1000_particles", "two threads over one, 1000 particles", true, 1.3, 1.3},
     {"mplm_bilinear_share_of_triad", "share of the triad, two threads", true, 0.6, 0.8},
     {"mplm_bilinear_bytes_per_particle", "bytes a particle", false, 120, 80},
     {"mplm_bilinear_law_to_kernel_seconds", "mplm_bilinear, law to loaded kernel, s", false, 0.6,
@@ -80,6 +87,8 @@ static const aim aims[] = {
      0.3},
     {"frame_every_1000_steps", "a frame every 1000 steps", false, 0.05, 0.02},
     {"monitors_overhead", "monitors", false, 0.05, 0.02},
+    {"splm_concrete_sample_of_monitors_in_steps", "a sample of splm_concrete, in steps", false, 1,
+     0.5},
     {"mplm_bilinear_of_fast_math", "mplm_bilinear, of -ffast-math", true, 0.85, 0.92},
     {"splm_elastic_of_fast_math", "splm_elastic, of -ffast-math", true, 0.85, 0.92}};
 

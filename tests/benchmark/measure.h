@@ -45,6 +45,7 @@ bool benchmark_bonds(figures *f);
 bool benchmark_families(figures *f);
 bool benchmark_meshes(figures *f);
 bool benchmark_points(figures *f);
+bool benchmark_growth(figures *f);
 bool benchmark_runs(figures *f);
 bool benchmark_lammps(figures *f);
 

@@ -129,7 +129,7 @@ static bool measure_case(figures *f, const mesh_case *of) {
   const cells *c = simulation_cells(linear->run, 0);
   const body *moved = simulation_state(linear->run, 0)->body;
   const double *const u[2] = {moved->displacement[0], moved->displacement[1]};
-  const point_motion motion = {u, u, 0, 1e-9};
+  const point_motion motion = {u, u, 0, 1e-9, 0};
   pl_law any = *linear->law.law;
   any.linear = 0;
   point_forces *of_elastic = point_forces_new(&c->mesh, NULL, &c->points, &any,

@@ -93,7 +93,7 @@ static void rest(loaded *l) {
 /* Forces and new states, by so many threads. */
 static void find(loaded *l, int threads) {
   const double *const u[2] = {l->u[0], l->u[1]};
-  const point_motion at = {u, u, 0, 1e-9};
+  const point_motion at = {u, u, 0, 1e-9, 0};
   const int count = l->cells->mesh.nodes[1];
 #pragma omp parallel num_threads(threads) if (threads > 1)
   for (int take = 0; take < 2; take++) {

@@ -81,6 +81,27 @@ static void measure_threads(figures *f) {
   trial_close(t[1]);
 }
 
+/* Of small bodies; by the least of many short bursts in turn, since what others take from the
+   machine counts for much there. */
+static void measure_threads_of_few(figures *f, double particles, const char *name) {
+  enum { BURSTS = 400 };
+  static const double burst = 1e-3; /* s */
+  double least[2] = {INFINITY, INFINITY};
+  trial *t[2] = {open_plate(particles, LAW, steady, ""), open_plate(particles, LAW, on_two, "")};
+  long steps = 20;
+  for (int round = 0; round < BURSTS; round++)
+    for (int k = 0; k < 2; k++) {
+      const double begun = wall_seconds();
+      advance(t[k], steps);
+      least[k] = fmin(least[k], (wall_seconds() - begun) / (double)steps);
+      if (round < 10 && k == 0) steps = (long)(burst / least[0]) + 1;
+    }
+  printf("  two threads against one, %-33s %8.2f\n", name, least[0] / least[1]);
+  figures_add(f, least[0] / least[1], "threads_2_over_1_%.0f_particles", particles);
+  trial_close(t[0]);
+  trial_close(t[1]);
+}
+
 /* --- memory and arithmetic -------------------------------------------------------------------- */
 
 /* What a step must move for a particle of a law of bonds while no damage grows: displacements,
@@ -286,6 +307,33 @@ static void measure_sampling(figures *f) {
     trial_close(t[k]);
 }
 
+/* What a sample costs, in steps without one: runs that sample in each step beside runs that do not;
+   of monitors alone, and of these and the energies. */
+static void measure_sample(figures *f, const char *name) {
+  static const char *const some = "end_time = 0.2 step = '0.4 us' threads = 1";
+  static const char *const monitors =
+      "&support region = 'left' fix = 'x' /\n"
+      "&monitor name = 'load' kind = 'reaction' region = 'left' component = 'x' /\n"
+      "&monitor name = 'opening' kind = 'opening' between = 'left', 'right' component = 'x' /\n";
+  static const struct {
+    const char *key, *keys;
+  } kinds[] = {{"monitors", "energy = .false."}, {"energies", "energy = .true."}};
+  for (int k = 0; k < 2; k++) {
+    char groups[2][TEXT];
+    double median[2];
+    snprintf(groups[0], TEXT, "%s&output %s sample = '1 ms' /", monitors, kinds[k].keys);
+    snprintf(groups[1], TEXT, "%s&output %s sample = '0.4 us' /", monitors, kinds[k].keys);
+    trial *t[2] = {open_plate(FRAME_PLATE, name, some, groups[0]),
+                   open_plate(FRAME_PLATE, name, some, groups[1])};
+    take_turns(t, 2, processor_seconds, median);
+    printf("  a sample of %s, in steps, %-30s %8.2f\n", kinds[k].key, name,
+           median[1] / median[0] - 1);
+    figures_add(f, median[1] / median[0] - 1, "%s_sample_of_%s_in_steps", name, kinds[k].key);
+    trial_close(t[0]);
+    trial_close(t[1]);
+  }
+}
+
 /* --- reproducible arithmetic ------------------------------------------------------------------ */
 
 /* The same C, allowed to reorder and to fuse. */
@@ -327,6 +375,8 @@ bool benchmark_runs(figures *f) {
   if (!mkdtemp(folder)) give_up("no folder for runs");
   printf("\nRuns (%s where nothing else is said)\n", LAW);
   measure_threads(f);
+  measure_threads_of_few(f, 8000, "8000 particles, least times");
+  measure_threads_of_few(f, 1000, "1000 particles, least times");
   measure_memory(f);
   measure_arithmetic(f);
   measure_sizes(f);
@@ -335,6 +385,9 @@ bool benchmark_runs(figures *f) {
   measure_start(f, folder);
   measure_frames(f, folder);
   measure_sampling(f);
+  measure_sample(f, LAW);
+  measure_sample(f, "splm_concrete");
+  measure_sample(f, "splm_elastic");
   measure_fast_math(f, LAW, folder);
   measure_fast_math(f, "splm_elastic", folder);
   remove_folder(folder);

@@ -7,9 +7,10 @@
 
 #include "dsl/semantics/law_variant.h"
 #include "generator/kernel/material_law.h"
+#include "generator/plan/plan.h"
 #include "generator/run/run.h"
-#include "runtime/deck/deck_read.h"
 #include "runtime/analysis/material.h"
+#include "runtime/deck/deck_read.h"
 #include "tests/benchmark/measure.h"
 
 void trial_plate_text(char *text, size_t size, double particles, const char *model_name,
@@ -62,7 +63,20 @@ double *trial_parameters(trial *t, const pl_law *kernel) {
   return parameters;
 }
 
+/* The same law once more, which computes everywhere what it needs only where something grows. */
+static void plan_everywhere(model *m) {
+  const law_variation v = {.everywhere = true};
+  const bool families = plan_is_of_families(m->plan);
+  plan_free(m->plan);
+  m->plan = NULL;
+  if (!(families ? model_plan_of_families : model_plan_varying)(m, &v)) give_up("no plan");
+}
+
 trial *trial_open(const char *deck_text) {
+  return trial_open_kernel(deck_text, false);
+}
+
+trial *trial_open_kernel(const char *deck_text, bool everywhere) {
   char error[4096];
   const char *note = NULL;
   trial *t = must_calloc(1, sizeof *t);
@@ -77,6 +91,7 @@ trial *trial_open(const char *deck_text) {
       diag_print(&t->said, stderr);
       give_up("the law of a deck cannot be used");
     }
+    if (everywhere) plan_everywhere(&t->model);
     t->law.law = model_kernel(&t->model, false, &note, error, sizeof error);
     if (!t->law.law || note) give_up("%s", note ? note : error);
     t->law.parameters = trial_parameters(t, t->law.law);

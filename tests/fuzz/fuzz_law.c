@@ -4,7 +4,7 @@
 #include "tests/fuzz/law_stages.h"
 #include "tests/fuzz/recipe.h"
 
-enum { LONGEST = 512, DEEPEST = 5, MOST_PIECES = 120, MOST_NAMES = 8 };
+enum { LONGEST = 512, DEEPEST = 5, MOST_PIECES = 120, MOST_NAMES = 9 };
 
 typedef struct writer {
   recipe from;
@@ -35,6 +35,15 @@ static const char *const numbers[] = {"~",
                                       "cos(#)",
                                       "tan(#)",
                                       "tanh(#)",
+                                      "log10(#)",
+                                      "asin(#)",
+                                      "acos(#)",
+                                      "sinh(#)",
+                                      "cosh(#)",
+                                      "dot((#, #), e)",
+                                      "norm(cross(vector(#, #, #), e))",
+                                      "dot(direction*#, e - (#, 0, #))",
+                                      "e[x]",
                                       "atan2(#, #)",
                                       "min(#, #)",
                                       "max(#, #, #)",
@@ -49,9 +58,9 @@ static const char *const numbers[] = {"~",
                                       "~"};
 static const char *const conditions[] = {"# < #",     "# <= #",   "# > #", "# == #",
                                          "(? and ?)", "(? or ?)", "not ?", "# >= #"};
-static const char *const plain[] = {"0",      "1",     "2",        "0.5", "1e-4",    "(-1)",
-                                    "1e-300", "1e300", "(-0.3)",   "7",   "(1/3)",   "shell",
-                                    "(s/t)",  "p",     "(V/s**3)", "p",   "(m_i/m)", "(length/s)"};
+static const char *const plain[] = {
+    "0", "1",     "2",     "0.5",   "1e-4", "(-1)",     "1e-300",       "1e300",   "(-0.3)",
+    "7", "(1/3)", "shell", "(s/t)", "p",    "(V/s**3)", "(dt/(1 [s]))", "(m_i/m)", "(length/s)", "pi"};
 
 #define PICK(list, number) (list)[(number) % (sizeof(list) / sizeof *(list))]
 
@@ -85,7 +94,8 @@ static void put_fields(writer *w, unsigned kinds) {
   if (kinds & 1) name(w, "q");
   put(w, "v=#\n", 0);
   name(w, "v");
-  if (kinds & 1) put(w, kinds & 2 ? "flow q by # when ?\n" : "q=#\n", 0);
+  if (kinds & 1)
+    put(w, kinds & 2 ? "flow q by # when ?\n" : kinds & 64 ? "rate q=(#)/(1 [s])\n" : "q=#\n", 0);
   if (kinds & 1) name(w, "previous(q)");
   if (kinds & 4) put(w, "damage w=#\n", 0);
   if (kinds & 4) name(w, "w");
@@ -109,11 +119,12 @@ static void write_law(writer *w) {
   const unsigned kinds = recipe_byte(&w->from);
   const bool bends = kinds & 32;
   put(w, bends ? "model a\nlaw micropolar bond\n" : "model a\nlaw central bond\n", 0);
-  put(w, "parameter k=5 [MN] in (0, inf)\nparameter p=0.2 in [0, 1)\n", 0);
-  put(w, "parameter rho=2 [kg/m^3]\n", 0);
+  put(w, "parameter k=5 [MN] in (0, inf)\nparameter p=0.2 in [0, 1)\nparameter e=(1, 0)\n", 0);
+  put(w, "parameter rho=2 [kg/m^3]\nfield h on particle=0.3 in (0, 1)\n", 0);
   put(w, "function f(x, y)=x*y\n", 0);
   name(w, "stretch");
   name(w, "(stretch_rate*(1 [s]))");
+  name(w, "h");
   if (bends) name(w, "(theta_i : theta_j)");
   if (bends) name(w, "norm(theta_i)");
   put_fields(w, kinds);

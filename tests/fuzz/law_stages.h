@@ -11,7 +11,7 @@
 #include "dsl/print/format.h"
 #include "dsl/semantics/law_check.h"
 #include "dsl/syntax/parse.h"
-#include "generator/check/physics.h"
+#include "generator/sense/sense.h"
 #include "generator/emit/emit.h"
 #include "generator/intervals/interval_check.h"
 #include "generator/plan/plan.h"
@@ -96,7 +96,7 @@ static void check_kernel_text(const law *l, diagnostics *d) {
 static void check_physics(const law *l, diagnostics *d) {
   const physics_options few = {.effort = 0.03};
   const int errors = d->errors;
-  const bool sound = physics_check(l, &few, d, NULL);
+  const bool sound = law_is_sound(l, &few, d, NULL);
   MUST(sound == (d->errors == errors));
   for (int k = 0; k < d->count; k++)
     MUST(d->items[k].code != DIAG_TANGENT);

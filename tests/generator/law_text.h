@@ -93,7 +93,7 @@ enum { MOST_FIELDS = 8 };
 
 /* Inputs and results of one state. */
 typedef struct tested_state {
-  double stretch, rate, theta_i, theta_j;
+  double stretch, rate, theta_i, theta_j, dt;
   double field[MOST_FIELDS];
   double N, M_i, M_j;
   double new_field[MOST_FIELDS];
@@ -102,8 +102,9 @@ typedef struct tested_state {
 
 static inline void evaluate_law(const tested_law *t, tested_state *x, int with_tangent) {
   double length = tested_bond().s * (1 + x->stretch), result[PL_STATE_RESULTS];
-  static const char *const names[] = {"stretch", "stretch_rate", "theta_i", "theta_j", "length"};
-  const double *in[] = {&x->stretch, &x->rate, &x->theta_i, &x->theta_j, &length};
+  static const char *const names[] = {"stretch", "stretch_rate", "theta_i",
+                                      "theta_j", "length",       "dt"};
+  const double *in[] = {&x->stretch, &x->rate, &x->theta_i, &x->theta_j, &length, &x->dt};
   assert_int_equal(t->kernel->state_input_count, PL_STATE_INPUTS);
   for (int k = 0; k < PL_STATE_INPUTS; k++)
     assert_string_equal(t->kernel->state_inputs[k].name, names[k]);

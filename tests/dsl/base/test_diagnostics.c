@@ -214,6 +214,52 @@ static void nearest_names(void **state) {
   is_nearest(huge, NULL);
 }
 
+/* Lines may end in a carriage return alone; one within lines is none. */
+static void carriage_returns_end_lines(void **state) {
+  (void)state;
+  sheet s;
+  sheet_begin(&s, "model m\r  x = y\rend\r");
+  diag_report(&s.d, DIAG_UNUSED, span_of(&s, "x = y"), "it has no effect");
+  prints(&s, "law.plm:2:3: warning: it has no effect [unused]\n"
+             "  2 |   x = y\n"
+             "    |   ^~~~~\n");
+  sheet_begin(&s, "a\rb\nc\n");
+  assert_int_equal(source_place(&s.sources, 0, 2).line, 1);
+  source_clear(&s.sources);
+}
+
+/* Neither an error nor a warning, and printed behind these, with the reason. */
+static void what_is_accepted_is_set_apart(void **state) {
+  (void)state;
+  sheet s;
+  sheet_begin(&s, "force N = 1\nend\n");
+  diag_report(&s.d, DIAG_REST_FORCE, span_of(&s, "force N = 1"), "it carries a force");
+  for (int k = 0; k < 4; k++)
+    diag_report(&s.d, DIAG_HEALING, span_of(&s, "end"), "it heals");
+  assert_true(diag_may_be_accepted(DIAG_REST_FORCE) && diag_may_be_accepted(DIAG_DOMAIN));
+  assert_false(diag_may_be_accepted(DIAG_UNITS) || diag_may_be_accepted(DIAG_TANGENT));
+  diag_accept(&s.d, 0, "prestress");
+  diag_accept(&s.d, 2, "it is clay");
+  assert_int_equal(s.d.errors, 0);
+  assert_int_equal(s.d.count, 3);
+  assert_int_equal(s.d.accepted_count, 2);
+  while (s.d.count)
+    diag_accept(&s.d, 0, "it is clay");
+  diag_report(&s.d, DIAG_HEALING, span_of(&s, "end"), "and again");
+  assert_int_equal(s.d.count, 1);
+  assert_int_equal(s.d.accepted_count, 5);
+  s.d.accepted_count = 1; /* the four others alike */
+  for (int k = 1; k < 5; k++)
+    free(s.d.accepted[k].message);
+  prints(&s, "law.plm:2:1: warning: and again [healing]\n"
+             "  2 | end\n"
+             "    | ^~~\n"
+             "law.plm:1:1: accepted: it carries a force [rest-force]\n"
+             "  1 | force N = 1\n"
+             "    | ^~~~~~~~~~~\n"
+             "  because: prestress\n");
+}
+
 static void arena_gives_zeroed_aligned_memory(void **state) {
   (void)state;
   arena *a = arena_new();
@@ -245,6 +291,8 @@ int main(void) {
       cmocka_unit_test(many_messages_are_counted),
       cmocka_unit_test(spans_join),
       cmocka_unit_test(nearest_names),
+      cmocka_unit_test(carriage_returns_end_lines),
+      cmocka_unit_test(what_is_accepted_is_set_apart),
       cmocka_unit_test(arena_gives_zeroed_aligned_memory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -92,6 +92,19 @@ static void exp_and_log(void **unused) {
   ONE_ARGUMENT(log, 1.5, fabs(log_uniform(&state, -1074, -1023)), logl);
   ONE_ARGUMENT(log, 1.5, uniform(&state, 0.3, 3.0), logl);
   ONE_ARGUMENT(log, 1.5, 1.0 + log_uniform(&state, -52, -4), logl);
+  ONE_ARGUMENT(log10, 1.2, fabs(log_uniform(&state, -1022, 1023)), log10l);
+  ONE_ARGUMENT(log10, 1.2, fabs(log_uniform(&state, -1074, -1023)), log10l);
+  ONE_ARGUMENT(log10, 1.2, uniform(&state, 0.3, 3.0), log10l);
+  ONE_ARGUMENT(log10, 1.2, 1.0 + log_uniform(&state, -52, -4), log10l);
+}
+
+static void logarithms_of_powers_of_ten_are_whole(void **unused) {
+  (void)unused;
+  for (int k = -308; k <= 308; k++) {
+    char text[16];
+    snprintf(text, sizeof text, "1e%d", k);
+    assert_true(pl_log10(strtod(text, NULL)) == k);
+  }
 }
 
 static long double one_over_root(long double x) {
@@ -142,6 +155,27 @@ static void angles(void **unused) {
   ONE_ARGUMENT(tanh, 2.0, uniform(&state, -25.0, 25.0), tanhl);
   ONE_ARGUMENT(tanh, 2.0, uniform(&state, -1.5, 1.5), tanhl);
   ONE_ARGUMENT(tanh, 2.0, log_uniform(&state, -1000, 5), tanhl);
+}
+
+static void arcs(void **unused) {
+  (void)unused;
+  ONE_ARGUMENT(asin, 1.3, uniform(&state, -1.0, 1.0), asinl);
+  ONE_ARGUMENT(asin, 1.3, log_uniform(&state, -1074, -1), asinl);
+  ONE_ARGUMENT(asin, 1.3, 1.0 - fabs(log_uniform(&state, -53, -1)), asinl);
+  ONE_ARGUMENT(acos, 1.0, uniform(&state, -1.0, 1.0), acosl);
+  ONE_ARGUMENT(acos, 1.0, log_uniform(&state, -1074, -1), acosl);
+  ONE_ARGUMENT(acos, 1.0, 1.0 - fabs(log_uniform(&state, -53, -1)), acosl);
+  ONE_ARGUMENT(acos, 1.0, fabs(log_uniform(&state, -53, -1)) - 1.0, acosl);
+}
+
+static void hyperbolic(void **unused) {
+  (void)unused;
+  ONE_ARGUMENT(sinh, 1.2, uniform(&state, -2.0, 2.0), sinhl);
+  ONE_ARGUMENT(sinh, 1.2, uniform(&state, -711.0, 711.0), sinhl);
+  ONE_ARGUMENT(sinh, 1.2, log_uniform(&state, -1074, 9), sinhl);
+  ONE_ARGUMENT(cosh, 1.2, uniform(&state, -2.0, 2.0), coshl);
+  ONE_ARGUMENT(cosh, 1.2, uniform(&state, -711.0, 711.0), coshl);
+  ONE_ARGUMENT(cosh, 1.2, log_uniform(&state, -1074, 9), coshl);
 }
 
 static void chord_rotation(void **unused) {
@@ -230,6 +264,11 @@ static void corner_values(void **unused) {
     const double x = corners[i];
     assert_corner("exp", pl_exp(x), exp(x), x, 0);
     assert_corner("log", pl_log(x), x == 0.0 ? -INFINITY : log(x), x, 0);
+    assert_corner("log10", pl_log10(x), x == 0.0 ? -INFINITY : log10(x), x, 0);
+    assert_corner("asin", pl_asin(x), asin(x), x, 0);
+    assert_corner("acos", pl_acos(x), acos(x), x, 0);
+    assert_corner("sinh", pl_sinh(x), sinh(x), x, 0);
+    assert_corner("cosh", pl_cosh(x), cosh(x), x, 0);
     assert_corner("cbrt", pl_cbrt(x), cbrt(x), x, 0);
     assert_corner("tanh", pl_tanh(x), tanh(x), x, 0);
     assert_corner("sqrt", pl_sqrt(x), sqrt(x), x, 0);
@@ -271,15 +310,17 @@ static void symmetry(void **unused) {
     const double x = log_uniform(&state, -30, 8), y = log_uniform(&state, -30, 8);
     assert_true(pl_sin(-x) == -pl_sin(x) && pl_cos(-x) == pl_cos(x) && pl_tan(-x) == -pl_tan(x));
     assert_true(pl_tanh(-x) == -pl_tanh(x) && pl_cbrt(-x) == -pl_cbrt(x));
+    assert_true(pl_sinh(-x) == -pl_sinh(x) && pl_cosh(-x) == pl_cosh(x));
+    assert_true(pl_asin(-pl_tanh(x)) == -pl_asin(pl_tanh(x)));
     assert_true(pl_atan2(-y, x) == -pl_atan2(y, x) && pl_wrap_angle(-x) == -pl_wrap_angle(x));
   }
 }
 
 /* --- the compiler's report: every function vectorises ----------------------------------------- */
 
-static const char *const one_argument[] = {"abs", "sqrt", "sign",       "exp",
-                                           "log", "cbrt", "sin",        "cos",
-                                           "tan", "tanh", "wrap_angle", "inverse_root"};
+static const char *const one_argument[] = {
+    "abs",  "sqrt",       "sign",         "exp",   "log",  "cbrt", "sin",  "cos", "tan",
+    "tanh", "wrap_angle", "inverse_root", "log10", "asin", "acos", "sinh", "cosh"};
 static const char *const two_arguments[] = {"min", "max", "pow", "hypot", "atan2"};
 enum {
   ONES = sizeof one_argument / sizeof *one_argument,
@@ -338,7 +379,7 @@ static void loops_vectorise(void **unused) {
 static void lanes_agree(void **unused) {
   (void)unused;
   uint64_t state = 7;
-  static double x[STRIP], y[STRIP], strip[6][STRIP];
+  static double x[STRIP], y[STRIP], strip[11][STRIP];
   for (int k = 0; k < STRIP; k++) {
     x[k] = log_uniform(&state, -20, 6);
     y[k] = log_uniform(&state, -20, 6);
@@ -350,12 +391,20 @@ static void lanes_agree(void **unused) {
     strip[3][k] = pl_pow(pl_abs(x[k]), y[k]);
     strip[4][k] = pl_cbrt(x[k]);
     strip[5][k] = pl_wrap_angle(x[k]);
+    strip[6][k] = pl_log10(pl_abs(x[k]));
+    strip[7][k] = pl_asin(pl_tanh(x[k]));
+    strip[8][k] = pl_acos(pl_tanh(x[k]));
+    strip[9][k] = pl_sinh(x[k]);
+    strip[10][k] = pl_cosh(x[k]);
   }
   for (int k = 0; k < STRIP; k++) {
     volatile double a = x[k], b = y[k]; /* one at a time */
     assert_true(pl_exp(a) == strip[0][k] && pl_sin(a) == strip[1][k]);
     assert_true(pl_atan2(a, b) == strip[2][k] && pl_pow(pl_abs(a), b) == strip[3][k]);
     assert_true(pl_cbrt(a) == strip[4][k] && pl_wrap_angle(a) == strip[5][k]);
+    assert_true(pl_log10(pl_abs(a)) == strip[6][k] && pl_sinh(a) == strip[9][k]);
+    assert_true(pl_asin(pl_tanh(a)) == strip[7][k] && pl_acos(pl_tanh(a)) == strip[8][k]);
+    assert_true(pl_cosh(a) == strip[10][k]);
   }
 }
 
@@ -366,7 +415,8 @@ int main(void) {
       cmocka_unit_test(chord_rotation), cmocka_unit_test(wrapping),
       cmocka_unit_test(corner_values),  cmocka_unit_test(selects),
       cmocka_unit_test(symmetry),       cmocka_unit_test(loops_vectorise),
-      cmocka_unit_test(lanes_agree),
+      cmocka_unit_test(lanes_agree),    cmocka_unit_test(arcs),
+      cmocka_unit_test(hyperbolic),     cmocka_unit_test(logarithms_of_powers_of_ten_are_whole),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -69,6 +69,11 @@ static void exponents_may_be_fractions(void **state) {
   assert_int_equal(decimal.dim.twelfths[0], -6);
   assert_true(decimal.factor == 1e6);
   assert_int_equal(read_unit("m^(-1/3)").dim.twelfths[0], -4);
+  assert_true(dim_equal(decimal.dim, read_unit("MPa*sqrt(m)").dim));
+  assert_true(read_unit("MPa*sqrt(m)").factor == 1e6 &&
+              read_unit("sqrt(km*m)").factor == sqrt(1e3));
+  assert_int_equal(read_unit("sqrt(m)^3").dim.twelfths[0], 18);
+  assert_int_equal(read_unit("N/sqrt(sqrt(m))").dim.twelfths[0], 9);
   assert_true(fabs(read_unit("mm^0.5").factor - sqrt(1e-3)) < 1e-17);
 }
 
@@ -158,7 +163,7 @@ static void dimensions_are_described(void **state) {
       {"N/m^6", "a force per volume squared (N/m^6)"},
       {"kg^2*m/s", "a quantity in kg^2*m/s"},
       {"m^(3/2)/kg", "a quantity in m^(3/2)/kg"},
-      {"MPa*m^0.5", "a fracture toughness (Pa*m^(1/2))"},
+      {"MPa*m^0.5", "a fracture toughness (Pa*sqrt(m))"},
       {"1/kg", "a quantity in 1/kg"},
   };
   for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {

@@ -103,6 +103,14 @@ static void expressions_read_as_formulas(void **state) {
        "0 & \\text{otherwise} \\end{cases}$$"},
       {"eps_mp = x_ + beta1 + beta_1",
        "$$\\varepsilon_{\\mathrm{mp}} = \\mathrm{x\\_} + \\mathrm{beta1} + \\mathrm{beta\\_1}$$"},
+      {"y = dot(direction, (1, 2*a))**2",
+       "$$y = {\\left(\\mathit{direction} \\cdot \\left(1,\\, 2\\,a\\right)\\right)}^{2}$$"},
+      {"y = norm(cross(direction, (0, 0, 1))) + direction[y]",
+       "$$y = \\left\\lVert \\mathit{direction} \\times \\left(0,\\, 0,\\, "
+       "1\\right)\\right\\rVert + {\\mathit{direction}}_{y}$$"},
+      {"y = acos(sin(pi*a)) + log10(cosh(a))",
+       "$$y = \\arccos\\left(\\sin\\left(\\pi\\,a\\right)\\right) + "
+       "\\log_{10}\\left(\\cosh\\left(a\\right)\\right)$$"},
       {"function f(p, q_el) = p**q_el",
        "$$f\\left(p,\\, q_{\\mathrm{el}}\\right) = {p}^{q_{\\mathrm{el}}}$$"},
   };
@@ -134,6 +142,8 @@ static void units_read_as_formulas(void **state) {
     const char *unit, *formula;
   } pairs[] = {{"kg/m^3", "\\mathrm{kg}/\\mathrm{m}^{3}"},
                {"MPa*m^0.5", "\\mathrm{MPa}\\,\\mathrm{m}^{0.5}"},
+               {"MPa*sqrt(m)", "\\mathrm{MPa}\\,\\sqrt{\\mathrm{m}}"},
+               {"1/sqrt(s*(m))/K", "1/\\sqrt{\\mathrm{s}\\,(\\mathrm{m})}/\\mathrm{K}"},
                {"m**(1/2)", "\\mathrm{m}^{1/2}"},
                {"s^-1", "\\mathrm{s}^{-1}"},
                {"\xC2\xB5m", "\\mu\\mathrm{m}"},

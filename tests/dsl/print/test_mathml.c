@@ -42,6 +42,11 @@ static void pieces_are_as_mathml_has_them(void **state) {
                           "</mrow></msup>"},
       {"x_{i}^{2}", "<msubsup><mi>x</mi><mrow><mi>i</mi></mrow><mrow><mn>2</mn></mrow></msubsup>"},
       {"\\frac{a}{b}", "<mfrac><mrow><mi>a</mi></mrow><mrow><mi>b</mi></mrow></mfrac>"},
+      {"\\log_{10} a", "<msub><mi>log</mi><mrow><mn>10</mn></mrow></msub><mi>a</mi>"},
+      {"\\arccos x", "<mi>arccos</mi><mi>x</mi>"},
+      {"a \\cdot {e}_{x}",
+       "<mi>a</mi><mo>·</mo><msub><mrow><mi>e</mi></mrow><mrow><mi>x</mi></mrow>"
+       "</msub>"},
       {"\\sqrt{a}", "<msqrt><mrow><mi>a</mi></mrow></msqrt>"},
       {"\\sqrt[3]{a}", "<mroot><mrow><mi>a</mi></mrow><mn>3</mn></mroot>"},
       {"\\left|x\\right|", "<mrow><mo fence=\"true\" stretchy=\"true\">|</mo><mi>x</mi><mo "

@@ -100,13 +100,14 @@ static void add_places(places *p, const expr *e) {
   }
 }
 
-/* The failure of points is cases that nobody wrote, and a tensor's start is no expression. */
+/* The failure of points is cases that nobody wrote, as is the total of what has a rest state; the
+   start of a tensor or a vector is no expression. */
 static void add_places_of_law(places *p, const tree *t) {
   for (const stmt *s = t->first; s; s = s->next) {
-    if (s->kind == STMT_REQUIRE) continue;
+    if (s->kind == STMT_REQUIRE || s->total) continue;
     if (s->failure)
       add_places(p, s->value->cases[0].guard);
-    else if (!s->tensor)
+    else if (!s->tensor && !s->vector)
       add_places(p, s->value);
     add_places(p, s->when);
   }

@@ -30,19 +30,15 @@ static uint32_t draw(uint32_t *state, uint32_t below) {
 }
 
 /* `#` stands for an expression, `?` for a condition. */
-static const char *const forms[] = {"(#+#)",     "(#-#)",
-                                    "#*#",       "#/#",
-                                    "(-#)",      "#**2",
-                                    "#**(1/2)",  "(#)**(-1)",
-                                    "abs(#)",    "sqrt(#)",
-                                    "cbrt(#)",   "exp(#)",
-                                    "sin(#)",    "tanh(#)",
-                                    "sign(#)",   "f(#, #)",
-                                    "min(#, #)", "max(#, #, #)",
-                                    "g(#)",      "atan2(#, #)",
-                                    "norm(#)",   "(#:#)",
-                                    "log(#)",    "positive_part(#)",
-                                    "(#+#)",     "(| # when ? | # otherwise)"};
+static const char *const forms[] = {
+    "(#+#)",     "(#-#)",        "#*#",      "#/#",
+    "(-#)",      "#**2",         "#**(1/2)", "(#)**(-1)",
+    "abs(#)",    "sqrt(#)",      "cbrt(#)",  "exp(#)",
+    "sin(#)",    "tanh(#)",      "sign(#)",  "f(#, #)",
+    "min(#, #)", "max(#, #, #)", "g(#)",     "atan2(#, #)",
+    "norm(#)",   "(#:#)",        "log(#)",   "positive_part(#)",
+    "log10(#)",  "asin(#)",      "acos(#)",  "sinh(#)",
+    "cosh(#)",   "pi*#",         "(#+#)",    "(| # when ? | # otherwise)"};
 static const char *const conditions[] = {"# < #", "# >= #", "(? and ?)", "not ?"};
 static const char *const leaves[] = {
     "stretch", "stretch_rate", "s",       "t",          "length",  "spacing",

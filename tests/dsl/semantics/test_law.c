@@ -138,22 +138,22 @@ static void micropolar_law_is_understood(void **state) {
   X("s**0.5*s**1.5", "m^2", SCALAR)                                                                \
   X("(s**2)**(3/4)", "m^1.5", SCALAR)                                                              \
   X("stretch**rate_free", "1", SCALAR)                                                             \
-  X("2**stretch", "1", SCALAR) X("m*stretch_rate**2", "kg/s^2", SCALAR)                            \
-      X("theta_i - 2*theta_j", "1", BENDING) X("EI*theta_i/s", "N*m", BENDING)                     \
-          X("norm(EI*theta_i/s**2)", "N", SCALAR) X("theta_i : theta_j", "1", SCALAR)              \
-              X("EI*(theta_i : theta_i)/s", "J", SCALAR) X("sign(EA)", "1", SCALAR) X(             \
-                  "positive_part(EA - 1 [kN])", "N", SCALAR) X("max(0, EA, 1 [kN])", "N", SCALAR)  \
-                  X("min(0, stretch)", "1", SCALAR) X("atan2(s, spacing)", "1",                    \
-                                                      SCALAR) X("exp(-stretch)*EA", "N", SCALAR)   \
+  X("2**stretch", "1", SCALAR)                                                                     \
+  X("m*stretch_rate**2", "kg/s^2", SCALAR) X("theta_i - 2*theta_j", "1", BENDING)                  \
+      X("EI*theta_i/s", "N*m", BENDING) X("norm(EI*theta_i/s**2)", "N", SCALAR)                    \
+          X("theta_i : theta_j", "1", SCALAR) X("EI*(theta_i : theta_i)/s", "J", SCALAR)           \
+              X("sign(EA)", "1", SCALAR) X("positive_part(EA - 1 [kN])", "N", SCALAR)              \
+                  X("max(0, EA, 1 [kN])", "N", SCALAR) X("min(0, stretch)", "1", SCALAR) X(        \
+                      "atan2(s, spacing)", "1", SCALAR) X("exp(-stretch)*EA", "N", SCALAR)         \
                       X("abs(EA)", "N", SCALAR) X("soft_sign(stretch)", "1", SCALAR) X(            \
                           "twist*EA", "N", SCALAR) X("diff(EA*stretch**2, stretch)", "N", SCALAR)  \
                           X("diff(EA*stretch, stretch_rate)", "N*s",                               \
-                            SCALAR) X("diff(EI*theta_i/s, theta_i)", "N*m", SCALAR)                \
-                              X("diff(EI*theta_i/s, s)", "N", BENDING)                             \
-                                  X("diff(EI*(theta_i : theta_i)/s, theta_i)", "J",                \
-                                    BENDING) X("diff(EA*stretch, EA)", "1",                        \
-                                               SCALAR) X("direction*EA", "N", VECTOR)              \
-                                      X("norm(direction)", "1", SCALAR) X("30 [deg]", "1", SCALAR) \
+                            SCALAR) X("diff(EI*theta_i/s, theta_i)", "N*m",                        \
+                                      SCALAR) X("diff(EI*theta_i/s, s)", "N", BENDING)             \
+                              X("diff(EI*(theta_i : theta_i)/s, theta_i)", "J",                    \
+                                BENDING) X("diff(EA*stretch, EA)", "1", SCALAR)                    \
+                                  X("direction*EA", "N", VECTOR) X("norm(direction)", "1", SCALAR) \
+                                      X("30 [deg]", "1", SCALAR)                                   \
                                           X("(| 0 when stretch > 0 | EA otherwise)", "N", SCALAR)  \
                                               X("(| theta_i when stretch > 0 | 0 otherwise)", "1", \
                                                 BENDING) X("0*s", "m", SCALAR)                     \
@@ -357,7 +357,9 @@ static void defaults_are_computed(void **state) {
   (void)state;
   checked c = check(CENTRAL(
       "parameter p = -2*(3 [mm] + 1 [cm])/4\nparameter q = max(1, sqrt(2), 2**-1)\n"
-      "parameter r = 1.18d-4\nparameter phi = 30 [deg]\nforce N = EA*stretch*(p/s + q + r + phi)"));
+      "parameter r = 1.18d-4\nparameter phi = 30 [deg]\nparameter turn = pi/4 in [0, 2*pi)\n"
+      "constant c = turn + pi\nforce N = EA*stretch*(p/s + q + r + phi + c)"));
+  assert_true(symbol_named(c.law, "turn")->initial == acos(-1.0) / 4);
   assert_true(fabs(symbol_named(c.law, "p")->initial + 6.5e-3) < 1e-17);
   assert_true(symbol_named(c.law, "q")->initial == sqrt(2));
   assert_true(symbol_named(c.law, "r")->initial == 1.18e-4);
@@ -381,6 +383,11 @@ static void defaults_may_call_functions(void **state) {
                {"cos(0.5)", 0.8775825618903728},
                {"tan(0.5)", 0.5463024898437905},
                {"tanh(0.5)", 0.46211715726000973},
+               {"log10(0.5)", -0.3010299956639812},
+               {"asin(0.5)", 0.5235987755982989},
+               {"acos(0.5)", 1.0471975511965979},
+               {"sinh(0.5)", 0.5210953054937474},
+               {"cosh(0.5)", 1.1276259652063807},
                {"sign(-0.5)", -1},
                {"soft_sign(-3)", -0.75},
                {"positive_part(-3)", 0},
@@ -413,17 +420,21 @@ static void state_law_is_understood(void **state) {
   (void)state;
   checked c = check(STATE(
       "damage w on particle\nstate S_p on neighbour = 0\nconstant k = a*s/spacing\n"
+      "constant c[j] = k*V/V[j]\nconstant b[j] = a/spacing\n"
       "S_e[j] = stretch[j] - (S_p[j] + S_p'[j])/2\nd[j] = (1 - w)*(1 - w[j])\nuniform[j] = n\n"
-      "force state F[j] = d[j]*k*S_e[j] + a/n*sum(d[j]*S_e[j])\nstress sigma = virtual_work(F)\n"
+      "force state F[j] = d[j]*c[j]*S_e[j] + a/n*sum(d[j]*S_e[j])\nstress sigma = virtual_work(F)\n"
       "strain eps = fit(stretch)\nyield f = J2(sigma)/(30 [MPa])**2 - 1\n"
       "flow S_p[j] by 0.1*deviator(F[j])/norm(deviator(F)) when f >= 0\n"
       "worst = max(stretch[j])\nw = min(1, abs(principal(eps, 1)) + trace(eps)*worst)\n"
-      "output mises = von_mises(sigma)\noutput work = sigma : eps\noutput same = eps : sigma\n"
+      "output slope = mean(b[j])\noutput mises = von_mises(sigma)\noutput work = sigma : "
+      "eps\noutput same = eps : sigma\n"
       "drawn[j] = | 1 when stretch[j] > 0 | 0 otherwise\ncracked = | 1 when w > 0 | 0 otherwise\n"
       "output part = cracked*mean(drawn[j])\noutput u = mean(uniform[j], "
       "weight = d[j])"));
   const law *l = c.law;
   is_of(l, "k", SYMBOL_CONSTANT, "N", SHAPE_SCALAR, ON_BOND);
+  is_of(l, "c", SYMBOL_CONSTANT, "N", SHAPE_SCALAR, ON_NEIGHBOUR);
+  is_of(l, "b", SYMBOL_CONSTANT, "N/m", SHAPE_SCALAR, ON_BOND);
   is_of(l, "S_p", SYMBOL_STATE, "1", SHAPE_SCALAR, ON_NEIGHBOUR);
   is_of(l, "S_e", SYMBOL_DEFINED, "1", SHAPE_SCALAR, ON_NEIGHBOUR);
   is_of(l, "d", SYMBOL_DEFINED, "1", SHAPE_SCALAR, ON_NEIGHBOUR);

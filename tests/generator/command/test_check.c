@@ -250,7 +250,7 @@ static void bonds_of_plane_strain_are_asked_for(void **state) {
   }
   expect(w, IN_PLANE_STRAIN "elastic_central", 1,
          "is meant for plane_stress, but this lattice is in plane_strain");
-  write_central(w, "plain", "  force N = E*s*t*stretch\n");
+  write_central(w, "plain", "  force N = sqrt(3)/2/(1 - 1/16)*E*s*t*stretch\n");
   snprintf(text, sizeof text,
            DECK_WITH("kind = 'hexagonal' spacing = '10 mm' thickness = '10 mm' setting = "
                      "'plane_strain'",

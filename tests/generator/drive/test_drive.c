@@ -68,7 +68,11 @@ static void near(double value, double expected, double allowed) {
 
 /* --- expectations ----------------------------------------------------------------------------- */
 
-#define ELASTIC  "&material model = 'elastic_central' /\n&bond spacing = '10 mm' /\n"
+#define ELASTIC "&material model = 'elastic_central' /\n&bond spacing = '10 mm' /\n"
+#define FIBRES(given)                                                                              \
+  "&particle lattice = 'hexagonal' spacing = '10 mm' thickness = '100 mm' /\n"                     \
+  "&material model = 'pmb_fibre' " given " /\n"                                                    \
+  "&path quantity = 'strain_xx' times = 0, '1 s' values = 0, 1e-4 /\n"
 #define TO_MICRO "&path quantity = 'stretch' value = 1e-4 rise = '1 s' /\n"
 
 /* EA = sqrt(3)/2 * 30 GPa * 10 mm * 100 mm = 25.98 MN, so 2598.08 N at 1e-4. */
@@ -268,6 +272,13 @@ static void bad_paths_are_explained(void **state) {
       {ELASTIC TO_MICRO "&expect quantity = 'N' formula = 'EA)\nend model' /", "DECK"},
       {"&material model = 'elastic_central' EE = 1 /\n" TO_MICRO, "has no parameter `EE`"},
       {"&material model = 'elastic_central' E = -1 /\n" TO_MICRO, "is not in (0, inf)"},
+      {FIBRES("fibre = 1"), "`fibre` is a vector, but one number is given"},
+      {FIBRES("fibre = 1, 0, '1 mm'"), "`fibre_z` needs a pure number, this is a length (m)"},
+      {FIBRES("fibres = 1, 0"), "did you mean `fibre`?"},
+      {FIBRES("E_1 = 1, 5"), "`E_1` takes 1 value, but 2 are given"},
+      {FIBRES("fibre = 1, 0  fibre_x = 2"), "`fibre_x` is given twice"},
+      {FIBRES("fibre = 1, 2, 3, 4"), "`fibre` takes 1 value, but 4 are given"},
+      {FIBRES("fibre = 1, 'x', 0"), "`fibre_y` needs a number, not the word 'x'"},
       {"&material model = 'no_such_law' /\n" TO_MICRO, "there is no model `no_such_law`"},
       {"&material model = 'cohesive' softening = 'liner' /\n" TO_MICRO, "has no choice `liner`"},
       {"&material model = 'mplm_bilinear' /\n&initial omega = 2 /\n" TO_MICRO,

@@ -136,6 +136,15 @@ static void errors_are_told_at_their_line(void **state) {
   says(w, "[hole]");
 }
 
+/* An answer cannot excuse itself. */
+static void waivers_of_an_answer_do_not_count(void **state) {
+  workplace *w = *state;
+  const char *heals = "s|EA\\*stretch  |EA*(stretch - 1e-5)|";
+  graded(w, heals, "[rest-force]");
+  assert_int_equal(shell(w, "sed -i 's|^end model|  accept rest-force \"so\"\\n&|' answer.plm"), 0);
+  expect(w, "grade memory answer.plm", 2, "[rest-force]");
+}
+
 /* The file as it was given; warnings cost nothing. */
 static void messages_name_the_file_that_was_given(void **state) {
   workplace *w = *state;
@@ -606,6 +615,7 @@ int main(void) {
                                      TEST(factors_are_told_where_all_have_one),
                                      TEST(numbers_for_names_are_told),
                                      TEST(errors_are_told_at_their_line),
+                                     TEST(waivers_of_an_answer_do_not_count),
                                      TEST(messages_name_the_file_that_was_given),
                                      TEST(warnings_are_shown),
                                      TEST(defaults_are_the_exercises),

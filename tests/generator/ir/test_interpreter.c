@@ -103,6 +103,8 @@ static void strips_of_any_count(void **unused) {
   X(SIGN, pl_sign(a)) X(INVERSE_ROOT, pl_inverse_root(a)) X(EXP, pl_exp(a)) X(LOG, pl_log(a)) \
   X(POW, pl_pow(a, b))                                                                             \
   X(CBRT, pl_cbrt(a)) X(SIN, pl_sin(a)) X(COS, pl_cos(a)) X(TAN, pl_tan(a)) X(TANH, pl_tanh(a))    \
+  X(LOG10, pl_log10(a)) X(ASIN, pl_asin(a)) X(ACOS, pl_acos(a)) X(SINH, pl_sinh(a))                \
+  X(COSH, pl_cosh(a))                                                                              \
   X(ATAN2, pl_atan2(a, b)) X(WRAP_ANGLE, pl_wrap_angle(a))                                         \
   X(LT, a < b) X(LE, a <= b) X(EQ, a == b) X(AND, (a != 0) && (b != 0))                            \
   X(OR, (a != 0) || (b != 0)) X(NOT, !(a != 0)) X(SELECT, a != 0 ? b : a)

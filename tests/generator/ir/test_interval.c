@@ -14,7 +14,6 @@
 #include "dsl/syntax/parse.h"
 #include "generator/intervals/interval_check.h"
 #include "generator/ir/interpret.h"
-#include "generator/intervals/interval_check.h"
 #include "generator/ir/interval.h"
 #include "generator/ir/random_values.h"
 
@@ -196,6 +195,12 @@ static void bounds_keep_values_in_range(void **state) {
   expect_quiet("  damage d = | 0 when stretch <= 0.1 | 1 - 0.1/stretch otherwise\n  force N = "
                "k*stretch*sqrt(1 - d)\n");
   expect_quiet("  force N = k*stretch/(1 + abs(stretch_rate/1 [1/s]))\n");
+  expect_quiet("  force N = k*(acos(min(1 + stretch, 1)) + asin(tanh(stretch)))\n");
+  expect_quiet("  force N = k*asin((| -1 when stretch < -1/2 | 2*stretch when stretch < 1/2"
+               " | 1 otherwise))\n");
+  /* cosh >= 1; acos from 0 to pi, asin from -pi/2 to pi/2 */
+  expect_quiet("  a = max(min(stretch, 1), -1)\n  force N = k*stretch*sqrt(cosh(stretch) - 1)*"
+               "sqrt(acos(a))*sqrt(1.6 - asin(a))*log10(1 + cosh(stretch))\n");
 }
 
 static void what_may_be_undefined_is_shown(void **state) {
@@ -204,6 +209,9 @@ static void what_may_be_undefined_is_shown(void **state) {
   expect("  force N = k*stretch/(stretch - 0.5)\n", DIAG_DIVISION_BY_ZERO, 4, "stretch = 0.5");
   expect("  force N = k*stretch*sqrt(1 + 2*stretch)\n", DIAG_DOMAIN, 4, "stretch = -0.");
   expect("  force N = k*log(1.5 + 2*stretch)\n", DIAG_DOMAIN, 4, "stretch = -0.");
+  expect("  force N = k*log10(1.5 + 2*stretch)\n", DIAG_DOMAIN, 4, "stretch = -0.");
+  expect("  force N = k*(acos(1.5 + stretch) - 2)\n", DIAG_DOMAIN, 4, "stretch = ");
+  expect("  force N = k*asin(2*stretch - 1.2)\n", DIAG_DOMAIN, 4, "stretch = ");
   expect("  force N = k*stretch*(stretch + 0.2)**0.7\n", DIAG_DOMAIN, 4, "stretch = -0.");
   expect("  parameter nu = 0.2 in [0, 1]\n  force N = k*stretch/(1 - nu**2)\n",
          DIAG_DIVISION_BY_ZERO, 5, "nu = 1");

@@ -39,8 +39,8 @@ static inline kernel_check check_family(const kernel_plan *p, const pl_law *kern
 static inline void assert_same_families(const kernel_plan *p, const pl_law *kernel, long states) {
   static const int any[] = {6, 18, 122};
   const int *neighbours = kernel->neighbours ? &kernel->neighbours : any;
-  const int rows = kernel->neighbours ? 1 : 3;
-  const int sizes = kernel->topology == PL_LIST ? 2 : rows; /* a list has no other code for more */
+  const int of_rows = kernel->neighbours ? 1 : 3;
+  const int sizes = kernel->topology == PL_LIST ? 2 : of_rows; /* a list has no other code for more */
   for (int k = 0; k < sizes; k++) {
     kernel_check c = check_family(p, kernel, neighbours[k], states);
     printf("%d dimensions, %d neighbours: ", kernel->dimensions, neighbours[k]);

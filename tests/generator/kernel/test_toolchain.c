@@ -338,14 +338,15 @@ static void foreign_objects_are_refused_with_the_reason(void **state) {
 
 /* A law whose table says how long it is, with as many inputs of a state. */
 static char *table_text(size_t length, int inputs) {
-  const char *format = "%s\n"
-                       "static const pl_input inputs[] = {{0}, {0}, {0}, {0}, {0}, {\"humidity\", "
-                       "\"1\"}};\n"
-                       "static const struct {\n  pl_law law;\n  double appended[8];\n} table = "
-                       "{{.abi = PL_KERNEL_ABI, .size = %zu, .name = \"hand\", .key = \"k\", "
-                       ".state_input_count = %d, .state_inputs = inputs}, {0}};\n"
-                       "const pl_law *perilat_kernel(void);\n"
-                       "const pl_law *perilat_kernel(void) { return &table.law; }\n";
+  const char *format =
+      "%s\n"
+      "static const pl_input inputs[] = {{0}, {0}, {0}, {0}, {0}, {0}, {\"humidity\", "
+      "\"1\"}};\n"
+      "static const struct {\n  pl_law law;\n  double appended[8];\n} table = "
+      "{{.abi = PL_KERNEL_ABI, .size = %zu, .name = \"hand\", .key = \"k\", "
+      ".state_input_count = %d, .state_inputs = inputs}, {0}};\n"
+      "const pl_law *perilat_kernel(void);\n"
+      "const pl_law *perilat_kernel(void) { return &table.law; }\n";
   size_t size = strlen(prelude_kernel_h) + 1000;
   char *text = malloc(size);
   assert_non_null(text);

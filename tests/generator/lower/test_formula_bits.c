@@ -35,6 +35,7 @@ static const char *const formulas[] = {
     "(q/r)*exp(-(q/1 [m])**2)*log(1 + p**2)",
     "sin(q/1 [mm]) + cos(q/1 [cm])*tan(p/3) + tanh(p) + sin(30 [deg]) + 0*p",
     "atan2(q, 2 [m]) + atan2(r, -1 [Hz])",
+    "asin(tanh(p)) + acos(p/(1 + abs(p))) - pi*sinh(q/1 [m]) + cosh(p) + log10(1 + p**2)",
     "sqrt(q*q) + cbrt(q**3)",
     "sign(p) + soft_sign(10*p) + positive_part(p - 0.1)",
     "min(p, 0.3, p**2) + max(p, -p, 0.5)",

@@ -90,6 +90,43 @@ static void exact_edges_are_told(void **state) {
          "lack");
 }
 
+/* Without its line `accept` the law of a prestressed bond is refused; with it check, info, a run and
+   its result show what is accepted. */
+static void what_laws_accept_is_told(void **state) {
+  workplace *w = *state;
+  write_text(w, "prestressed.plm",
+             "model prestressed\n  law central bond\n  for plane_stress\n"
+             "  parameter rho = 2323 [kg/m^3] in (0, inf)\n"
+             "  parameter EA = 2 [MN] in (0, inf)\n  force N = EA*(stretch - 1e-6)\n"
+             "  accept rest-force \"it is prestressed\"\nend model\n");
+  write_text(
+      w, "prestressed.nml",
+      "&simulation  end_time = '0.01 ms'  /\n"
+      "&lattice     name = 'c'  kind = 'hexagonal'  spacing = '10 mm'  thickness = '10 mm' /\n"
+      "&material    lattice = 'c'  model = 'prestressed'  /\n"
+      "&body        lattice = 'c'  shape = 'rectangle'  corner = 0, 0  size = '30 mm', "
+      "'30 mm' /\n"
+      "&output      result = 'p.h5'  /\n");
+  expect(w, "check prestressed.plm", 0, "no errors, 0 warnings, 1 finding accepted");
+  assert_non_null(strstr(w->said, "[rest-force]\n"));
+  assert_non_null(strstr(w->said, "  because: it is prestressed\n"));
+  expect(w, "info prestressed.plm", 0, "Accepted, rest-force: it is prestressed\n");
+  expect(w, "info prestressed.plm --json", 0, "\"check\": \"rest-force\"");
+  expect(w, "explain prestressed.plm", 0, "Accepted, rest-force: it is prestressed\n");
+  expect(w, "check prestressed.plm --diagnostics=json", 0, "\"severity\": \"accepted\"");
+  const char *told = "  accepted   rest-force of `prestressed`: it is prestressed\n";
+  expect(w, "run prestressed.nml", 0, told);
+  char error[1000];
+  result_file *f = result_read(in_workplace(w, "p.h5"), error, sizeof error);
+  if (!f) fail_msg("%s", error);
+  char *begin = result_read_text(f, "/said/begin");
+  assert_non_null(strstr(begin, told));
+  free(begin);
+  result_read_close(f);
+  assert_int_equal(shell(w, "sed -i /accept/d prestressed.plm"), 0);
+  expect(w, "run prestressed.nml --set output.result=q.h5", 1, "[rest-force]");
+}
+
 /* Frames are at increments 3, where the beam has moved 0.375 um, 6 and 8, the end. */
 static void runs_say_whether_frames_came(void **state) {
   workplace *w = *state;
@@ -403,6 +440,7 @@ int main(void) {
       ONE(quasi_static_runs_count_increments),
       ONE(stamps_are_told),
       ONE(exact_edges_are_told),
+      ONE(what_laws_accept_is_told),
       ONE(runs_say_whether_frames_came),
       ONE(dynamic_runs_have_times),
       ONE(progress_is_what_is_done),

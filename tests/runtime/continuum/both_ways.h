@@ -45,7 +45,7 @@ static inline void both_close(both *b) {
 /* `seen`: energies of the points, too, and no new states. */
 static inline void both_find(both *b, bool seen) {
   const double *const u[2] = {b->u[0], b->u[1]};
-  const point_motion at = {u, u, 0, 1};
+  const point_motion at = {u, u, 0, 1, 0};
   node_stencil_multiply(&b->K, u, b->by_stencil, 0, b->m.nodes[1]);
   point_forces_find(b->P, 0, 0, b->m.nodes[1], &at, seen, b->by_points);
   for (int row = 0; row < b->m.nodes[1]; row++)

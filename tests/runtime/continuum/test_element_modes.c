@@ -146,7 +146,7 @@ static void list_does_as_grid(int gauss, double hourglass) {
   }
   both_move(&b);
   const double *const u[2] = {b.u[0], b.u[1]};
-  const point_motion at = {u, u, 0, 1};
+  const point_motion at = {u, u, 0, 1, 0};
   both_find(&b, true);
   node_matrix_multiply(&of, u, f, 0, listed.nodes[1]);
   point_forces_find(by_points, 0, 0, listed.nodes[1], &at, true, NULL);

@@ -284,7 +284,7 @@ static void points_and_matrix_agree(void **state) {
         for (int n = 0; n < K.nodes; n++)
           u[d][node_layout_at(&K.layout, n)] = 1e-4 * draw(2 * n + d);
       }
-      const point_motion at = {(const double *const *)u, (const double *const *)u, 0, 1};
+      const point_motion at = {(const double *const *)u, (const double *const *)u, 0, 1, 0};
       node_matrix_multiply(&K, at.displacement, by_matrix, 0, l.m.nodes[1]);
       for (int part = 0; part < 2; part++) {
         point_forces *p =

@@ -150,7 +150,7 @@ static void laws_read_the_size_of_their_cell(void **state) {
   const double *u = pool_doubles(memory, p->strips.layout.size);
   double sum = 0, stored = 0, expected = 0;
   const double *const still[2] = {u, u};
-  const point_motion at = {still, still, 0, 1};
+  const point_motion at = {still, still, 0, 1, 0};
   point_forces_find(p, 0, 0, m.nodes[1], &at, true, NULL);
   for (int c = 0; c < mesh_cell_count(&m); c++) {
     double area = 0;

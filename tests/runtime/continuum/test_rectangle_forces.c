@@ -81,7 +81,7 @@ typedef struct found {
 static void find(const plate *p, point_forces *of, const way *w, int step, bool seen,
                  double *const force[2]) {
   const double *const u[] = {p->u[0], p->u[1]}, *const v[] = {p->v[0], p->v[1]};
-  const point_motion at = {u, v, step, 1e-6};
+  const point_motion at = {u, v, step, 1e-6, 0};
   const int rows = p->m.nodes[1];
   for (int n = 0; n < mesh_node_count(&p->m); n++)
     for (int d = 0; d < 2; d++)

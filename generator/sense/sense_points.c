@@ -1,0 +1,278 @@
+#include "generator/sense/sense_points.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
+#include "generator/check/physics_point_bench.h"
+#include "generator/ir/random_values.h"
+#include "generator/sense/point_text.h"
+#include "generator/sense/sense_response.h"
+
+static const double SAME = 1e-9;    /* of a stress or a state */
+static const double CLEARLY = 1e-6; /* another stress */
+static const double COARSE = 0.01;  /* of the work of all steps */
+static const double TIME_STEP = 1e-6;
+
+/* --- states that a point reaches -------------------------------------------------------------- */
+
+/* From virgin through some strains, the same way for all sizes; the states are kept. */
+static double go_somewhere(point_bench *p, double *strain) {
+  enum { STEPS = 4 };
+  double to[POINT_MOST];
+  const double size = pl_pow(10, draw_uniform(&p->seed, -6, -0.5));
+  const int legs = 1 + (int)(draw_bits(&p->seed) % 3);
+  point_bench_virgin(p);
+  memset(strain, 0, POINT_MOST * sizeof *strain);
+  for (int leg = 0; leg < legs; leg++) {
+    double from[POINT_MOST], stress[POINT_MOST];
+    memcpy(from, strain, sizeof from);
+    point_bench_direction(p, size, to);
+    for (int step = 1; step <= STEPS; step++) {
+      for (int k = 0; k < p->strains; k++)
+        strain[k] = from[k] + (to[k] - from[k]) * step / STEPS;
+      point_bench_stress(p, strain, stress);
+      point_bench_keep(p);
+    }
+  }
+  return size;
+}
+
+static bool differ(const point_bench *p, const double *x, const double *y, double by) {
+  const double size =
+      pl_fmax(point_bench_largest(x, p->strains), point_bench_largest(y, p->strains));
+  for (int k = 0; k < p->strains; k++)
+    if (fabs(x[k] - y[k]) > by * size) return true;
+  return false;
+}
+
+static void put_field(point_bench *p, int k, double as) {
+  for (int lane = 0; lane < POINT_LANES; lane++)
+    p->old_field[k][lane] = as;
+}
+
+/* --- states that change nothing --------------------------------------------------------------- */
+
+typedef struct effect {
+  bool moves, counts; /* it leaves its initial value; the next step depends on it */
+} effect;
+
+/* The fields of one state: a tensor's components follow one another. */
+static int fields_of(const symbol_list *fields, int k) {
+  int next = k + 1;
+  while (next < fields->count && fields->items[k]->component_of && !fields->items[next]->rate_of &&
+         fields->items[next]->component_of == fields->items[k]->component_of)
+    next++;
+  return next - k;
+}
+
+/* Whether a state, as it is or at its initial value, makes a difference at that strain. */
+static void look_at_state(point_text *t, point_bench *p, int first, int count, const double *strain,
+                          effect *e) {
+  const symbol_list *fields = &p->law->fields;
+  double kept[TENSOR_COMPONENT_COUNT];
+  bool moved = false;
+  for (int k = 0; k < count; k++) {
+    kept[k] = p->old_field[first + k][0];
+    moved = moved || kept[k] != fields->items[first + k]->initial;
+  }
+  if (!moved) return;
+  e->moves = true;
+  double *with = must_calloc((size_t)t->count, sizeof *with),
+         *without = must_calloc((size_t)t->count, sizeof *without);
+  point_text_run(t, p, strain, with);
+  for (int k = 0; k < count; k++)
+    put_field(p, first + k, fields->items[first + k]->initial);
+  point_text_run(t, p, strain, without);
+  for (int k = 0; k < t->count; k++) {
+    const int field = k - LOWERED_STRESSES;
+    const bool own = field >= first && field < first + count;
+    const double size = k < LOWERED_STRESSES
+                            ? pl_fmax(point_bench_largest(with, LOWERED_STRESSES),
+                                      point_bench_largest(without, LOWERED_STRESSES))
+                            : pl_fmax(fabs(with[k]), fabs(without[k]));
+    if (!own && fabs(with[k] - without[k]) > SAME * size) e->counts = true;
+  }
+  for (int k = 0; k < count; k++)
+    put_field(p, first + k, kept[k]);
+  free(with);
+  free(without);
+}
+
+/* A state may be there to be looked at: whether an output depends on it. */
+static bool is_seen(point_bench *p, int first, int count, const double *strain) {
+  const int outputs = p->law->outputs.count;
+  double *with = must_calloc((size_t)outputs + 1, sizeof *with), kept[TENSOR_COMPONENT_COUNT];
+  bool seen = false;
+  point_bench_strain(p, strain, NULL);
+  point_bench_run(p, p->kernel->point_observe, TIME_STEP);
+  for (int k = 0; k < outputs; k++)
+    with[k] = p->observed[1 + k][0];
+  for (int k = 0; k < count; k++) {
+    kept[k] = p->old_field[first + k][0];
+    put_field(p, first + k, p->law->fields.items[first + k]->initial);
+  }
+  point_bench_run(p, p->kernel->point_observe, TIME_STEP);
+  for (int k = 0; k < outputs; k++)
+    seen = seen || fabs(with[k] - p->observed[1 + k][0]) > SAME * fabs(with[k]);
+  for (int k = 0; k < count; k++)
+    put_field(p, first + k, kept[k]);
+  free(with);
+  return seen;
+}
+
+static void say_effect(sense_bench *b, const symbol *field, const effect *e) {
+  const symbol *s = field->component_of ? field->component_of : field;
+  const char *kind = s->kind == SYMBOL_DAMAGE ? "damage" : "state";
+  const span where = s->rule ? s->rule->where : s->where;
+  if (!e->moves)
+    sense_say(b, DIAG_ELASTIC, where, "look at its guards and limits, and at their units",
+              "the %s `%s` never moves, whatever a point undergoes: this law is as if it had none",
+              kind, s->name);
+  else if (!e->counts &&
+           s != b->law->failed) /* what has failed bears nothing, whatever is written */
+    sense_say(b, DIAG_ELASTIC, where,
+              "let the stress depend on it; is its limit in the range of strains?",
+              "the %s `%s` never changes what this law answers: without it the point does the same",
+              kind, s->name);
+}
+
+static void look_at_states(point_text *t, point_bench *p, effect *seen) {
+  enum { ROUNDS = 160 };
+  const symbol_list *fields = &p->law->fields;
+  bool all = false;
+  for (int round = 0; round < ROUNDS && !all; round++) {
+    double strain[POINT_MOST], next[POINT_MOST];
+    const double size = go_somewhere(p, strain);
+    point_bench_direction(p, size * draw_uniform(&p->seed, 0, 1), next);
+    all = true;
+    for (int k = 0; k < fields->count; k += fields_of(fields, k)) {
+      const int count = fields_of(fields, k);
+      if (!seen[k].counts) look_at_state(t, p, k, count, next, &seen[k]);
+      if (!seen[k].counts && fields->items[k]->kind == SYMBOL_STATE)
+        seen[k].counts = is_seen(p, k, count, next);
+      all = all && seen[k].counts;
+    }
+  }
+}
+
+static void check_effects(sense_bench *b, point_bench *p) {
+  const symbol_list *fields = &b->law->fields;
+  point_text t;
+  effect *seen = must_calloc((size_t)fields->count + 1, sizeof *seen);
+  if (point_text_open(&t, p)) {
+    look_at_states(&t, p, seen);
+    for (int k = 0; k < fields->count && b->law->options.count == 0; k += fields_of(fields, k))
+      if (point_text_moves(&t, p, k)) say_effect(b, fields->items[k], &seen[k]);
+  }
+  point_text_close(&t);
+  free(seen);
+}
+
+/* Damage that neither a pull nor a push with free sides brings. */
+static void check_weakening(sense_bench *b) {
+  static response r;
+  const symbol *damage = b->law->failed;
+  for (int k = 0; k < b->law->fields.count; k++) {
+    const symbol *s = b->law->fields.items[k];
+    if (s->kind == SYMBOL_DAMAGE) damage = damage ? damage : s;
+    if (s->kind == SYMBOL_STATE) return;
+  }
+  if (!damage || b->law->options.count > 0) return;
+  for (int sign = 1; sign >= -1; sign -= 2)
+    if (!response_of(b, b->parameters, sign, &r) || r.limit >= 0) return;
+  sense_say(b, DIAG_ELASTIC, damage->rule ? damage->rule->where : damage->where,
+            "look at the sign and the limit in its condition",
+            "neither pulled nor pushed does a point lose anything, up to a strain of 1: `%s` is "
+            "never reached there",
+            damage->name);
+}
+
+/* --- a step late ------------------------------------------------------------------------------ */
+
+static bool fields_differ(const point_bench *p, double *const *x, double *const *y, double by) {
+  for (int k = 0; k < p->law->fields.count; k++)
+    if (fabs(x[k][0] - y[k][0]) > by * pl_fmax(fabs(x[k][0]), fabs(y[k][0]))) return true;
+  return false;
+}
+
+static void check_lateness(sense_bench *b, point_bench *p) {
+  enum { ROUNDS = 120, FEW = 8 };
+  int moved_count = 0, late = 0;
+  for (int round = 0; round < ROUNDS; round++) {
+    double strain[POINT_MOST], next[POINT_MOST], once[POINT_MOST], twice[POINT_MOST];
+    const double size = go_somewhere(p, strain);
+    point_bench_direction(p, 2 * size, next);
+    point_bench_stress(p, next, once);
+    const bool moved = fields_differ(p, p->old_field, p->new_field, CLEARLY);
+    point_bench_keep(p);
+    point_bench_stress(p, next, twice);
+    if (!moved || fields_differ(p, p->old_field, p->new_field, SAME)) continue;
+    moved_count++;
+    late += differ(p, once, twice, CLEARLY);
+  }
+  if (late < FEW || late * 4 < moved_count) return;
+  sense_say(b, DIAG_ONE_STEP_LATE, sense_force(b->law),
+            "write it below the rules of what it reads, without `previous` and without names from "
+            "above them",
+            "the stress is a step late: held where it is, a point has another stress in the next "
+            "step, though its states are the same");
+}
+
+/* --- energies --------------------------------------------------------------------------------- */
+
+/* Sheared and back by amplitudes of many sizes: what the steps lose, by the law's own energy. */
+static void check_locked_energy(sense_bench *b, point_bench *p) {
+  enum { STEPS = 200, SIZES = 12 };
+  if (!b->law->results[RESULT_W] || !b->law->results[RESULT_SIGMA] || b->law->nonconservative)
+    return;
+  for (int size = 0; size < SIZES; size++) {
+    const double amplitude = pl_pow(10, -4 + 3.7 * size / (SIZES - 1));
+    double strain[POINT_MOST] = {0}, before = 0, work = 0, gained = 0;
+    const int shear = p->strains == 3 ? 2 : 3;
+    point_bench_virgin(p);
+    for (int step = 1; step <= 2 * STEPS; step++) {
+      const int part = step <= STEPS ? step : 2 * STEPS - step;
+      const double next = amplitude * part / STEPS;
+      const double change = next - strain[shear];
+      strain[shear] = next;
+      point_bench_strain(p, strain, NULL);
+      memset(p->lost, 0, sizeof p->lost);
+      point_bench_run(p, p->kernel->point_ledger, TIME_STEP);
+      work += fabs((p->stress[shear][0] + before) * change);
+      before = p->stress[shear][0];
+      double lost = 0;
+      for (int k = 0; k < PL_LOSSES; k++)
+        lost += p->lost[k][0];
+      if (lost < 0) gained -= lost;
+      point_bench_keep(p);
+    }
+    if (!isfinite(work) || !(gained > COARSE * work)) continue;
+    sense_say(b, DIAG_LOCKED_ENERGY, b->law->results[RESULT_W]->rule->where,
+              "add what the states lock in, as `H/3*(eps_p:eps_p)` of a linear kinematic hardening",
+              "sheared by %.3g and back, a point gives back %.3g of the work more than its energy "
+              "`W` had left: `W` lacks what the states store",
+              amplitude, gained / work);
+    return;
+  }
+}
+
+void sense_check_points(sense_bench *b) {
+  const physics_options with = {.parameters = b->parameters};
+  physics_report unwanted = {0};
+  if (b->law->fields.count == 0) return;
+  point_bench *p = must_calloc(1, sizeof *p);
+  *p = (point_bench){.law = b->law, .said = b->said, .report = &unwanted, .seed = 20260102};
+  const law_setting setting = law_is_for(b->law, SETTING_SPACE) ? SETTING_SPACE : b->law->setting;
+  if (point_bench_open(p, setting)) {
+    point_bench_parameters(p, &with, true);
+    check_effects(b, p);
+    check_weakening(b);
+    if (!p->kernel->reads_rates) check_lateness(b, p);
+    if (!b->said_of[DIAG_ONE_STEP_LATE]) check_locked_energy(b, p);
+  }
+  point_bench_close(p);
+  free(p);
+}

@@ -1,0 +1,250 @@
+#include "generator/sense/sense_text.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
+
+/* --- numbers of the text ---------------------------------------------------------------------- */
+
+static double value_of(const sense_bench *b, const expr *e, int depth);
+
+static double value_of_number(const expr *e) {
+  unit in;
+  const char *bad;
+  size_t length;
+  if (!e->unit_text) return e->number;
+  return unit_parse(e->unit_text, strlen(e->unit_text), &in, &bad, &length) ? e->number * in.factor
+                                                                            : NAN;
+}
+
+static double value_of_name(const sense_bench *b, const expr *e, int depth) {
+  const symbol *s = e->symbol;
+  if (s && s->kind == SYMBOL_PARAMETER) return b->parameters[s->index];
+  if (s && s->kind == SYMBOL_CONSTANT && s->rule) return value_of(b, s->rule->value, depth + 1);
+  return NAN;
+}
+
+static double value_of_binary(double x, binary_op op, double y) {
+  switch (op) {
+  case OP_ADD:
+    return x + y;
+  case OP_SUB:
+    return x - y;
+  case OP_MUL:
+    return x * y;
+  case OP_DIV:
+    return x / y;
+  case OP_POW:
+    return pl_pow(x, y);
+  default:
+    return NAN;
+  }
+}
+
+/* Of an expression of numbers, parameters and constants; else NaN. */
+static double value_of(const sense_bench *b, const expr *e, int depth) {
+  enum { DEEPEST = 32 };
+  if (!e || depth > DEEPEST) return NAN;
+  switch (e->kind) {
+  case EXPR_NUMBER:
+    return value_of_number(e);
+  case EXPR_NAME:
+    return value_of_name(b, e, depth);
+  case EXPR_UNARY:
+    return e->unary == OP_NEG    ? -value_of(b, e->left, depth + 1)
+           : e->unary == OP_PLUS ? value_of(b, e->left, depth + 1)
+                                 : NAN;
+  case EXPR_BINARY:
+    return value_of_binary(value_of(b, e->left, depth + 1), e->binary,
+                           value_of(b, e->right, depth + 1));
+  default:
+    return NAN;
+  }
+}
+
+/* To be freed. */
+static char *text_of(const expr *e) {
+  char *text;
+  size_t length;
+  FILE *out = must_open_text(&text, &length);
+  expr_print(e, out);
+  must_close_text(out);
+  return text;
+}
+
+/* --- degrees ---------------------------------------------------------------------------------- */
+
+static const double FULL_TURN = 2 * 3.14159265358979323846;
+
+/* The parameter that is the argument of a sine, where its bounds end beyond a full turn. */
+static const symbol *bounded_in_degrees(const sense_bench *b, const expr *e) {
+  const symbol *s = e->kind == EXPR_NAME ? e->symbol : NULL;
+  if (!s || s->kind != SYMBOL_PARAMETER || !s->declared->in.given) return NULL;
+  const double most = value_of(b, s->declared->in.upper, 0);
+  return most > FULL_TURN && most <= 400 ? s : NULL;
+}
+
+static void check_angle(sense_bench *b, const expr *call) {
+  const expr *angle = call->arguments[0].value;
+  const double value = value_of(b, angle, 0);
+  if (!(fabs(value) > FULL_TURN) && !bounded_in_degrees(b, angle)) return;
+  char *text = text_of(angle);
+  sense_say(b, DIAG_DEGREES, angle->where,
+            "angles are in radians: write the unit, `30 [deg]`, in the parameter and in its "
+            "bounds, and no factor such as 180/pi",
+            "`%s` takes `%s` = %.6g as radians, but this looks like degrees", call->name, text,
+            value);
+  free(text);
+}
+
+/* --- powers ----------------------------------------------------------------------------------- */
+
+static bool is_plain(const expr *e, double *value) {
+  *value = e && e->kind == EXPR_NUMBER && !e->unit_text ? e->number : NAN;
+  return !isnan(*value);
+}
+
+static void check_power(sense_bench *b, const expr *e) {
+  double power, divisor;
+  if (e->binary != OP_DIV || e->left->kind != EXPR_BINARY || e->left->binary != OP_POW) return;
+  if (!is_plain(e->left->right, &power) || power != 1 || !is_plain(e->right, &divisor)) return;
+  char *base = text_of(e->left->left), mend[256];
+  snprintf(mend, sizeof mend, "write `%.60s**(1/%g)`%s", base, divisor,
+           divisor == 2 ? ", or `sqrt(...)`" : "");
+  sense_say(b, DIAG_PRECEDENCE, e->where, mend,
+            "`**1/%g` is `(...**1)/%g`: this divides by %g and takes no root", divisor, divisor,
+            divisor);
+  free(base);
+}
+
+/* --- sums over the family --------------------------------------------------------------------- */
+
+typedef struct seen_names {
+  const expr *own; /* the first value of the particle itself that moves */
+  bool differs;    /* something that moves is read of the neighbour or of the bond */
+} seen_names;
+
+static bool moves(const symbol *s) {
+  if (s->kind == SYMBOL_QUANTITY) return !builtin_quantities[s->index].fixed;
+  return s->kind == SYMBOL_DEFINED || s->kind == SYMBOL_STATE || s->kind == SYMBOL_DAMAGE ||
+         s->kind == SYMBOL_RESULT;
+}
+
+static void look_for_names(const expr *e, seen_names *seen) {
+  if (!e) return;
+  if (e->kind == EXPR_NAME && e->symbol && moves(e->symbol)) {
+    seen->differs = seen->differs || e->indexed || e->primed || e->place > ON_PARTICLE;
+    if (!e->indexed && e->place == ON_PARTICLE && !seen->own) seen->own = e;
+  }
+  if (e->kind == EXPR_CALL && e->symbol)
+    seen->differs = true; /* of what is inside nothing is known */
+  look_for_names(e->left, seen);
+  look_for_names(e->right, seen);
+  for (int k = 0; k < e->argument_count; k++)
+    look_for_names(e->arguments[k].value, seen);
+  for (int k = 0; k < e->case_count; k++) {
+    look_for_names(e->cases[k].guard, seen);
+    look_for_names(e->cases[k].value, seen);
+  }
+}
+
+static void check_sum(sense_bench *b, const expr *call) {
+  seen_names seen = {NULL, false};
+  if (b->law->tree->law != LAW_STATE) return;
+  look_for_names(call->arguments[0].value, &seen);
+  if (!seen.own || seen.differs) return;
+  char mend[256];
+  snprintf(mend, sizeof mend, "write `%.60s[j]` for the neighbour's, or take it out of the `%s`",
+           seen.own->name, call->name);
+  sense_say(b, DIAG_OWN_VALUE, seen.own->where, mend,
+            "`%s` is the particle's own value, the same for each neighbour of this `%s`",
+            seen.own->name, call->name);
+}
+
+/* --- flows whose new value the force does not know -------------------------------------------- */
+
+typedef struct reading {
+  bool old, new;
+} reading;
+
+/* `previous(x)` alone is an old value that is meant; a name above its rule may be. */
+static void find_readings(const expr *e, const symbol *state, reading *found, int depth) {
+  enum { DEEPEST = 64 };
+  if (!e || depth > DEEPEST) return;
+  if (e->kind == EXPR_CALL && !e->symbol && e->builtin == FUNCTION_PREVIOUS) {
+    found->old = found->old || e->arguments[0].value->symbol == state;
+    return;
+  }
+  if (e->kind == EXPR_NAME && e->symbol == state) found->new = true;
+  if (e->kind == EXPR_NAME && e->symbol && e->symbol->kind == SYMBOL_DEFINED && e->symbol->rule)
+    find_readings(e->symbol->rule->value, state, found, depth + 1);
+  find_readings(e->left, state, found, depth + 1);
+  find_readings(e->right, state, found, depth + 1);
+  for (int k = 0; k < e->argument_count; k++)
+    find_readings(e->arguments[k].value, state, found, depth + 1);
+  for (int k = 0; k < e->case_count; k++) {
+    find_readings(e->cases[k].guard, state, found, depth + 1);
+    find_readings(e->cases[k].value, state, found, depth + 1);
+  }
+}
+
+/* Of laws of families, whose forces may read damages of the last step, but not what a flow has just
+   changed. */
+static void check_force_state(sense_bench *b) {
+  const stmt *force = law_force_state(b->law);
+  if (b->law->options.count > 0) return; /* which may choose just that */
+  for (int k = 0; force && k < b->law->fields.count; k++) {
+    const symbol *s = b->law->fields.items[k];
+    reading found = {false, false};
+    if (!s->rule || s->rule->kind != STMT_FLOW) continue;
+    find_readings(force->value, s, &found, 0);
+    if (found.old && !found.new)
+      sense_say(b, DIAG_ONE_STEP_LATE, force->where, "write it below the flow, without `previous`",
+                "the force state is made of `%s` as it was before its flow: it is a step late",
+                s->name);
+  }
+}
+
+/* --- the walk --------------------------------------------------------------------------------- */
+
+static void look_at_call(sense_bench *b, const expr *e) {
+  if (e->symbol || e->argument_count == 0) return;
+  switch (e->builtin) {
+  case FUNCTION_SIN:
+  case FUNCTION_COS:
+  case FUNCTION_TAN:
+    check_angle(b, e);
+    break;
+  case FUNCTION_SUM:
+  case FUNCTION_MEAN:
+    check_sum(b, e);
+    break;
+  default:
+    break;
+  }
+}
+
+static void look_at(sense_bench *b, const expr *e) {
+  if (!e) return;
+  if (e->kind == EXPR_CALL) look_at_call(b, e);
+  if (e->kind == EXPR_BINARY) check_power(b, e);
+  look_at(b, e->left);
+  look_at(b, e->right);
+  for (int k = 0; k < e->argument_count; k++)
+    look_at(b, e->arguments[k].value);
+  for (int k = 0; k < e->case_count; k++) {
+    look_at(b, e->cases[k].guard);
+    look_at(b, e->cases[k].value);
+  }
+}
+
+void sense_check_text(sense_bench *b) {
+  for (const stmt *s = b->law->tree->first; s; s = s->next) {
+    look_at(b, s->value);
+    look_at(b, s->when);
+  }
+  check_force_state(b);
+}
