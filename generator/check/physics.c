@@ -159,10 +159,12 @@ static void check_bonds(physics *p) {
   }
 }
 
-/* With the values of a deck a line may be out of reach: only around the defaults. */
+/* With the values of a deck a line may be out of reach: only around the defaults. Of very many lines
+   the states that are drawn may miss a narrow one. */
 static void check_lines(physics *p) {
+  enum { MANY_LINES = 32 };
   const lowered_line *never = conditions_never_taken(&p->b.conditions);
-  if (!never || p->b.options->parameters) return;
+  if (!never || p->b.options->parameters || p->b.law_step.text.line_count > MANY_LINES) return;
   physics_say(p, DIAG_NEVER_TAKEN, never->cases->cases[never->line].where, NULL,
               "no state of a bond is in this line: its condition never holds, or a line above has "
               "taken all that it is for");

@@ -457,7 +457,7 @@ static void strays_are_found(void **state) {
                                        "/* line 1; */",
                                        "__builtin_trap();",
                                        "\t",
-                                       "while (x)",
+                                       "switch (x)",
                                        "do x;",
                                        "/* line 12 ",
                                        "x (y)",
