@@ -285,9 +285,9 @@ typedef struct pl_family {
   /* [count] of laws that read it (pl_law.reads_own_size): spacing of each particle over that of the
      bond class, and so its horizon over that. */
   const double *own_size;
-  /* Of lists, unless NULL: [count/PL_LANES][neighbours]: of each PL_LANES particles toward neighbour
-     k PL_OWN_WAYS, PL_NO_WAY, or which way all of these go that have it; from those that have none
-     that way leads to a site, too. */
+  /* Of lists, unless NULL: [count/PL_LANES][neighbours]: of each PL_LANES particles toward
+     neighbour k PL_OWN_WAYS, PL_NO_WAY, or which way all of these go that have it; from those that
+     have none that way leads to a site, too. */
   const int32_t *alike;
   const pl_way *way;
   double advance; /* s, as of a strip: from the state that old_field is of */

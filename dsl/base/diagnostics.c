@@ -66,13 +66,25 @@ static void append(diagnostic **items, int *count, diagnostic one) {
   (*items)[(*count)++] = one;
 }
 
+static void report(diagnostics *d, diag_code code, span where, const char *format, va_list values) {
+  char *message = format_text(format, values);
+  append(&d->items, &d->count, (diagnostic){.code = code, .where = where, .message = message});
+  if (diag_severity(code) == SEVERITY_ERROR) d->errors++;
+}
+
 void diag_report(diagnostics *d, diag_code code, span where, const char *format, ...) {
   va_list values;
   va_start(values, format);
-  char *message = format_text(format, values);
+  report(d, code, where, format, values);
   va_end(values);
-  append(&d->items, &d->count, (diagnostic){.code = code, .where = where, .message = message});
-  if (diag_severity(code) == SEVERITY_ERROR) d->errors++;
+}
+
+bool diag_report_once(diagnostics *d, bool said[DIAG_COUNT], diag_code code, span where,
+                      const char *format, va_list values) {
+  if (said[code]) return false;
+  said[code] = true;
+  report(d, code, where, format, values);
+  return true;
 }
 
 /* The compiler's own faults (`tangent`) are none of a law's. */

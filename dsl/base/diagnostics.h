@@ -3,6 +3,7 @@
 #ifndef PERILAT_DSL_DIAGNOSTICS_H
 #define PERILAT_DSL_DIAGNOSTICS_H
 
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
 
@@ -45,6 +46,9 @@ void diag_clear(diagnostics *d);
 /* Adds one diagnostic. note and hint attach to the one added last. */
 void diag_report(diagnostics *d, diag_code code, span where, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
+/* Adds it where said[code] is not set, and sets that: checks speak once. Returns whether it did. */
+bool diag_report_once(diagnostics *d, bool said[DIAG_COUNT], diag_code code, span where,
+                      const char *format, va_list values) __attribute__((format(printf, 5, 0)));
 void diag_note(diagnostics *d, span where, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 void diag_hint(diagnostics *d, const char *format, ...) __attribute__((format(printf, 2, 3)));

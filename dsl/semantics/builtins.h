@@ -184,8 +184,8 @@ enum { MOVES, FIXED };
   X(PRODUCT, "product", 2, 2, product, NO_VALUE, "\\operatorname{product}",                        \
     "x = trace(product(fit(stretch), fit(stretch)))",                                              \
     "symmetric product (a b + b a)/2 of two tensors")                                              \
-  X(VECTOR, LAW_VECTOR, 2, 3, vector_of_components, NO_VALUE, "", "x = norm(vector(1, 0, 0))",      \
-    "vector of its components x, y and, where it is not 0, z; `(1, 0, 0)` is the same")             \
+  X(VECTOR, LAW_VECTOR, 2, 3, vector_of_components, NO_VALUE, "", "x = norm(vector(1, 0, 0))",     \
+    "vector of its components x, y and, where it is not 0, z; `(1, 0, 0)` is the same")            \
   X(DOT, "dot", 2, 2, dot, NO_VALUE, "", "x = dot(direction, (1, 0, 0))",                          \
     "scalar product of two vectors")                                                               \
   X(CROSS, "cross", 2, 2, cross, NO_VALUE, "", "x = norm(cross(direction, (1, 0, 0)))",            \

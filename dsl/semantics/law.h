@@ -134,12 +134,13 @@ bool law_is_for(const law *l, law_setting setting);
 /* That of a lattice with 2 or 3 dimensions: the first of these that the law names; plane stress or
    space where it names none. */
 law_setting law_setting_in(const law *l, int dimensions);
-/* Of a state that is a tensor or vector, the field that keeps component k; -1 of zz of a deviator, which is
-   -(xx + yy). */
+/* Of a state that is a tensor or vector, the field that keeps component k; -1 of zz of a deviator,
+   which is -(xx + yy). */
 int law_field_of(const symbol *tensor, int k);
 /* The line by which the law accepts what a check finds; NULL without one. */
 const law_waiver *law_accepts(const law *l, diag_code check);
-/* The k-th of all that it says about its mechanics, `nonconservative` first; false behind the last. */
+/* The k-th of all that it says about its mechanics, `nonconservative` first; false behind
+   the last. */
 bool law_says(const law *l, int k, const char **check, const char **why);
 /* Of the messages from number `from` on those that the law accepts are set apart. */
 void law_waive(const law *l, diagnostics *d, int from);

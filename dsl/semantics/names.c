@@ -297,8 +297,8 @@ static entry *find_argument(const checker *ck, const char *name) {
   return NULL;
 }
 
-/* Above its line there is no rest stretch yet, and that itself knows no motion. A function is checked
-   where it is called. */
+/* Above its line there is no rest stretch yet, and that itself knows no motion. A function is
+   checked where it is called. */
 static bool is_measured_from_rest(checker *ck, const expr *e, const symbol *s) {
   const bool stretch = s->kind == SYMBOL_QUANTITY && s->index == QUANTITY_STRETCH;
   if (!stretch || !ck->law->rest || ck->now > ck->rest_at || ck->now >= ck->statement_count ||

@@ -64,7 +64,7 @@ static const word no_word;
 %type <stmt> only_text declaration parameter field flow rule rate rest
 %type <expr> default body cases case_lines call arguments
 %type <expr> expression conjunction negation comparison sum addend term factor power primary
-%type <word> text unit index on along
+%type <word> text unit index on along late_word
 %type <words> names choices
 %type <bounds> interval
 %type <flag> opening closing jump
@@ -113,6 +113,7 @@ declaration:
 | OPTION NAME '=' '|' choices       { $$ = build_stmt(p, STMT_OPTION, $2, no_word, NULL, @$);
                                       build_words_of($$, $5); }
 | NAME index '=' body               { $$ = build_stmt(p, STMT_DEFINITION, $1, $2, $4, @$); }
+| late_word index '=' body          { $$ = build_stmt(p, STMT_DEFINITION, $1, $2, $4, @$); }
 | rest
 | STATE NAME index on '=' body      { $$ = build_stmt(p, STMT_STATE, $2, $3, $6, @$);
                                       build_placement(p, $$, $4); }
@@ -163,17 +164,20 @@ flow:
                                       $$->returned = true; }
 ;
 
-/* A line may also give a name that is `rest` or `rate`. */
 rest:
   REST NAME index '=' body          { $$ = build_rest(p, $2, $3, $5, @$); }
-| REST index '=' body               { $$ = build_stmt(p, STMT_DEFINITION, (word){"rest", @1}, $2,
-                                                      $4, @$); }
 ;
 
 rate:
   RATE NAME index '=' body          { $$ = build_stmt(p, STMT_RATE, $2, $3, $5, @$); }
-| RATE index '=' body               { $$ = build_stmt(p, STMT_DEFINITION, (word){"rate", @1}, $2,
-                                                      $4, @$); }
+;
+
+/* Names of laws that were written before these words began lines. */
+late_word:
+  REST                              { $$ = (word){"rest", @1}; }
+| RATE                              { $$ = (word){"rate", @1}; }
+| FIELD                             { $$ = (word){"field", @1}; }
+| ACCEPT                            { $$ = (word){"accept", @1}; }
 ;
 
 parameter:

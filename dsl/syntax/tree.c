@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "dsl/base/arena.h"
 #include "dsl/base/digits.h"
 
 const char *stmt_kind_name(stmt_kind kind) {
@@ -170,6 +171,15 @@ static void print_at(const expr *e, level context, FILE *out) {
 
 void expr_print(const expr *e, FILE *out) {
   print_at(e, LEVEL_OR, out);
+}
+
+char *expr_text(const expr *e) {
+  char *text;
+  size_t length;
+  FILE *out = must_open_text(&text, &length);
+  expr_print(e, out);
+  must_close_text(out);
+  return text;
 }
 
 /* --- the tree as indented text ---------------------------------------------------------------- */

@@ -158,10 +158,10 @@ typedef enum stmt_kind {
   X(OPTION, "option")                                                                              \
   X(DEFINITION, "definition") X(STATE, "state") X(DAMAGE, "damage") X(FUNCTION, "function")        \
       X(FORCE, "force") X(FORCE_STATE, "force state") X(MOMENT, "moment") X(ENERGY, "energy")      \
-          X(STRESS, "stress") X(STRAIN, "strain") X(YIELD, "yield") X(FLOW, "flow") X(RATE, "rate") \
-              X(OUTPUT, "output") X(NONCONSERVATIVE, "nonconservative") X(INCLUDE, "include")      \
-                  X(GROW, "grow") X(TOWARD, "toward") X(SPEED, "speed") X(REQUIRE, "require")        \
-                  X(ACCEPT, "accept")
+          X(STRESS, "stress") X(STRAIN, "strain") X(YIELD, "yield") X(FLOW, "flow")                \
+              X(RATE, "rate") X(OUTPUT, "output") X(NONCONSERVATIVE, "nonconservative")            \
+                  X(INCLUDE, "include") X(GROW, "grow") X(TOWARD, "toward") X(SPEED, "speed")      \
+                      X(REQUIRE, "require") X(ACCEPT, "accept")
 #define X(code, text) STMT_##code,
   TREE_STATEMENTS(X)
 #undef X
@@ -262,6 +262,8 @@ bool expr_is_vector(const expr *e);
 void tree_dump(const tree *t, FILE *out);
 /* Prints an expression as source text with the fewest parentheses. */
 void expr_print(const expr *e, FILE *out);
+/* The same as a text, to be freed. */
+char *expr_text(const expr *e);
 
 C_LINKAGE_END
 

@@ -31,7 +31,8 @@ bounds build_bounds(parsing *p, bool lower_open, expr *lower, expr *upper, bool 
 /* index.text is NULL for a name without [j]. */
 stmt *build_stmt(parsing *p, stmt_kind kind, word name, word index, expr *value, span where);
 void build_placement(parsing *p, stmt *s, word on);
-/* A state that begins at `tensor 0`, `deviator 0` or `vector 0`; `tensor` is the word that stands there. */
+/* A state that begins at `tensor 0`, `deviator 0` or `vector 0`; `tensor` is the word that stands
+   there. */
 void build_tensor_state(parsing *p, stmt *s, word tensor);
 /* What a law of cracks gives: `grow`, `toward`, `speed`, which are their names, too. */
 stmt *build_tip_stmt(parsing *p, stmt_kind kind, span name_where, expr *value, span where);

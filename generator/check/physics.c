@@ -56,6 +56,18 @@ static void family_dissipation(family_bench *b) {
   family_check_dissipation(b, times(b->options, b->reads_time ? 30 : 5));
 }
 
+/* With the values of a deck a line may be out of reach: only around the defaults. Of very many
+   lines the states that are drawn may miss a narrow one. */
+static void check_lines(physics *p) {
+  enum { MANY_LINES = 32 };
+  const lowered_line *never = conditions_never_taken(&p->b.conditions);
+  if (!never || p->b.options->parameters || p->b.law_step.text.line_count > MANY_LINES) return;
+  physics_say(p, DIAG_NEVER_TAKEN, never->cases->cases[never->line].where, NULL,
+              "no state of a bond is in this line: its condition never holds, or a line above has "
+              "taken all that it is for");
+  diag_hint(p->said, "look at the order of the lines, and at the limits in their conditions");
+}
+
 /* A check: what it may say, for which laws it is, and what a law has failed already when it is
    left out, because it would say the same again. Codes stand up to the first 0, which is none of
    mechanics. */
@@ -127,6 +139,7 @@ static const physics_row checks[] = {
      .of_families = family_dissipation,
      .hushed_by = {DIAG_STORED_ENERGY, DIAG_CLOSED_PATH, DIAG_DAMAGE_FORCE, DIAG_STIFFNESS,
                    DIAG_REST_FORCE, DIAG_FLOW}},
+    {.says = {DIAG_NEVER_TAKEN}, .of_bonds = check_lines}, /* all states have been drawn */
 };
 enum { CHECK_COUNT = sizeof checks / sizeof *checks };
 
@@ -157,18 +170,6 @@ static void check_bonds(physics *p) {
     c->of_bonds(p);
     assert(keeps_to_its_row(c, before, p->failed));
   }
-}
-
-/* With the values of a deck a line may be out of reach: only around the defaults. Of very many lines
-   the states that are drawn may miss a narrow one. */
-static void check_lines(physics *p) {
-  enum { MANY_LINES = 32 };
-  const lowered_line *never = conditions_never_taken(&p->b.conditions);
-  if (!never || p->b.options->parameters || p->b.law_step.text.line_count > MANY_LINES) return;
-  physics_say(p, DIAG_NEVER_TAKEN, never->cases->cases[never->line].where, NULL,
-              "no state of a bond is in this line: its condition never holds, or a line above has "
-              "taken all that it is for");
-  diag_hint(p->said, "look at the order of the lines, and at the limits in their conditions");
 }
 
 static void check_families(family_bench *b) {
@@ -204,7 +205,6 @@ static void check_law_of_bonds(const law *l, const physics_options *o, diagnosti
   if (bench_open(&p->b, l, o, d)) {
     p->pool = must_alloc((size_t)POOL_MOST * (size_t)p->b.width * sizeof *p->pool);
     check_bonds(p);
-    check_lines(p);
     conditions_count(&p->b.conditions, report);
     report->states = p->b.evaluated;
     check_twisting_bonds(p, report);

@@ -19,8 +19,7 @@ typedef struct physics_options {
   const struct deck_lattice *lattice;
   double effort; /* share of the usual number of states; 0: 1 */
   uint64_t seed; /* 0: the usual one */
-  bool
-      strict; /* what the law accepts counts all the same: an exercise is not waived by its answer */
+  bool strict;   /* what the law accepts counts all the same */
 } physics_options;
 
 typedef struct physics_report {

@@ -367,14 +367,11 @@ static char *found_at(const family_bench *b, double size) {
 
 void family_bench_say(family_bench *b, diag_code code, span where, double size, const char *format,
                       ...) {
-  if (b->failed[code]) return;
-  b->failed[code] = true;
-  char message[1024];
   va_list values;
   va_start(values, format);
-  vsnprintf(message, sizeof message, format, values);
+  const bool first = diag_report_once(b->said, b->failed, code, where, format, values);
   va_end(values);
-  diag_report(b->said, code, where, "%s", message);
+  if (!first) return;
   char *state = found_at(b, size);
   diag_note(b->said, (span){0, 0, UINT16_MAX}, "found with %s", state);
   free(state);

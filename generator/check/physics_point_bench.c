@@ -215,12 +215,8 @@ static char *state_text(const point_bench *b, const double *strain) {
 
 static void tell(point_bench *b, span where, diag_code code, const double *strain, const char *mend,
                  const char *format, va_list values) {
-  char message[512];
-  if (b->failed[code]) return;
-  b->failed[code] = true;
-  vsnprintf(message, sizeof message, format, values);
+  if (!diag_report_once(b->said, b->failed, code, where, format, values)) return;
   char *state = state_text(b, strain);
-  diag_report(b->said, code, where, "%s", message);
   diag_note(b->said, (span){0, 0, UINT16_MAX}, "found at %s", state);
   if (mend) diag_hint(b->said, "%s", mend);
   free(state);

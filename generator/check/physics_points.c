@@ -96,16 +96,6 @@ static double size_of_stress(point_bench *b) {
   return scale;
 }
 
-/* To be freed. */
-static char *text_of(const expr *e) {
-  char *text;
-  size_t length;
-  FILE *out = must_open_text(&text, &length);
-  expr_print(e, out);
-  must_close_text(out);
-  return text;
-}
-
 /* How to keep a divisor off 0. To be freed. */
 static char *mend_of_divisor(const expr *e, const char *divisor) {
   const bool stress = dim_equal(e->dim, dimension_of("Pa"));
@@ -129,7 +119,7 @@ static void say_not_a_number(point_bench *b, const double *rest) {
   lone_point_close(&point);
   free(field);
   if (from.kind == BAD_DIVISION) {
-    char *divisor = text_of(from.of->right), *mend = mend_of_divisor(from.of->right, divisor);
+    char *divisor = expr_text(from.of->right), *mend = mend_of_divisor(from.of->right, divisor);
     point_bench_say_at(b, from.of->where, DIAG_REST_FORCE, NULL, mend,
                        "%s: this divides by `%s`, which is 0 there", what, divisor);
     free(mend);
@@ -556,8 +546,8 @@ static void go(point_bench *b, round_trip *t, const double *next) {
     }
 }
 
-/* Around a random polygon of strains and back, in small steps; of laws that read the time quickly or
-   slowly. */
+/* Around a random polygon of strains and back, in small steps; of laws that read the time quickly
+   or slowly. */
 static void go_around(point_bench *b, round_trip *t, int steps) {
   enum { CORNERS = 5 };
   double corner[CORNERS + 1][MOST] = {{0}}, next[MOST];

@@ -107,15 +107,11 @@ static bool with_other_values(const physics *p, const double *column) {
 
 void physics_say(physics *p, diag_code code, span where, const double *column, const char *format,
                  ...) {
-  if (p->failed[code]) return;
-  p->failed[code] = true;
-  char message[1024];
   va_list values;
   va_start(values, format);
-  vsnprintf(message, sizeof message, format, values);
+  const bool first = diag_report_once(p->said, p->failed, code, where, format, values);
   va_end(values);
-  diag_report(p->said, code, where, "%s", message);
-  if (!column) return;
+  if (!first || !column) return;
   char *state = physics_state_text(p, column);
   if (*state)
     diag_note(p->said, (span){0, 0, UINT16_MAX}, "found at %s%s", state,

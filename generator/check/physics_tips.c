@@ -63,14 +63,12 @@ static void say(tip_bench *b, diag_code code, law_result which, int lane, const 
                 const char *format, ...) __attribute__((format(printf, 6, 7)));
 static void say(tip_bench *b, diag_code code, law_result which, int lane, const char *mend,
                 const char *format, ...) {
-  if (b->failed[code]) return;
-  b->failed[code] = true;
-  char message[512];
   va_list values;
   va_start(values, format);
-  vsnprintf(message, sizeof message, format, values);
+  const bool first = diag_report_once(b->said, b->failed, code, b->law->results[which]->rule->where,
+                                      format, values);
   va_end(values);
-  diag_report(b->said, code, b->law->results[which]->rule->where, "%s", message);
+  if (!first) return;
   diag_note(b->said, (span){0, 0, UINT16_MAX},
             "found at K_I = %.4g, K_II = %.4g Pa*m^(1/2), speed_now = %.4g m/s, rayleigh_speed = "
             "%.4g m/s",

@@ -13,9 +13,9 @@
    Where a value is chosen by a condition that is expected to hold (choices.h), stages compute what
    is expected for all bonds and gather the largest of the sizes that the conditions ask about.
    Of conditions that ask for no size a flag of each bond waits in a buffer of its own. Before the
-   last stage, which overwrites fields, it is looked whether all were as expected; if not, bonds that
-   exist and are not are looked for, vector by vector, and of what the last stage takes from buffers
-   theirs is computed again with both sides, as far as it hangs on what was expected.
+   last stage, which overwrites fields, it is looked whether all were as expected; if not, bonds
+   that exist and are not are looked for, vector by vector, and of what the last stage takes from
+   buffers theirs is computed again with both sides, as far as it hangs on what was expected.
 
    What follows from new damage alone is left to one more stage, done only where a bond has some:
    most steps leave nearly all damage as it is, which need not be written then, and whose energy

@@ -72,13 +72,9 @@ span sense_force(const law *l) {
 
 void sense_say(sense_bench *b, diag_code code, span where, const char *mend, const char *format,
                ...) {
-  if (b->said_of[code]) return;
-  b->said_of[code] = true;
-  char message[1024];
   va_list values;
   va_start(values, format);
-  vsnprintf(message, sizeof message, format, values);
+  const bool first = diag_report_once(b->said, b->said_of, code, where, format, values);
   va_end(values);
-  diag_report(b->said, code, where, "%s", message);
-  if (mend) diag_hint(b->said, "%s", mend);
+  if (first && mend) diag_hint(b->said, "%s", mend);
 }

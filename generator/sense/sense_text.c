@@ -65,16 +65,6 @@ static double value_of(const sense_bench *b, const expr *e, int depth) {
   }
 }
 
-/* To be freed. */
-static char *text_of(const expr *e) {
-  char *text;
-  size_t length;
-  FILE *out = must_open_text(&text, &length);
-  expr_print(e, out);
-  must_close_text(out);
-  return text;
-}
-
 /* --- degrees ---------------------------------------------------------------------------------- */
 
 static const double FULL_TURN = 2 * 3.14159265358979323846;
@@ -91,7 +81,7 @@ static void check_angle(sense_bench *b, const expr *call) {
   const expr *angle = call->arguments[0].value;
   const double value = value_of(b, angle, 0);
   if (!(fabs(value) > FULL_TURN) && !bounded_in_degrees(b, angle)) return;
-  char *text = text_of(angle);
+  char *text = expr_text(angle);
   sense_say(b, DIAG_DEGREES, angle->where,
             "angles are in radians: write the unit, `30 [deg]`, in the parameter and in its "
             "bounds, and no factor such as 180/pi",
@@ -111,7 +101,7 @@ static void check_power(sense_bench *b, const expr *e) {
   double power, divisor;
   if (e->binary != OP_DIV || e->left->kind != EXPR_BINARY || e->left->binary != OP_POW) return;
   if (!is_plain(e->left->right, &power) || power != 1 || !is_plain(e->right, &divisor)) return;
-  char *base = text_of(e->left->left), mend[256];
+  char *base = expr_text(e->left->left), mend[256];
   snprintf(mend, sizeof mend, "write `%.60s**(1/%g)`%s", base, divisor,
            divisor == 2 ? ", or `sqrt(...)`" : "");
   sense_say(b, DIAG_PRECEDENCE, e->where, mend,

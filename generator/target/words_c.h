@@ -351,7 +351,7 @@
     "      until = end_of_alike(alike, family->neighbours, from, lanes);\n"                        \
     "      const long span = (until - from) / PL_LANES * PL_LANES;\n"                              \
     "      if (which == PL_NO_WAY) {\n")                                                           \
-  X(IF_ALIKE, "      if (which >= 0) {\n      const pl_way *way = family->way + which;\n"            \
+  X(IF_ALIKE, "      if (which >= 0) {\n      const pl_way *way = family->way + which;\n"          \
     "      (void)way;\n")                                                                          \
   X(OVER_SPAN, "      PL_INDEPENDENT\n      for (long q = from; q < from + span; q++) {\n")        \
   X(AT_FROM, "$1[from]")                                                                           \

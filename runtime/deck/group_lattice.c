@@ -433,6 +433,12 @@ static int read_assignments(arena *memory, const namelist_group *g, const nameli
                             const char *lattice, deck_assignment *into, diagnostics *d) {
   if (key->value_count == 2 || key->value_count == 3)
     return read_list(memory, g, key, lattice, into, d);
+  if (key->value_count > 3) {
+    diag_report(d, DIAG_BAD_VALUE, key->value_where,
+                "`%s` takes 1 value, of a vector 2 or 3, but %d are given", key->name,
+                key->value_count);
+    return 0;
+  }
   if (!deck_values_counted(key, 1, d)) return 0;
   *into = (deck_assignment){
       .name = key->name, .name_where = key->name_where, .value_where = key->value_where};

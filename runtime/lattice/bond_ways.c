@@ -13,7 +13,8 @@ enum { FEWEST = 64, LOOK = 16384 };
 
 /* --- ways of bonds ---------------------------------------------------------------------------- */
 
-/* From i to j, turned so that it leads to higher z, else y, else x. Returns whether it is turned. */
+/* From i to j, turned so that it leads to higher z, else y, else x. Returns whether it is
+   turned. */
 static bool way_of(const point_cloud *p, const point_pair *pair, double least, double chord[3]) {
   int last = -1;
   for (int a = 0; a < 3; a++) {
@@ -127,7 +128,8 @@ static double dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Along the way; across it in its plane with the most common other; across the plane. Unit vectors. */
+/* Along the way; across it in its plane with the most common other; across the plane. Unit
+   vectors. */
 static void find_axes(const bond_ways *w, int way, int dimensions, double axis[3][3]) {
   static const double up[3] = {0, 0, 1}, sideways[3] = {0, 1, 0}, ahead[3] = {1, 0, 0};
   const double *first = w->chord[way];

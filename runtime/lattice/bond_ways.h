@@ -23,8 +23,8 @@ bool bond_ways_find(const point_cloud *points, const point_pairs *pairs, double 
                     bond_ways *w);
 void bond_ways_free(bond_ways *w);
 
-/* The points in lines along a common way: order[count] line after line, length[lines] of each, to be
-   freed. Returns how many lines there are. */
+/* The points in lines along a common way: order[count] line after line, length[lines] of each, to
+   be freed. Returns how many lines there are. */
 long bond_ways_lines(const bond_ways *w, int way, const point_cloud *points, double spacing,
                      int32_t *order, int32_t **length);
 

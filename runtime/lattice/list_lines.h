@@ -21,8 +21,8 @@ void list_lines_free(list_lines *l);
 bool list_lines_pay(const list_lines *l, long particles, long aside);
 
 /* site[particles], of the particles in that order. Those with bonds of numbers from `common` on,
-   highest[particles], stand aside: together, in rows between those of lines near them. is_line[rows]
-   says which are which; to be freed. Returns how many rows there are. */
+   highest[particles], stand aside: together, in rows between those of lines near them.
+   is_line[rows] says which are which; to be freed. Returns how many rows there are. */
 long list_lines_place(const list_lines *l, const int32_t *highest, int common, int32_t *site,
                       unsigned char **is_line);
 

@@ -25,8 +25,8 @@ void trial_plate_text(char *text, size_t size, double particles, const char *mod
 /* Ends the program, after the diagnostics, when the deck is faulty. The particles start at rest,
    but for random displacements that stretch bonds by about 1e-5. */
 trial *trial_open(const char *deck_text);
-/* The same; `everywhere`: with a kernel that computes everywhere what is needed only where something
-   grows (law_variation). */
+/* The same; `everywhere`: with a kernel that computes everywhere what is needed only where
+   something grows (law_variation). */
 trial *trial_open_kernel(const char *deck_text, bool everywhere);
 void trial_close(trial *t);
 /* A model, opened and planned; on a lattice of so many neighbours, 0: not known. */

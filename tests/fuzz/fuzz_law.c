@@ -59,8 +59,9 @@ static const char *const numbers[] = {"~",
 static const char *const conditions[] = {"# < #",     "# <= #",   "# > #", "# == #",
                                          "(? and ?)", "(? or ?)", "not ?", "# >= #"};
 static const char *const plain[] = {
-    "0", "1",     "2",     "0.5",   "1e-4", "(-1)",     "1e-300",       "1e300",   "(-0.3)",
-    "7", "(1/3)", "shell", "(s/t)", "p",    "(V/s**3)", "(dt/(1 [s]))", "(m_i/m)", "(length/s)", "pi"};
+    "0",       "1",          "2",     "0.5",   "1e-4",  "(-1)", "1e-300",   "1e300",
+    "(-0.3)",  "7",          "(1/3)", "shell", "(s/t)", "p",    "(V/s**3)", "(dt/(1 [s]))",
+    "(m_i/m)", "(length/s)", "pi"};
 
 #define PICK(list, number) (list)[(number) % (sizeof(list) / sizeof *(list))]
 

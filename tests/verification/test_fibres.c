@@ -1,6 +1,6 @@
-/* A composite of fibres, models/pmb_fibre.plm: elastic constants over the angle of the fibres against
-   the lattice's own sum over its bonds and against the solid with bonds in all directions; bonds that
-   break by their angle. */
+/* A composite of fibres, models/pmb_fibre.plm: elastic constants over the angle of the fibres
+   against the lattice's own sum over its bonds and against the solid with bonds in all directions;
+   bonds that break by their angle. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* Kernels for lists read neighbours that stand side by side with unit stride, and all others by
-   their list. Both find the same to the bit: a plate with exact edges and a notch, and a block turned
-   against its lattice, move the same with what is known of their neighbours (pl_family.alike) and
-   without. */
+   their list. Both find the same to the bit: a plate with exact edges and a notch, and a block
+   turned against its lattice, move the same with what is known of their neighbours
+   (pl_family.alike) and without. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

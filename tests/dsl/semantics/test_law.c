@@ -139,12 +139,13 @@ static void micropolar_law_is_understood(void **state) {
   X("(s**2)**(3/4)", "m^1.5", SCALAR)                                                              \
   X("stretch**rate_free", "1", SCALAR)                                                             \
   X("2**stretch", "1", SCALAR)                                                                     \
-  X("m*stretch_rate**2", "kg/s^2", SCALAR) X("theta_i - 2*theta_j", "1", BENDING)                  \
-      X("EI*theta_i/s", "N*m", BENDING) X("norm(EI*theta_i/s**2)", "N", SCALAR)                    \
-          X("theta_i : theta_j", "1", SCALAR) X("EI*(theta_i : theta_i)/s", "J", SCALAR)           \
-              X("sign(EA)", "1", SCALAR) X("positive_part(EA - 1 [kN])", "N", SCALAR)              \
-                  X("max(0, EA, 1 [kN])", "N", SCALAR) X("min(0, stretch)", "1", SCALAR) X(        \
-                      "atan2(s, spacing)", "1", SCALAR) X("exp(-stretch)*EA", "N", SCALAR)         \
+  X("m*stretch_rate**2", "kg/s^2", SCALAR)                                                         \
+  X("theta_i - 2*theta_j", "1", BENDING) X("EI*theta_i/s", "N*m", BENDING)                         \
+      X("norm(EI*theta_i/s**2)", "N", SCALAR) X("theta_i : theta_j", "1", SCALAR)                  \
+          X("EI*(theta_i : theta_i)/s", "J", SCALAR) X("sign(EA)", "1", SCALAR)                    \
+              X("positive_part(EA - 1 [kN])", "N", SCALAR) X("max(0, EA, 1 [kN])", "N", SCALAR)    \
+                  X("min(0, stretch)", "1", SCALAR) X("atan2(s, spacing)", "1",                    \
+                                                      SCALAR) X("exp(-stretch)*EA", "N", SCALAR)   \
                       X("abs(EA)", "N", SCALAR) X("soft_sign(stretch)", "1", SCALAR) X(            \
                           "twist*EA", "N", SCALAR) X("diff(EA*stretch**2, stretch)", "N", SCALAR)  \
                           X("diff(EA*stretch, stretch_rate)", "N*s",                               \
@@ -730,8 +731,19 @@ static void any_program_is_survived(void **state) {
   assert_true(parsed > 200);
 }
 
+/* Words that came to begin lines later are names all the same where nothing else fits. */
+static void late_words_may_be_names(void **state) {
+  (void)state;
+  checked c =
+      check(CENTRAL("rest stretch = 1e-4*EA/EA\nrest = 2*stretch\nrate = rest\nfield = rate\n"
+                    "accept = field\nstate q = 0\nrate q = accept/(1 [s])\n"
+                    "force N = EA*(stretch + q)"));
+  release(&c);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(late_words_may_be_names),
       cmocka_unit_test(micropolar_law_is_understood),
       cmocka_unit_test(expressions_have_their_unit_and_shape),
       cmocka_unit_test(constants_come_first),

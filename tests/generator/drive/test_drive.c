@@ -277,7 +277,7 @@ static void bad_paths_are_explained(void **state) {
       {FIBRES("fibres = 1, 0"), "did you mean `fibre`?"},
       {FIBRES("E_1 = 1, 5"), "`E_1` takes 1 value, but 2 are given"},
       {FIBRES("fibre = 1, 0  fibre_x = 2"), "`fibre_x` is given twice"},
-      {FIBRES("fibre = 1, 2, 3, 4"), "`fibre` takes 1 value, but 4 are given"},
+      {FIBRES("fibre = 1, 2, 3, 4"), "`fibre` takes 1 value, of a vector 2 or 3, but 4 are given"},
       {FIBRES("fibre = 1, 'x', 0"), "`fibre_y` needs a number, not the word 'x'"},
       {"&material model = 'no_such_law' /\n" TO_MICRO, "there is no model `no_such_law`"},
       {"&material model = 'cohesive' softening = 'liner' /\n" TO_MICRO, "has no choice `liner`"},

@@ -40,7 +40,8 @@ static inline void assert_same_families(const kernel_plan *p, const pl_law *kern
   static const int any[] = {6, 18, 122};
   const int *neighbours = kernel->neighbours ? &kernel->neighbours : any;
   const int of_rows = kernel->neighbours ? 1 : 3;
-  const int sizes = kernel->topology == PL_LIST ? 2 : of_rows; /* a list has no other code for more */
+  /* a list has no other code for more */
+  const int sizes = kernel->topology == PL_LIST ? 2 : of_rows;
   for (int k = 0; k < sizes; k++) {
     kernel_check c = check_family(p, kernel, neighbours[k], states);
     printf("%d dimensions, %d neighbours: ", kernel->dimensions, neighbours[k]);

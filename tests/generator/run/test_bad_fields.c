@@ -1,5 +1,5 @@
-/* A deck that gives a law's field, wrong in one place at a time, and the exact text that a user sees
-   of each: bad_fields/bar.nml, and a text for each fault. */
+/* A deck that gives a law's field, wrong in one place at a time, and the exact text that a user
+   sees of each: bad_fields/bar.nml, and a text for each fault. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>

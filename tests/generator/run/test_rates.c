@@ -149,12 +149,12 @@ static void the_age_is_the_time(void **state) {
   "&region name = 'top' shape = 'rectangle' corner = -1, '34 mm' size = 2, 1 /\n"                  \
   "&support region = 'low' fix = 'xy' /\n"                                                         \
   "&output frames = 2 /\n"
-#define DRIVEN  "&drive region = 'top' component = 'x' velocity = '2 m/s' rise = '0.02 ms' /\n" MOVED
+#define DRIVEN  "&drive region = 'top' component = 'x' velocity = '2 m/s' rise = '20 us' /\n" MOVED
 #define IN_TIME "&simulation end_time = '0.1 ms' threads = %d /\n"
 #define AT_REST                                                                                    \
   "&simulation end_time = '5 h' threads = %d /\n&relaxation increments = 3 tolerance = 1e-3 /\n"
 #define BLOCK(kind) "&lattice name = 'l' kind = " kind " spacing = '5 mm' thickness = '10 mm' /\n"
-#define BODY        "&body lattice = 'l' shape = 'rectangle' corner = 0, 0 size = '60 mm', '40 mm' /\n"
+#define BODY        "&body lattice = 'l' shape = 'rectangle' corner = 2*0 size = 0.06, 0.04 /\n"
 
 static const char *const same[] = {
     IN_TIME BLOCK("'hexagonal'") BODY DRIVEN

@@ -90,8 +90,8 @@ static void exact_edges_are_told(void **state) {
          "lack");
 }
 
-/* Without its line `accept` the law of a prestressed bond is refused; with it check, info, a run and
-   its result show what is accepted. */
+/* Without its line `accept` the law of a prestressed bond is refused; with it check, info, a run
+   and its result show what is accepted. */
 static void what_laws_accept_is_told(void **state) {
   workplace *w = *state;
   write_text(w, "prestressed.plm",

@@ -1,7 +1,7 @@
-/* Laws with a rest state, `rest stretch`. Theory: a free body takes it up without stress; a held one
-   has the stress of a body without that is pressed together by as much; a virgin body stores the
-   energy of being held at its reference lengths and keeps it; what is measured from the rest state
-   is what the law reads. */
+/* Laws with a rest state, `rest stretch`. Theory: a free body takes it up without stress; a held
+   one has the stress of a body without that is pressed together by as much; a virgin body stores
+   the energy of being held at its reference lengths and keeps it; what is measured from the rest
+   state is what the law reads. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -76,8 +76,8 @@ static void a_free_body_grows_without_stress(void **state) {
   }
 }
 
-/* Of the same bar without growth, whose ends are pressed together by growth times the length: lengths
-   differ by the growth, and so may loads. */
+/* Of the same bar without growth, whose ends are pressed together by growth times the length:
+   lengths differ by the growth, and so may loads. */
 static void a_held_body_is_pressed(void **state) {
   (void)state;
 #define ENDS                                                                                       \
@@ -102,8 +102,8 @@ static void a_held_body_is_pressed(void **state) {
   }
 }
 
-/* A body let go at its reference lengths swings: what it stores and moves with stays what it stored at
-   first, by an error that falls with the square of the step. */
+/* A body let go at its reference lengths swings: what it stores and moves with stays what it stored
+   at first, by an error that falls with the square of the step. */
 static void a_body_let_go_keeps_its_energy(void **state) {
   (void)state;
   for (int k = 0; k < BODIES; k++) {
@@ -125,8 +125,8 @@ static void a_body_let_go_keeps_its_energy(void **state) {
   }
 }
 
-/* By a state: the growth is whole after some hundred steps. What it does is no loss, and the balance
-   says that it does not know it. */
+/* By a state: the growth is whole after some hundred steps. What it does is no loss, and the
+   balance says that it does not know it. */
 static void growth_in_time_is_not_lost(void **state) {
   (void)state;
   deck_case c;
@@ -187,8 +187,8 @@ static void a_gradient_across_bends_a_bar(void **state) {
   deck_case_close(&c);
 }
 
-/* Between ends that are held the stress is that of the mean temperature, wherever it is warm, but for
-   what the ends hold across, which is a matter of edges: its part falls with the spacing. */
+/* Between ends that are held the stress is that of the mean temperature, wherever it is warm, but
+   for what the ends hold across, which is a matter of edges: its part falls with the spacing. */
 static void a_gradient_along_presses_as_its_mean(void **state) {
   (void)state;
 #define HELD                                                                                       \
