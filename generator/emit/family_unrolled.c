@@ -58,10 +58,14 @@ static void write_uniforms(emitter *e) {
   unrolled *u = e->form;
   const char *neighbour = numeral(e, u->neighbour < 0 ? 0 : u->neighbour);
   for (ir_node n = 0; n < e->node_count; n++) {
-    if (e->needed[n] && expression_is_of_time(e, n))
-      say(e, SAY_LINE, "        ", e->name[n],
-          expression_time(e, n, SAY_FAMILY_TIME_STEP, SAY_FAMILY_ADVANCE),
-          spell(e, SAY_LINE_END));
+    if (e->needed[n] && expression_is_of_time(e, n)) {
+      if (expression_is_input(e, n))
+        say(e, SAY_LINE, "        ", e->name[n],
+            expression_time(e, n, SAY_FAMILY_TIME_STEP, SAY_FAMILY_ADVANCE),
+            spell(e, SAY_LINE_END));
+      else
+        expression_line_of_time(e, n, "        ");
+    }
     if (!e->needed[n] || ir_operation(e->graph, n) == IR_CONSTANT || !expression_is_uniform(e, n))
       continue;
     const char *value = spell(e, SAY_UNIFORM_OF, numeral(e, e->uniform_of[n]), neighbour);

@@ -44,7 +44,7 @@ stage_cost stage_cost_of(const stages *s, const emitter *e, int *finish, int sta
   for (ir_node n = 0; n < e->node_count; n++) {
     c.loads += taken[n] || (mask[n] && stages_is_loaded(e, n));
     c.stores += stages_store(s, n, stage);
-    if (!mask[n] || expression_is_uniform(e, n)) continue;
+    if (!mask[n] || expression_is_uniform(e, n) || expression_is_of_time(e, n)) continue;
     const operation_price of = operations[ir_operation(e->graph, n)].price;
     c.operations += of.operations;
     c.divisions += of.divisions;

@@ -58,7 +58,8 @@ void stages_free(stages *s);
    of its own. */
 bool stages_is_loaded(const emitter *e, ir_node n);
 static inline bool stages_is_line(const emitter *e, ir_node n) {
-  return e->name[n] && !expression_is_uniform(e, n) && ir_operation(e->graph, n) != IR_INPUT;
+  return e->name[n] && !expression_is_uniform(e, n) && !expression_is_of_time(e, n) &&
+         ir_operation(e->graph, n) != IR_INPUT;
 }
 /* A result whose array is a buffer until the last stage writes it. */
 bool stages_in_result_array(const segment_root *r);

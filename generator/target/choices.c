@@ -3,7 +3,8 @@
 #include <assert.h>
 
 bool choice_is_expected(const emitter *e, ir_node n) {
-  return ir_is_expected_choice(e->graph, n) && !expression_is_uniform(e, n);
+  return ir_is_expected_choice(e->graph, n) && !expression_is_uniform(e, n) &&
+         !expression_is_of_time(e, n);
 }
 
 bool choice_is_by_protection(const emitter *e, ir_node n) {
@@ -43,7 +44,8 @@ static int operands_of_expected(const emitter *e, ir_node n, ir_node operand[3])
 }
 
 int choice_operands(const emitter *e, ir_node n, unsigned relies, ir_node operand[3]) {
-  int count = expression_is_uniform(e, n) ? 0 : ir_arity(ir_operation(e->graph, n));
+  const bool before = expression_is_uniform(e, n) || expression_is_of_time(e, n);
+  int count = before ? 0 : ir_arity(ir_operation(e->graph, n));
   if ((relies & RELIES_ON_EXPECTED) && choice_is_expected(e, n))
     return operands_of_expected(e, n, operand);
   if ((relies & RELIES_ON_UNPROTECTED) && choice_is_by_protection(e, n)) {

@@ -17,11 +17,6 @@ bool expression_is_ends_input(const emitter *e, ir_node n, ends_input which) {
          ir_input_index(e->graph, n) == (int)which;
 }
 
-bool expression_is_of_time(const emitter *e, ir_node n) {
-  return expression_is_ends_input(e, n, ENDS_TIME_STEP) ||
-         expression_is_ends_input(e, n, ENDS_ADVANCE);
-}
-
 const char *expression_time(emitter *e, ir_node n, word time_step, word advance) {
   return spell(e, expression_is_ends_input(e, n, ENDS_ADVANCE) ? advance : time_step);
 }
@@ -42,6 +37,33 @@ const segment_root *expression_find_root(const emitter *e, segment_target target
   for (int k = 0; k < e->root_count; k++)
     if (e->roots[k].target == target && e->roots[k].index == index) return &e->roots[k];
   return NULL;
+}
+
+/* --- what follows from the time alone --------------------------------------------------------- */
+
+static bool is_time_input(const emitter *e, ir_node n) {
+  return expression_is_ends_input(e, n, ENDS_TIME_STEP) ||
+         expression_is_ends_input(e, n, ENDS_ADVANCE);
+}
+
+/* All operands are the same for all bonds, and some are of time. */
+static bool follows_from_time(const emitter *e, ir_node n) {
+  const ir_op op = ir_operation(e->graph, n);
+  bool some = false;
+  if (op == IR_INPUT || op == IR_SEARCH || expression_is_uniform(e, n) ||
+      ir_is_sought(e->graph, n) || ir_is_expected(e->graph, n))
+    return false;
+  for (int k = 0; k < ir_arity(op); k++) {
+    const ir_node o = ir_operand(e->graph, n, k);
+    if (!e->of_time[o] && !expression_is_uniform(e, o) && !is_constant(e, o)) return false;
+    some = some || e->of_time[o];
+  }
+  return some;
+}
+
+static void find_of_time(emitter *e) {
+  for (ir_node n = 0; n < e->node_count; n++)
+    e->of_time[n] = is_time_input(e, n) || follows_from_time(e, n);
 }
 
 /* --- which nodes get a line ------------------------------------------------------------------- */
@@ -102,6 +124,8 @@ static bool is_inline(const emitter *e, ir_node n) {
       expression_is_uniform(e, n))
     return false;
   ir_node user = e->user[n];
+  if (expression_is_of_time(e, n) && (user == IR_NONE || !expression_is_of_time(e, user)))
+    return false;
   bool chosen = user == IR_NONE || ir_operation(e->graph, user) == IR_SELECT;
   switch (op) {
   case IR_ADD:
@@ -176,10 +200,12 @@ static void open_nodes(emitter *e, const scope *in, const ir_node *nodes, int co
   e->names = (c_names){0};
   words_reserve(&e->names);
   e->needed = must_calloc(n, 1);
+  e->of_time = must_calloc(n, 1);
   e->uses = must_calloc(n, sizeof *e->uses);
   e->user = must_calloc(n, sizeof *e->user);
   e->size = must_calloc(n, sizeof *e->size);
   e->name = must_calloc(n, sizeof *e->name);
+  find_of_time(e);
   find_needed(e, nodes, count);
   choose_names(e);
 }
@@ -201,6 +227,7 @@ void expression_open_segment(emitter *e, const scope *in, const segment *a) {
 void expression_close(emitter *e) {
   c_names_clear(&e->names);
   free(e->needed);
+  free(e->of_time);
   free(e->uses);
   free(e->user);
   free(e->size);
@@ -368,16 +395,35 @@ const char *expression_line_end(const emitter *e, ir_node n) {
   return spell(e, SAY_LINE_END_OF, numeral(e, line));
 }
 
+void expression_line_of_time(emitter *e, ir_node n, const char *indent) {
+  if (e->name[n])
+    say(e, SAY_LINE, indent, e->name[n], expression(e, n), expression_line_end(e, n));
+}
+
+/* What the loop needs, and what its values of time are computed from. */
+static unsigned char *needed_before_loop(const emitter *e) {
+  unsigned char *mask = must_alloc((size_t)e->node_count + 1);
+  memcpy(mask, e->needed, (size_t)e->node_count);
+  for (ir_node n = e->node_count - 1; n >= 0; n--)
+    for (int k = 0; mask[n] && expression_is_of_time(e, n) && k < operand_count(e, n); k++)
+      mask[ir_operand(e->graph, n, k)] = 1;
+  return mask;
+}
+
 void expression_declare(emitter *e) {
+  unsigned char *mask = needed_before_loop(e);
   for (ir_node n = 0; n < e->node_count; n++) {
-    if (!e->needed[n] || is_constant(e, n)) continue;
+    if (!mask[n] || is_constant(e, n)) continue;
     if (expression_is_uniform(e, n)) {
       if (e->name[n]) /* the condition of the larger of two has none: nothing reads it */
         say(e, SAY_LINE, e->scope->before, e->name[n],
             spell(e, e->scope->uniform, numeral(e, e->uniform_of[n])), expression_line_end(e, n));
     } else if (expression_is_input(e, n))
       e->scope->declare(e, n);
+    else if (expression_is_of_time(e, n))
+      expression_line_of_time(e, n, e->scope->before);
   }
+  free(mask);
 }
 
 static const char *dropped(const emitter *e, ir_node n) {

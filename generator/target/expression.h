@@ -55,6 +55,7 @@ struct emitter {
   unsigned relies; /* reliance, together */
   c_names names;
   unsigned char *needed;  /* [node_count] */
+  unsigned char *of_time; /* [node_count] expression_is_of_time */
   unsigned char *dropped; /* [node_count] lines that are 0 where the bond is absent; or NULL */
   int *uses;              /* [node_count] by needed nodes and roots */
   ir_node *user;          /* [node_count] the last of them; IR_NONE: a root */
@@ -85,9 +86,12 @@ static inline bool expression_is_input(const emitter *e, ir_node n) {
   return ir_operation(e->graph, n) == IR_INPUT && !expression_is_uniform(e, n);
 }
 bool expression_is_ends_input(const emitter *e, ir_node n, ends_input which);
-/* The time step or `dt`: one number of the whole record. The first two words are how a form reads
-   them. */
-bool expression_is_of_time(const emitter *e, ir_node n);
+/* The time step or `dt`, or what follows from these and from values of all bonds alone: one number
+   of the whole record, known before the loop. */
+static inline bool expression_is_of_time(const emitter *e, ir_node n) {
+  return e->of_time[n];
+}
+/* How a form reads the time step and `dt`. */
 const char *expression_time(emitter *e, ir_node n, word time_step, word advance);
 /* Whether the function needs an input from there. */
 bool expression_reads(const emitter *e, ir_source from);
@@ -108,8 +112,10 @@ const char *expression_line_end(const emitter *e, ir_node n);
 /* What stands before the loop: values that are the same for all bonds, and the arrays of the
    others. */
 void expression_declare(emitter *e);
-/* `const double x = ...;` for a node that has a name here; for each of them, in the order of the
-   graph. */
+/* The line of a value of time that is no input. */
+void expression_line_of_time(emitter *e, ir_node n, const char *indent);
+/* `const double x = ...;` for a node that has a name in the loop; for each of them, in the order of
+   the graph. */
 void expression_line(emitter *e, ir_node n);
 void expression_lines(emitter *e);
 
