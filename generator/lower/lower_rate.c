@@ -1,5 +1,8 @@
 #include "generator/lower/lower_rate.h"
 
+#include <stdlib.h>
+
+#include "dsl/base/arena.h"
 #include "generator/ir/derive.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/lower_inputs.h"
@@ -57,50 +60,89 @@ static ir_node at(ir *g, ir_node f, ir_node old, ir_node v) {
   return f;
 }
 
-typedef struct newton {
-  ir_node v, last; /* the state so far, and what it was corrected by */
-  ir_node rises;   /* the slope was more than 0 there */
-} newton;
+/* On the way to the root of left(v) = v - old - dt f(v). A rate that falls with v has it between
+   old and old + dt f(old), where left has either sign. */
+typedef struct root_search {
+  ir_node v, left;   /* the state so far, and what is left there */
+  ir_node near, far; /* the root is between: left has the sign that it has at old, and the other */
+  ir_node slow;      /* the last step did not halve left */
+  ir_node settled;   /* nor would it move v by more than a little */
+} root_search;
 
-/* A step of Newton's method for v - old - dt f(v) = 0. Where the rate grows faster with v than the
-   step is short there is no way back, and the slope is taken as 1. */
-static newton next(ir *g, newton n, ir_node old, ir_node dt, ir_node f, ir_node slope) {
+typedef struct implicit_step {
+  ir_node old, dt, f, slope;
+  ir_node gained;    /* dt f(old) */
+  ir_node encloses;  /* the root is between near and far */
+} implicit_step;
+
+static ir_node gained_at(ir *g, const implicit_step *s, ir_node v) {
+  return ir_mul(g, s->dt, at(g, s->f, s->old, v));
+}
+
+/* Whether x is less than y, in the direction that the state goes in. */
+static ir_node falls_short(ir *g, const implicit_step *s, ir_node x, ir_node y) {
+  const ir_node up = ir_binary(g, IR_LT, ir_constant(g, 0), s->gained);
+  return ir_select(g, up, ir_binary(g, IR_LT, x, y), ir_binary(g, IR_LT, y, x));
+}
+
+static root_search begin(ir *g, implicit_step *s) {
+  s->gained = gained_at(g, s, s->old);
+  const ir_node far = ir_add(g, s->old, s->gained), zero = ir_constant(g, 0);
+  const ir_node grows = falls_short(g, s, s->gained, gained_at(g, s, far));
+  s->encloses = ir_unary(g, IR_NOT, grows); /* also where f is no number so far on */
+  return (root_search){s->old, ir_neg(g, s->gained), s->old, far, zero, zero};
+}
+
+static ir_node is_between(ir *g, ir_node v, ir_node a, ir_node b) {
+  return ir_binary(g, IR_AND, ir_binary(g, IR_LE, ir_binary(g, IR_MIN, a, b), v),
+                   ir_binary(g, IR_LE, v, ir_binary(g, IR_MAX, a, b)));
+}
+
+/* A step of Newton's method; or, where that leaves the interval or the last one got on badly, to
+   its middle. */
+static root_search next(ir *g, root_search r, const implicit_step *s) {
+  static const double SETTLED = 1e-7; /* of the state: the square is rounding */
   const ir_node one = ir_constant(g, 1), zero = ir_constant(g, 0);
-  const ir_node gained = ir_mul(g, dt, at(g, f, old, n.v));
-  const ir_node rest = ir_sub(g, one, ir_mul(g, dt, at(g, slope, old, n.v)));
-  const ir_node left = ir_sub(g, ir_sub(g, n.v, old), gained);
-  n.rises = ir_binary(g, IR_LT, zero, rest);
-  n.last = ir_div(g, left, ir_select(g, n.rises, rest, one));
-  n.v = ir_sub(g, n.v, n.last);
-  return n;
+  const ir_node slope = ir_sub(g, one, ir_mul(g, s->dt, at(g, s->slope, s->old, r.v)));
+  const ir_node rises = ir_binary(g, IR_LT, zero, slope);
+  const ir_node correction = ir_div(g, r.left, ir_select(g, rises, slope, one));
+  const ir_node most = ir_scaled(
+      g, SETTLED, ir_add(g, ir_unary(g, IR_ABS, s->old), ir_unary(g, IR_ABS, r.v)));
+  const ir_node small = ir_binary(g, IR_LE, ir_unary(g, IR_ABS, correction), most);
+  const ir_node newton = ir_sub(g, r.v, correction);
+  const ir_node well = ir_binary(g, IR_AND, is_between(g, newton, r.near, r.far),
+                                 ir_unary(g, IR_NOT, r.slow));
+  const ir_node taken = ir_binary(g, IR_OR, ir_unary(g, IR_NOT, s->encloses),
+                                  ir_binary(g, IR_OR, small, well));
+  const ir_node middle = ir_scaled(g, 0.5, ir_add(g, r.near, r.far));
+  const ir_node before = ir_unary(g, IR_ABS, r.left);
+  r.v = ir_select(g, taken, newton, middle);
+  r.left = ir_sub(g, ir_sub(g, r.v, s->old), gained_at(g, s, r.v));
+  r.slow = ir_binary(g, IR_LT, ir_scaled(g, 0.5, before), ir_unary(g, IR_ABS, r.left));
+  r.settled = ir_binary(g, IR_AND, small, rises);
+  const ir_node is_near = falls_short(g, s, r.left, zero);
+  r.near = ir_select(g, is_near, r.v, r.near);
+  r.far = ir_select(g, is_near, r.far, r.v);
+  return r;
 }
 
-/* Whether the last correction was as small as one whose square is rounding; or, of steps far too
-   long for the law, went on from `old`, so that v lies on the near side of the root. */
-static ir_node is_good_end(ir *g, newton n, ir_node old) {
-  static const double SETTLED = 1e-7; /* of the state */
-  const ir_node before = ir_unary(g, IR_ABS, old), now = ir_unary(g, IR_ABS, n.v);
-  const ir_node most = ir_scaled(g, SETTLED, ir_add(g, before, now));
-  const ir_node settled = ir_binary(g, IR_LE, ir_unary(g, IR_ABS, n.last), most);
-  const ir_node back = ir_mul(g, ir_sub(g, n.v, old), n.last);
-  const ir_node went_on = ir_binary(g, IR_LE, back, ir_constant(g, 0));
-  return ir_binary(g, IR_OR, settled, ir_binary(g, IR_AND, went_on, n.rises));
-}
-
-/* Any other end is no number, so that it is found, and told. */
+/* The root, or the near side of what is known to enclose it: of steps far too long for the law the
+   state then goes less far than it should, never beyond. Any other end is no number, so that it is
+   found, and told. */
 static ir_node implicit(lowering *c, const stmt *rule, ir_node old, ir_node dt, ir_node f,
                         ir_node slope) {
-  enum { NEWTON_STEPS = 12 };
+  enum { STEPS = 16 };
   ir *g = c->graph;
-  newton n = {.v = old};
-  for (int k = 0; k < NEWTON_STEPS; k++) {
-    n = next(g, n, old, dt, f, slope);
+  implicit_step s = {.old = old, .dt = dt, .f = f, .slope = slope};
+  root_search r = begin(g, &s);
+  for (int k = 0; k < STEPS; k++) {
+    r = next(g, r, &s);
     if (ir_count(g) > MOST_NODES)
       return lower_fail(c, rule->where,
                         "with its steps written out this rate is too large to compile");
   }
-  const ir_node good = is_good_end(g, n, old);
-  return ir_add(g, n.v, lower_zero_if(g, good));
+  const ir_node good = ir_binary(g, IR_OR, r.settled, s.encloses);
+  return ir_add(g, ir_select(g, r.settled, r.v, r.near), lower_zero_if(g, good));
 }
 
 /* --- one component ---------------------------------------------------------------------------- */
@@ -131,10 +173,22 @@ static bool is_good(lowering *c, const stmt *rule, ir_node f, const components *
   return true;
 }
 
+/* Whether f takes one course or another by the state, even where its slope is the same on either. */
+static bool switches(const ir *g, ir_node f, ir_node old) {
+  unsigned char *marks = must_calloc((size_t)ir_count(g) + 1, 1);
+  bool found = false;
+  ir_mark(g, &f, 1, marks);
+  for (ir_node n = 0; n <= f && !found; n++)
+    found = marks[n] && (ir_is_logical(g, n) || ir_operation(g, n) == IR_SIGN) &&
+            rewrite_depends(g, &n, 1, &old, 1);
+  free(marks);
+  return found;
+}
+
 static ir_node step_of(lowering *c, const stmt *rule, ir_node old, ir_node f, ir_node before) {
   ir *g = c->graph;
   const ir_node dt = lower_advance(g, c->law), slope = ir_derivative(g, f, old);
-  if (rewrite_depends(g, &slope, 1, &old, 1)) return implicit(c, rule, old, dt, f, slope);
+  if (rewrite_depends(g, &slope, 1, &old, 1) || switches(g, f, old)) return implicit(c, rule, old, dt, f, slope);
   return gone_on(g, old, dt, slope, before, f);
 }
 

@@ -263,6 +263,44 @@ static void no_work_comes_out_of_a_chain(void **state) {
   close_law(t);
 }
 
+/* --- steep rates ------------------------------------------------------------------------------ */
+
+/* Rates with kinks and jumps at rest, or steeper than any step is short: the step is that of
+   implicit Euler while it is of some size, and of long steps the state goes toward rest, by no more
+   than the rounding of the search beyond, and lacks at most a 2^15th of what the rate would have
+   moved it by. */
+static void steep_rates_come_to_rest(void **state) {
+  (void)state;
+  static const char *const rates[] = {"tanh((stretch - v)*1e6)*1e-3/1 [s]",
+                                      "sign(stretch - v)*abs(stretch - v)**0.2*1e-3/1 [s]",
+                                      "cbrt((stretch - v)*1e-6)/1 [s]",
+                                      "sign(stretch - v)*sqrt(abs(stretch - v))*0.1/1 [s]",
+                                      "(stretch - v)/1 [s] + sign(stretch - v)*1e-3/1 [s]",
+                                      "(| 1e-3 when stretch > v\n | -1e-3 otherwise)/1 [s]"};
+  for (size_t k = 0; k < sizeof rates / sizeof *rates; k++) {
+    char text[1000];
+    snprintf(text, sizeof text,
+             HEAD "state v on bond = 0\nf = %s\nrate v = f\nforce N = k*(stretch - v)\n" TAIL,
+             rates[k]);
+    tested_law *t = must_open(text);
+    for (double dt = 1e-4; dt < 1e5; dt *= 10) {
+      tested_state x = {.stretch = 0};
+      double before = 0;
+      take(t, &x, 1e-3, 0);
+      for (int step = 0; step < 200; step++) {
+        take(t, &x, 1e-3, dt);
+        const double v = x.field[0], rate = x.field[1];
+        assert_true(v >= before - 1e-9 && v <= 1e-3 * (1 + 1e-6));
+        if (dt <= 0.1 && v < 0.99e-3) /* the rate that is kept is f(v) */
+          assert_true(fabs(v - before - dt * rate) <= 1e-5 * (v - before));
+        before = v;
+      }
+      if (dt >= 100) assert_true(fabs(before - 1e-3) < 1e-9 + 1e-3 * dt / (1 << 15));
+    }
+    close_law(t);
+  }
+}
+
 /* --- what is refused -------------------------------------------------------------------------- */
 
 static void refused(const char *text, const char *wanted) {
@@ -305,6 +343,7 @@ int main(void) {
       cmocka_unit_test(a_cube_falls_as_theory_says),
       cmocka_unit_test(held_bonds_never_gain),
       cmocka_unit_test(no_work_comes_out_of_a_chain),
+      cmocka_unit_test(steep_rates_come_to_rest),
       cmocka_unit_test(what_couples_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
