@@ -8,6 +8,7 @@
 #include "generator/lower/lower_inputs.h"
 #include "generator/lower/lower_solved.h"
 #include "generator/lower/lower_tensor.h"
+#include "generator/lower/point_inputs.h"
 
 /* --- steps in time of what is linear ---------------------------------------------------------- */
 
@@ -155,8 +156,25 @@ static bool couples(lowering *c, ir_node f, const components *old, int component
   return false;
 }
 
+static bool reads_speed(ir *g, ir_node f) {
+  enum { STRAINS = POINT_STRAINS };
+  ir_node speed[1 + STRAINS] = {lower_quantity(g, QUANTITY_STRETCH_RATE)};
+  for (int k = 0; k < STRAINS; k++)
+    speed[1 + k] = point_input_node(g, POINT_STRAIN_RATE + k);
+  return rewrite_depends(g, &f, 1, speed, 1 + STRAINS);
+}
+
+/* The stretch that comes of a rate of stretch would not be the stretch: runs know speeds between
+   two steps, where the body comes to rest they are none of the deck's time, and paths have corners.
+ */
 static bool is_good(lowering *c, const stmt *rule, ir_node f, const components *old,
                     int component) {
+  if (reads_speed(c->graph, f)) {
+    lower_fail(c, rule->where,
+               "a rate cannot read how quickly the body moves: let the state be the strain that "
+               "flows, as in `rate v = (stretch - v)/tau`, and the force `E*(stretch - v)`");
+    return false;
+  }
   if (couples(c, f, old, component)) {
     lower_fail(c, rule->where,
                "the rate of one component of this tensor depends on others: that cannot be solved "

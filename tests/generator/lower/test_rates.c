@@ -330,6 +330,12 @@ static void what_couples_is_refused(void **state) {
           "state e on point = tensor 0\nrate e = norm(strain - e)*(strain - e)/1 [s]\n"
           "stress sigma = hooke(strain - e, E, 0.2)\nend model\n",
           "depends on others");
+  refused(HEAD "state S on bond = 0\nrate S = 3*stretch_rate - S/1 [s]\nforce N = k*S\n" TAIL,
+          "let the state be the strain that flows");
+  refused("model m\nlaw continuum\nparameter E = 1 [GPa]\nparameter rho = 1 [kg/m^3]\n"
+          "state e on point = tensor 0\nrate e = strain_rate\n"
+          "stress sigma = hooke(e, E, 0.2)\nend model\n",
+          "let the state be the strain that flows");
 }
 
 int main(void) {
