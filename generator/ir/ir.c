@@ -584,12 +584,14 @@ static void count_operation(ir_op op, ir_cost *cost) {
   cost->selects += as == COUNT_SELECT;
 }
 
-ir_cost ir_count_cost(const ir *g, const ir_node *roots, int root_count, placement at_least) {
+ir_cost ir_count_cost(const ir *g, const ir_node *roots, int root_count, placement at_least,
+                      const unsigned char *but) {
   ir_cost cost = {0};
   unsigned char *marks = must_calloc((size_t)g->count, 1);
   ir_mark(g, roots, root_count, marks);
   for (ir_node n = 0; n < g->count; n++)
-    if (marks[n] && at(g, n)->place >= at_least) count_operation(at(g, n)->op, &cost);
+    if (marks[n] && !(but && but[n]) && at(g, n)->place >= at_least)
+      count_operation(at(g, n)->op, &cost);
   free(marks);
   return cost;
 }

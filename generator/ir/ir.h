@@ -150,11 +150,13 @@ void ir_substitution_free(ir_substitution *s);
 void ir_mark(const ir *g, const ir_node *roots, int root_count, unsigned char *marks);
 
 /* Counts of operations that the roots cost: additions, multiplications, divisions and square roots,
-   other functions, selects (with min, max, sign); those of nodes placed `at_least` so locally. */
+   other functions, selects (with min, max, sign); those of nodes placed `at_least` so locally, but
+   for the marked ones (NULL: none). */
 typedef struct ir_cost {
   int additions, multiplications, divisions, functions, selects;
 } ir_cost;
-ir_cost ir_count_cost(const ir *g, const ir_node *roots, int root_count, placement at_least);
+ir_cost ir_count_cost(const ir *g, const ir_node *roots, int root_count, placement at_least,
+                      const unsigned char *but);
 
 /* One line a node that the roots need: "%7 = mul %3 %5 : bond  ; omega (line 12)". */
 void ir_dump(const ir *g, const ir_node *roots, const char *const *root_names, int root_count,

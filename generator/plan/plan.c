@@ -27,9 +27,9 @@ static kernel_plan *finish(kernel_plan *plan, bool good, diagnostics *d) {
     plan_free(plan);
     return NULL;
   }
-  plan_count_cost(plan);
   plan_seldom(plan);
   plan_hoist(plan);
+  plan_count_cost(plan);
   return plan;
 }
 

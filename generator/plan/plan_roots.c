@@ -74,10 +74,44 @@ void plan_hoist(kernel_plan *p) {
   free(hoisted);
 }
 
+static bool is_time_input(const ir *g, ir_node n) {
+  if (ir_operation(g, n) != IR_INPUT || ir_input_source(g, n) != IR_FROM_ENDS) return false;
+  return ir_input_index(g, n) == ENDS_TIME_STEP || ir_input_index(g, n) == ENDS_ADVANCE;
+}
+
+/* All operands are known before the loop, and some are of time. */
+static bool follows_from_time(const ir *g, ir_node n, const unsigned char *uniform,
+                              const unsigned char *of_time) {
+  const ir_op op = ir_operation(g, n);
+  bool some = false;
+  if (op == IR_INPUT || op == IR_SEARCH || uniform[n] || ir_is_sought(g, n) ||
+      ir_is_expected(g, n))
+    return false;
+  for (int k = 0; k < ir_arity(op); k++) {
+    const ir_node o = ir_operand(g, n, k);
+    if (!of_time[o] && !uniform[o] && ir_operation(g, o) != IR_CONSTANT) return false;
+    some = some || of_time[o];
+  }
+  return some;
+}
+
+void plan_mark_of_time(const kernel_plan *p, unsigned char *mask) {
+  const ir *g = p->graph;
+  unsigned char *uniform = must_calloc((size_t)ir_count(g) + 1, 1);
+  for (int k = 0; k < p->uniform_count; k++)
+    uniform[p->uniforms[k]] = 1;
+  for (ir_node n = 0; n < ir_count(g); n++)
+    mask[n] = is_time_input(g, n) || follows_from_time(g, n, uniform, mask);
+  free(uniform);
+}
+
 ir_cost plan_cost(const kernel_plan *p, const segment *a, placement at_least) {
+  unsigned char *of_time = must_alloc((size_t)ir_count(p->graph) + 1);
   ir_node *nodes = segment_values(a);
-  ir_cost cost = ir_count_cost(p->graph, nodes, segment_value_count(a), at_least);
+  plan_mark_of_time(p, of_time);
+  ir_cost cost = ir_count_cost(p->graph, nodes, segment_value_count(a), at_least, of_time);
   free(nodes);
+  free(of_time);
   return cost;
 }
 

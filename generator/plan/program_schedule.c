@@ -177,7 +177,7 @@ static void fuse_segment(ir *g, segment *a) {
 }
 
 static int cost_of(const ir *g, const ir_node *nodes, int count) {
-  const ir_cost c = ir_count_cost(g, nodes, count, ON_BOND);
+  const ir_cost c = ir_count_cost(g, nodes, count, ON_BOND, NULL);
   enum { DEAR = 10 };
   return c.additions + c.multiplications + c.selects + DEAR * (c.divisions + c.functions);
 }

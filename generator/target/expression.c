@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "generator/plan/plan_roots.h"
+
 /* Operations written into one expression before it is broken into lines. */
 enum { LONGEST_INLINE = 6 };
 
@@ -37,33 +39,6 @@ const segment_root *expression_find_root(const emitter *e, segment_target target
   for (int k = 0; k < e->root_count; k++)
     if (e->roots[k].target == target && e->roots[k].index == index) return &e->roots[k];
   return NULL;
-}
-
-/* --- what follows from the time alone --------------------------------------------------------- */
-
-static bool is_time_input(const emitter *e, ir_node n) {
-  return expression_is_ends_input(e, n, ENDS_TIME_STEP) ||
-         expression_is_ends_input(e, n, ENDS_ADVANCE);
-}
-
-/* All operands are the same for all bonds, and some are of time. */
-static bool follows_from_time(const emitter *e, ir_node n) {
-  const ir_op op = ir_operation(e->graph, n);
-  bool some = false;
-  if (op == IR_INPUT || op == IR_SEARCH || expression_is_uniform(e, n) ||
-      ir_is_sought(e->graph, n) || ir_is_expected(e->graph, n))
-    return false;
-  for (int k = 0; k < ir_arity(op); k++) {
-    const ir_node o = ir_operand(e->graph, n, k);
-    if (!e->of_time[o] && !expression_is_uniform(e, o) && !is_constant(e, o)) return false;
-    some = some || e->of_time[o];
-  }
-  return some;
-}
-
-static void find_of_time(emitter *e) {
-  for (ir_node n = 0; n < e->node_count; n++)
-    e->of_time[n] = is_time_input(e, n) || follows_from_time(e, n);
 }
 
 /* --- which nodes get a line ------------------------------------------------------------------- */
@@ -187,10 +162,13 @@ void emitter_begin(emitter *e, const kernel_plan *plan, c_text *out) {
     e->uniform_of[n] = -1;
   for (int k = 0; k < plan->uniform_count; k++)
     e->uniform_of[plan->uniforms[k]] = k;
+  e->of_time = must_calloc((size_t)e->node_count + 1, 1);
+  plan_mark_of_time(plan, e->of_time);
 }
 
 void emitter_end(emitter *e) {
   free(e->uniform_of);
+  free(e->of_time);
   arena_free(e->memory);
 }
 
@@ -200,12 +178,10 @@ static void open_nodes(emitter *e, const scope *in, const ir_node *nodes, int co
   e->names = (c_names){0};
   words_reserve(&e->names);
   e->needed = must_calloc(n, 1);
-  e->of_time = must_calloc(n, 1);
   e->uses = must_calloc(n, sizeof *e->uses);
   e->user = must_calloc(n, sizeof *e->user);
   e->size = must_calloc(n, sizeof *e->size);
   e->name = must_calloc(n, sizeof *e->name);
-  find_of_time(e);
   find_needed(e, nodes, count);
   choose_names(e);
 }
@@ -227,7 +203,6 @@ void expression_open_segment(emitter *e, const scope *in, const segment *a) {
 void expression_close(emitter *e) {
   c_names_clear(&e->names);
   free(e->needed);
-  free(e->of_time);
   free(e->uses);
   free(e->user);
   free(e->size);

@@ -44,7 +44,8 @@ struct emitter {
   c_text *out;
   arena *memory; /* of texts */
   int node_count;
-  int *uniform_of; /* [node_count] index in `uniforms`, or -1 */
+  int *uniform_of;        /* [node_count] index in `uniforms`, or -1 */
+  unsigned char *of_time; /* [node_count] expression_is_of_time */
   kernel_parts parts;
 
   /* the function or the segment that is written */
@@ -55,7 +56,6 @@ struct emitter {
   unsigned relies; /* reliance, together */
   c_names names;
   unsigned char *needed;  /* [node_count] */
-  unsigned char *of_time; /* [node_count] expression_is_of_time */
   unsigned char *dropped; /* [node_count] lines that are 0 where the bond is absent; or NULL */
   int *uses;              /* [node_count] by needed nodes and roots */
   ir_node *user;          /* [node_count] the last of them; IR_NONE: a root */

@@ -34,6 +34,7 @@ static void exponentials_of_the_step_stand_before_the_loops(void **state) {
   assert_int_equal(count_of(begin, loop, "pl_exp("), 2); /* one of each chain */
   assert_int_equal(count_of(loop, end, "pl_exp("), 0);
   assert_int_equal(count_of(loop, end, "/"), count_of(loop, end, "/*") + count_of(loop, end, "*/"));
+  assert_true(m.plan->divisions_per_bond == 0); /* nor do they count */
   free(text);
   model_close(&m);
 }

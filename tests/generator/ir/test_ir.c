@@ -301,13 +301,13 @@ static void costs_are_counted_once(void **unused) {
   const ir_node chosen = ir_select(g, two(g, IR_LT, x, y), angle, ir_add(g, shared, y));
   const ir_node root = one(g, IR_SQRT, two(g, IR_MAX, chosen, ir_neg(g, shared)));
   const ir_node roots[] = {root, shared};
-  ir_cost cost = ir_count_cost(g, roots, 2, ON_BOND);
+  ir_cost cost = ir_count_cost(g, roots, 2, ON_BOND, NULL);
   assert_int_equal(cost.additions, 1);
   assert_int_equal(cost.multiplications, 1);
   assert_int_equal(cost.divisions, 1);
   assert_int_equal(cost.functions, 1);
   assert_int_equal(cost.selects, 2);
-  cost = ir_count_cost(g, roots, 2, ON_NOTHING);
+  cost = ir_count_cost(g, roots, 2, ON_NOTHING, NULL);
   assert_int_equal(cost.additions, 2);
   assert_int_equal(cost.divisions, 2);
   ir_free(g);
@@ -355,7 +355,7 @@ static void *walk_deep_chain(void *failed) {
   const double at_zero = value_at(g, slope, 0.3, 0.0), straight = value_at(g, swapped, 0.3, 0.0);
   *(int *)failed = nodes_needed(g, f) != 2 * DEEP + 2 || !(fabs(at_zero) < 1.0) ||
                    straight != 0.0 ||
-                   ir_count_cost(g, &slope, 1, ON_BOND).functions != 2 * DEEP - 1;
+                   ir_count_cost(g, &slope, 1, ON_BOND, NULL).functions != 2 * DEEP - 1;
   ir_free(g);
   return NULL;
 }

@@ -354,7 +354,7 @@ static void divides_nothing(void **state) {
   ir_node N = ir_input(g, IR_FROM_FIELD, 0, "N", ON_BOND);
   bond_forces f = kinematics_forces(g, &k, N, N, N);
   ir_node roots[] = {k.stretch, k.stretch_rate, k.theta_i, k.theta_j, f.f_x, f.f_y};
-  ir_cost cost = ir_count_cost(g, roots, 6, ON_PARTICLE);
+  ir_cost cost = ir_count_cost(g, roots, 6, ON_PARTICLE, NULL);
   assert_int_equal(cost.divisions, 0); /* atan2 brings its own, where a chord turned far */
   assert_int_equal(cost.functions, 4); /* 1/L, atan2 and two wraps */
   ir_free(g);

@@ -220,7 +220,7 @@ static void particles_of_large_families_give_their_parts(void **state) {
   ir_node nodes[6];
   assert_int_equal(segment_nodes(t->plan->graph, forces, nodes), 6);
   assert_true(nodes[0] == nodes[1] && nodes[1] == nodes[2]); /* times the chord */
-  assert_int_equal(ir_count_cost(t->plan->graph, nodes, 1, ON_BOND).divisions, 0);
+  assert_int_equal(ir_count_cost(t->plan->graph, nodes, 1, ON_BOND, NULL).divisions, 0);
   close_law(t);
 }
 
