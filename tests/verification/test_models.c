@@ -133,6 +133,7 @@ static void elastic_constants_are_those_asked_for(void **state) {
   assert_elastic("hordijk", "E = '25 GPa'", "E = 25 GPa, nu = 0.3333");
   assert_elastic("elastic_micropolar", "E = '25 GPa' nu = 0.15", "E = 25 GPa, nu = 0.1500");
   assert_elastic("parallel_bond", "kappa = 2.5", "E = 42.79 GPa, nu = 0.1765");
+  assert_elastic("facet", "E = '25 GPa' nu = 0.1", "E = 25 GPa, nu = 0.1000");
   assert_elastic("mplm_bilinear", "E = '25 GPa' nu = 0.1", "E = 25 GPa, nu = 0.1000");
 }
 
