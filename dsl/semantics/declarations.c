@@ -250,7 +250,8 @@ static void set_rule(checker *ck, stmt *s, entry *field) {
 
 static void declare_flow(checker *ck, stmt *s) {
   entry *field = s->name ? names_find(ck, SPACE_QUANTITIES, s->name) : NULL;
-  if (field && field->symbol.kind == SYMBOL_STATE) {
+  const symbol_kind kind = field ? field->symbol.kind : SYMBOL_QUANTITY;
+  if (kind == SYMBOL_STATE || kind == SYMBOL_DAMAGE) {
     set_rule(ck, s, field);
     return;
   }

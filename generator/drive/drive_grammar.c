@@ -16,6 +16,11 @@ enum { MOST_STEPS = 1000000 };
 #define NOT_KEPT        .offset = DECK_NO_FIELD
 #define LATER(key, unit_text, text)                                                                \
   { .name = key, .type = DECK_LATER, .unit = unit_text, NOT_KEPT, .doc = text }
+#define SETTING_OF(group, text)                                                                    \
+  {                                                                                                \
+    .name = "setting", .type = DECK_WORD, .choices = "plane_stress|plane_strain|space",            \
+    .fallback = "= the first that the law is for", AT(group, setting), .doc = text                 \
+  }
 
 static const deck_key_info simulation_keys[] = {
     {.name = "title",
@@ -74,6 +79,7 @@ static const deck_key_info bond_keys[] = {
      .fallback = "= `mass_i`",
      AT(bond, mass_j),
      .doc = "`m_j`"},
+    SETTING_OF(bond, "of the law: whether the bond is one of the plane, which plane, or of space"),
 };
 
 static const deck_key_info particle_keys[] = {
@@ -125,12 +131,7 @@ static const deck_key_info point_keys[] = {
      .doc = "components that no `&path` names are not strained; uniaxial stress, driven by xx, and "
             "shear, driven by xy: they bear no stress; plane stress, in space: zz, yz, xz bear "
             "none; hydrostatic, driven by xx: yy and zz are as xx, without shear"},
-    {.name = "setting",
-     .type = DECK_WORD,
-     .choices = "plane_stress|plane_strain|space",
-     .fallback = "= the first that the law is for",
-     AT(point, setting),
-     .doc = "what the third direction does"},
+    SETTING_OF(point, "what the third direction does"),
     {.name = "size",
      .type = DECK_REAL,
      .unit = "m",

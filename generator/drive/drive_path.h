@@ -92,6 +92,7 @@ typedef struct drive_bond {
   double spacing, thickness; /* m */
   double area;               /* m^2; 0: none, the bond is no bar */
   double mass_i, mass_j;     /* kg; negative: from rho */
+  const char *setting;       /* NULL: the law's first */
 } drive_bond;
 
 /* Laws of families: one particle of a lattice in which all are alike. */

@@ -301,15 +301,3 @@ bool drive_point_suits(const drive_input *in, const pl_law *kernel, diagnostics 
   point_control control;
   return point_control_read(in, kernel->dimensions, &control, d);
 }
-
-const law *drive_point_setting(const drive_input *in, const law *l, diagnostics *d) {
-  const char *wanted = in->point.setting;
-  law_setting setting;
-  if (!wanted || !law_setting_find(wanted, &setting)) return l;
-  if (law_is_for(l, setting)) return law_on_lattice(l, setting, false, 0);
-  diag_report(d, DIAG_CONFLICT, deck_where(&in->point.item, "setting"),
-              "the law `%s` is not meant for %s", l->tree->name, wanted);
-  diag_hint(d, "take another setting; where the equations hold in it, too, add it to the law's "
-               "line `for`");
-  return NULL;
-}

@@ -24,8 +24,5 @@ void drive_point_observe(const drive_input *in, const pl_law *kernel, const doub
                          const drive_table *t, long row, double *outputs);
 /* Whether the path can drive such a point. False after a message. */
 bool drive_point_suits(const drive_input *in, const pl_law *kernel, diagnostics *d);
-/* The law in the setting that the path asks for; without one in that which the law names first.
-   NULL after a message, where the law is not meant for it. */
-const law *drive_point_setting(const drive_input *in, const law *l, diagnostics *d);
 
 #endif

@@ -90,16 +90,37 @@ static law_setting setting_of_particle(const drive_input *in, const law *l) {
   return law_is_for(l, suits) ? suits : first;
 }
 
+/* The law in the setting that the path asks for of a bond or a point; without one, NULL, in that
+   which the law names first. NULL after a message, where the law is not meant for it. */
+static const law *law_as_asked(const deck_item *from, const char *asked, const law *l,
+                               diagnostics *d) {
+  law_setting setting;
+  if (!asked || !law_setting_find(asked, &setting)) return l;
+  if (law_is_for(l, setting)) return law_on_lattice(l, setting, false, 0);
+  diag_report(d, DIAG_CONFLICT, deck_where(from, "setting"), "the law `%s` is not meant for %s",
+              l->tree->name, asked);
+  diag_hint(d, "take another setting; where the equations hold in it, too, add it to the law's "
+               "line `for`");
+  return NULL;
+}
+
 static const law *law_of_particle(const drive_input *in, const law *l) {
   const law_setting setting = setting_of_particle(in, l);
   return setting == l->setting ? l : law_on_lattice(l, setting, false, 0);
 }
 
-/* A point is of the setting that the path asks for, a particle of one that suits its lattice. */
+/* A bond or a point is of the setting that the path asks for, a particle of one that suits its
+   lattice. */
 static bool take_setting(driven_law *r) {
-  const law *first = r->model.law, *in_setting = first;
-  if (first->tree->law == LAW_CONTINUUM) in_setting = drive_point_setting(r->in, first, r->said);
-  if (first->tree->law == LAW_STATE) in_setting = law_of_particle(r->in, first);
+  const law *first = r->model.law, *in_setting;
+  const drive_bond *b = &r->in->bond;
+  const drive_point *p = &r->in->point;
+  if (first->tree->law == LAW_STATE)
+    in_setting = law_of_particle(r->in, first);
+  else if (first->tree->law == LAW_CONTINUUM)
+    in_setting = law_as_asked(&p->item, p->setting, first, r->said);
+  else
+    in_setting = law_as_asked(&b->item, b->setting, first, r->said);
   if (!in_setting) return false;
   if (in_setting == first) return true;
   r->model.law = in_setting;
@@ -194,13 +215,20 @@ driven_outcome driven_law_open(driven_law *r, arena *memory, const drive_input *
   return outcome == DRIVEN_READY ? suit_path(r) : outcome;
 }
 
+/* Of a law of a bond or a family. */
+static law_setting setting_asked(const drive_input *in, const law *l) {
+  law_setting setting;
+  const char *asked = in->bond.setting;
+  if (l->tree->law == LAW_STATE) return setting_of_particle(in, l);
+  return asked && law_setting_find(asked, &setting) ? setting : law_first_setting(l);
+}
+
 /* What a path sets has no part in the kernel, but for options and the setting. */
 static bool has_kernel_of(const driven_law *kept, const drive_input *in) {
   char *path = model_find(in->material.model, in->path);
   const bool same = path && kept->model.path && strcmp(path, kept->model.path) == 0 &&
                     kept->law->kind != PL_CONTINUUM && kept->model.law->options.count == 0 &&
-                    (kept->law->kind != PL_STATE ||
-                     setting_of_particle(in, kept->model.law) == kept->model.law->setting);
+                    setting_asked(in, kept->model.law) == kept->model.law->setting;
   free(path);
   return same;
 }

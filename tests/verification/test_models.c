@@ -1,6 +1,6 @@
 /* Laws of models/ against their closed forms, through decks and the program: work of fracture and
-   strength of cohesive at two spacings and with both kinds of softening; elastic constants
-   of the elastic laws. */
+   strength of cohesive at two spacings and with both kinds of softening, and of hordijk;
+   elastic constants of the elastic laws. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -23,7 +23,7 @@ static const double f_t = 3e6, G_f = 80, thickness = 0.1; /* Pa, N/m, m */
 static const char strip[] =
     "&simulation end_time = '%g ms' /\n"
     "&lattice name = 'c' kind = 'hexagonal' spacing = %.17g thickness = '100 mm' /\n"
-    "&material lattice = 'c' model = 'cohesive' softening = '%s' f_t = '3 MPa' G_f = '80 "
+    "&material lattice = 'c' model = '%s' f_t = '3 MPa' G_f = '80 "
     "N/m' /\n"
     "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = '50 mm', %.17g /\n"
     "&region name = 'low' shape = 'rectangle' corner = '-1 mm', '-1 mm' size = '52 mm', '2 mm' /\n"
@@ -34,10 +34,10 @@ static const char strip[] =
     "&monitor name = 'load' kind = 'reaction' region = 'top' component = 'y' /\n"
     "&output result = 'models_strip.h5' frames = 2 sample = '0.01 ms' /\n";
 
-static void write_deck(const char *path, double end_ms, double spacing, const char *softening) {
+static void write_deck(const char *path, double end_ms, double spacing, const char *law) {
   FILE *out = fopen(path, "w");
   assert_non_null(out);
-  fprintf(out, strip, end_ms, spacing, softening, 0.9 * spacing);
+  fprintf(out, strip, end_ms, spacing, law, 0.9 * spacing);
   assert_int_equal(fclose(out), 0);
 }
 
@@ -63,10 +63,10 @@ static double largest(const double *values, long count) {
   return most;
 }
 
-static void fracture_costs_what_the_law_says(double spacing, const char *softening, double end_ms) {
+static void fracture_costs_what_the_law_says(double spacing, const char *law, double end_ms) {
   char error[1024], unit[32];
   long samples, particles;
-  write_deck("models_strip.nml", end_ms, spacing, softening);
+  write_deck("models_strip.nml", end_ms, spacing, law);
   free(program("run models_strip.nml"));
   result_file *f = result_read("models_strip.h5", error, sizeof error);
   assert_non_null(f);
@@ -81,8 +81,8 @@ static void fracture_costs_what_the_law_says(double spacing, const char *softeni
   double bond_strength = sqrt(3) / 2 * f_t * spacing * thickness;
   double work = lost[samples - 1] / (bonds * bond_energy);
   double strength = largest(load, samples) / (bonds * bond_strength * sqrt(3) / 2);
-  print_message("%s, %g mm: work of fracture %.5f, strength %.5f of theory\n", softening,
-                1e3 * spacing, work, strength);
+  print_message("%s, %g mm: work of fracture %.5f, strength %.5f of theory\n", law, 1e3 * spacing,
+                work, strength);
   /* The strip's bonds turn by 0.1 %, which enters squared; a sample every 0.01 ms may miss the peak
    * by 0.03 %. */
   assert_true(fabs(work - 1) < 1e-3);
@@ -95,12 +95,16 @@ static void fracture_costs_what_the_law_says(double spacing, const char *softeni
   unlink("models_strip.xdmf");
 }
 
+#define EXPONENTIAL "cohesive' softening = 'exponential"
+
 static void work_of_fracture_of_cohesive_bonds(void **state) {
   (void)state;
-  fracture_costs_what_the_law_says(5e-3, "linear", 50);
-  fracture_costs_what_the_law_says(2.5e-3, "linear", 50);
-  fracture_costs_what_the_law_says(5e-3, "exponential", 200);
-  fracture_costs_what_the_law_says(2.5e-3, "exponential", 200);
+  fracture_costs_what_the_law_says(5e-3, "cohesive", 50);
+  fracture_costs_what_the_law_says(2.5e-3, "cohesive", 50);
+  fracture_costs_what_the_law_says(5e-3, EXPONENTIAL, 200);
+  fracture_costs_what_the_law_says(2.5e-3, EXPONENTIAL, 200);
+  fracture_costs_what_the_law_says(5e-3, "hordijk", 110);
+  fracture_costs_what_the_law_says(2.5e-3, "hordijk", 110);
 }
 
 /* The constants that the program announces are those of the perfect lattice, from the law's
@@ -126,7 +130,10 @@ static void elastic_constants_are_those_asked_for(void **state) {
   (void)state;
   assert_elastic("elastic_central", "E = '25 GPa'", "E = 25 GPa, nu = 0.3333");
   assert_elastic("cohesive", "E = '25 GPa'", "E = 25 GPa, nu = 0.3333");
+  assert_elastic("hordijk", "E = '25 GPa'", "E = 25 GPa, nu = 0.3333");
   assert_elastic("elastic_micropolar", "E = '25 GPa' nu = 0.15", "E = 25 GPa, nu = 0.1500");
+  assert_elastic("parallel_bond", "kappa = 2.5", "E = 42.79 GPa, nu = 0.1765");
+  assert_elastic("facet", "E = '25 GPa' nu = 0.1", "E = 25 GPa, nu = 0.1000");
   assert_elastic("mplm_bilinear", "E = '25 GPa' nu = 0.1", "E = 25 GPa, nu = 0.1000");
 }
 

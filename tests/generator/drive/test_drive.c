@@ -280,6 +280,8 @@ static void bad_paths_are_explained(void **state) {
       {FIBRES("fibre = 1, 2, 3, 4"), "`fibre` takes 1 value, of a vector 2 or 3, but 4 are given"},
       {FIBRES("fibre = 1, 'x', 0"), "`fibre_y` needs a number, not the word 'x'"},
       {"&material model = 'no_such_law' /\n" TO_MICRO, "there is no model `no_such_law`"},
+      {"&material model = 'cohesive' /\n&bond setting = 'plane_strain' /\n" TO_MICRO,
+       "the law `cohesive` is not meant for plane_strain"},
       {"&material model = 'cohesive' softening = 'liner' /\n" TO_MICRO, "has no choice `liner`"},
       {"&material model = 'mplm_bilinear' /\n&initial omega = 2 /\n" TO_MICRO,
        "is between 0 and 1"},

@@ -52,6 +52,17 @@ static double final_force(keeper *k, const char *material) {
   return final_value(k, text, "N");
 }
 
+/* Of a bond of cohesive, in GN. */
+static double final_cohesive(keeper *k, const char *bond) {
+  char text[400];
+  snprintf(text, sizeof text,
+           "&material model = 'cohesive' E = '10 GPa' /\n&simulation steps = 10 /\n"
+           "&bond spacing = '10 mm' thickness = '100 mm' %s /\n"
+           "&path quantity = 'stretch' times = 0, '1 s' values = 0, 1e-6 /\n",
+           bond);
+  return final_value(k, text, "N");
+}
+
 /* Of a particle whose sides are held. */
 static double final_stress(keeper *k, const char *particle) {
   char text[400];
@@ -90,7 +101,8 @@ static void each_path_has_its_own_values(void **state) {
   arena_free(k.memory);
 }
 
-/* Plane stress E/(1 - nu^2), space E (1 - nu)/((1 + nu)(1 - 2 nu)). */
+/* Of bonds sqrt(3)/2 E s t and 4/(5 sqrt(2)) E s^2; of particles, in plane stress E/(1 - nu^2), in
+   space E (1 - nu)/((1 + nu)(1 - 2 nu)). */
 static void each_path_has_its_own_setting(void **state) {
   keeper k = {.w = *state, .memory = arena_new()};
   diag_begin(&k.said, &k.sources);
@@ -98,6 +110,11 @@ static void each_path_has_its_own_setting(void **state) {
   assert_true(fabs(final_stress(&k, "") / plane - 1) < 1e-5);
   assert_true(fabs(final_stress(&k, "lattice = 'fcc' shells = 2") / space - 1) < 1e-5);
   assert_true(fabs(final_stress(&k, "lattice = 'hexagonal'") / plane - 1) < 1e-5);
+  driven_law_close(&k.kept);
+  for (int turn = 0; turn < 2; turn++) {
+    assert_true(fabs(final_cohesive(&k, "") / (5 * sqrt(3)) - 1) < 1e-9);
+    assert_true(fabs(final_cohesive(&k, "setting = 'space'") / (4 / (5 * sqrt(2))) - 1) < 1e-9);
+  }
   driven_law_close(&k.kept);
   assert_true(fabs(final_stress(&k, "lattice = 'fcc' shells = 2") / space - 1) < 1e-5);
   assert_true(fabs(final_stress(&k, "") / plane - 1) < 1e-5);
