@@ -26,6 +26,8 @@ const char *shape_words(shape s) {
     return "a vector";
   case SHAPE_TENSOR:
     return "a tensor";
+  case SHAPE_GENERAL:
+    return "a tensor that need not be symmetric";
   }
   return "";
 }
@@ -134,6 +136,10 @@ value agree(checker *ck, span where, expr *a, value va, expr *b, value vb, const
   bool listed = where.begin == b->where.begin && where.end == b->where.end; /* a line of cases */
   const char *first = quoted(ck, a, listed ? "a value above" : "the left side");
   const char *second = quoted(ck, b, listed ? "this value" : "the right side");
+  if (va.shape != vb.shape && shape_is_tensor(va.shape) && shape_is_tensor(vb.shape)) {
+    va.shape = vb.shape = SHAPE_GENERAL;
+    va.deviator = vb.deviator = false;
+  }
   if (va.shape != vb.shape) {
     complain(ck, DIAG_SHAPE, where, "%s is %s but %s is %s, so they cannot be %s", first,
              shape_words(va.shape), second, shape_words(vb.shape), deed);
@@ -164,6 +170,8 @@ bool expect(checker *ck, expr *e, value v, dimension dim, shape s, const char *w
     if (s == SHAPE_SCALAR && (v.shape == SHAPE_BENDING || v.shape == SHAPE_VECTOR))
       diag_hint(ck->d, "take its magnitude: `norm(...)`%s",
                 v.shape == SHAPE_VECTOR ? ", a component, such as `v[x]`, or `dot(v, w)`" : "");
+    if (s == SHAPE_TENSOR && v.shape == SHAPE_GENERAL)
+      diag_hint(ck->d, "take its symmetric part: `sym(...)`");
     return false;
   }
   if (dim_equal(v.dim, dim)) return true;
