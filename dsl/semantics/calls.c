@@ -400,6 +400,12 @@ static value inverse(checker *ck, expr *e) {
   return with_shape(v, dim_div(DIMENSIONLESS, v.dim), v.shape);
 }
 
+static value rotation(checker *ck, expr *e) {
+  value v = any_tensor_argument(ck, e);
+  if (v.broken || v.unknown) return v;
+  return with_shape(v, DIMENSIONLESS, SHAPE_GENERAL);
+}
+
 static value tensor_to_scalar(checker *ck, expr *e) {
   const bool any = e->builtin == FUNCTION_TRACE;
   value v = any ? any_tensor_argument(ck, e) : tensor_argument(ck, e);

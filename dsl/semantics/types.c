@@ -228,6 +228,10 @@ static value check_product(checker *ck, expr *e, value a, value b) {
     v.unknown = true;
     return v;
   }
+  if (ck->holes && shape_is_tensor(a.shape) && shape_is_tensor(b.shape) && !divide) {
+    v.unknown = true; /* what a hole is part of may be symmetric or not */
+    return v;
+  }
   const shape of_two = divide ? SHAPE_SCALAR : matrix_product(a.shape, b.shape);
   if (of_two != SHAPE_SCALAR) {
     v.shape = of_two;

@@ -413,6 +413,11 @@ static void lower_force_state(lowering *c, lowered_law *out) {
     lower_force_vector(c, given, &vector, out);
     return;
   }
+  if (!given && out->W != IR_NONE && lower_reads_displacement(c->graph, out->W)) {
+    lower_force_vector_of_energy(c, out->W, out->F_of);
+    if (c->variation->shares) take_share(c->graph, out);
+    return;
+  }
   out->F = given ? value_of(c, given->symbol) : IR_NONE;
   out->along_reference = given && given->along_reference;
   if (out->F == IR_NONE && out->W == IR_NONE)

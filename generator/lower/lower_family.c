@@ -310,6 +310,8 @@ components lower_family_call(lowering *c, const expr *e, const components *a) {
     return general_symmetric(g, a[0]);
   case FUNCTION_DET:
     return scalar(general_determinant(g, a[0]));
+  case FUNCTION_ROTATION:
+    return general_rotation(g, a[0]);
   case FUNCTION_INVERSE:
     return general_inverse(g, a[0]);
   case FUNCTION_TENSOR: {

@@ -81,6 +81,39 @@ ir_node general_determinant(ir *g, components a) {
   return sum;
 }
 
+/* Does not leave the plane. */
+static bool is_of_plane(const ir *g, const components *a) {
+  bool of = true;
+  for (int k = 0; k < 2; k++)
+    of = of && ir_is_number(g, entry(a, 2, k), 0) && ir_is_number(g, entry(a, k, 2), 0);
+  return of;
+}
+
+/* (c, s) along (xx + yy, yx - xy). */
+static components rotation_in_plane(ir *g, const components *F) {
+  const ir_node c = ir_add(g, entry(F, 0, 0), entry(F, 1, 1)),
+                s = ir_sub(g, entry(F, 1, 0), entry(F, 0, 1)), square = ir_mul(g, s, s);
+  const ir_node size = ir_unary(g, IR_SQRT, ir_add(g, ir_mul(g, c, c), square));
+  components R = {.count = GENERAL_COUNT};
+  for (int k = 0; k < GENERAL_COUNT; k++)
+    R.of[k] = ir_constant(g, k == TENSOR_ZZ);
+  R.of[general_place(0, 0)] = R.of[general_place(1, 1)] = ir_div(g, c, size);
+  R.of[general_place(1, 0)] = ir_div(g, s, size);
+  R.of[general_place(0, 1)] = ir_neg(g, R.of[general_place(1, 0)]);
+  return R;
+}
+
+components general_rotation(ir *g, components F) {
+  components R = general_of(g, F);
+  if (is_of_plane(g, &R)) return rotation_in_plane(g, &R);
+  for (int n = 0; n < GENERAL_TURNS; n++) {
+    const components other = general_transpose(general_inverse(g, R));
+    for (int k = 0; k < GENERAL_COUNT; k++)
+      R.of[k] = half(g, ir_add(g, R.of[k], other.of[k]));
+  }
+  return R;
+}
+
 components general_inverse(ir *g, components a) {
   const ir_node determinant = general_determinant(g, a);
   components v = {.count = a.count};

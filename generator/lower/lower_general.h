@@ -22,5 +22,11 @@ ir_node general_determinant(ir *g, components a);
 ir_node general_cofactor(ir *g, const components *a, int row, int column);
 /* By cofactors; of a symmetric tensor symmetric. */
 components general_inverse(ir *g, components a);
+/* R of F = R U. Of a tensor that does not leave the plane in closed form; else by GENERAL_TURNS
+   steps of Newton's method, R = (R + R^-T)/2 from F on (Higham 1986), each of which squares
+   e = |x - 1|/(x + 1) of every principal stretch x: after them R is off by 2 e^32, which is below
+   rounding for stretches from 1/2 to 2. */
+enum { GENERAL_TURNS = 5 };
+components general_rotation(ir *g, components F);
 
 #endif
