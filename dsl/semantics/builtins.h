@@ -71,7 +71,7 @@ enum { MOVES, FIXED };
   X(DIRECTION, "direction", "1", VECTOR, BOND, IN_LATTICE, FIXED, "x = norm(direction)",           \
     "unit vector along the reference bond")                                                        \
   X(U, "u", "m", VECTOR, PARTICLE, IN_STATE, MOVES, "x = trace(gradient(u))",                      \
-    "displacement of the particle: forces may know differences, such as `u[j] - u`")               \
+    "displacement of the particle, in its gradient and in u[j] - u")                               \
   X(SLIP, "slip", "m", SCALAR, BOND, IN_SLIP, MOVES, "x = slip/s",                                 \
     "how far the place has moved along the bar, as its tangent is now")                            \
   X(GAP, "gap", "m", BENDING, BOND, IN_SLIP, MOVES, "x = norm(gap)/s",                             \

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/semantics/law_reads.h"
 #include "generator/ir/derive.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/kinematics.h"
@@ -413,7 +414,7 @@ static void lower_force_state(lowering *c, lowered_law *out) {
     lower_force_vector(c, given, &vector, out);
     return;
   }
-  if (!given && out->W != IR_NONE && lower_reads_displacement(c->graph, out->W)) {
+  if (!given && out->W != IR_NONE && law_reads(c->law, QUANTITY_U)) {
     lower_force_vector_of_energy(c, out->W, out->F_of);
     if (c->variation->shares) take_share(c->graph, out);
     return;

@@ -157,7 +157,7 @@ static ir_node held_sum(const lowering *c, int k) {
 
 /* The sums that W is made of, inner ones first. */
 typedef struct sums {
-  ir_node *sum, *stand_in; /* [count] */
+  ir_node *sum; /* [count] */
   int count;
 } sums;
 
@@ -166,17 +166,14 @@ static bool find_sums(lowering *c, ir_node W, ir_node (*by)(ir *g, ir_node n), s
   ir *g = c->graph;
   const int nodes = ir_count(g);
   unsigned char *marks = arena_alloc(c->memory, (size_t)nodes + 1);
-  *found = (sums){arena_alloc(c->memory, ((size_t)nodes + 1) * sizeof(ir_node)),
-                  arena_alloc(c->memory, ((size_t)nodes + 1) * sizeof(ir_node)), 0};
+  *found = (sums){arena_alloc(c->memory, ((size_t)nodes + 1) * sizeof(ir_node)), 0};
   memset(marks, 0, (size_t)nodes + 1);
   ir_mark(g, &W, 1, marks);
   for (ir_node n = 0; n < nodes; n++) {
     const ir_op op = ir_operation(g, n);
     if (!marks[n]) continue;
     if (op == IR_FAMILY_SUM) {
-      found->sum[found->count] = n;
-      found->stand_in[found->count] = held_sum(c, found->count);
-      found->count++;
+      found->sum[found->count++] = n;
     } else if ((op == IR_FAMILY_MAX || op == IR_FAMILY_MIN || op == IR_NEIGHBOUR) &&
                !ir_is_number(g, by(g, ir_operand(g, n, 0)), 0)) {
       lower_fail(c, c->law->tree->name_where,
@@ -188,6 +185,20 @@ static bool find_sums(lowering *c, ir_node W, ir_node (*by)(ir *g, ir_node n), s
   return true;
 }
 
+/* The derivative of what stands in sum k by what the bond to j has, while inner sums are held. */
+static ir_node slope_inside(lowering *c, const sums *s, int k, ir_node (*by)(ir *g, ir_node n)) {
+  ir *g = c->graph;
+  ir_node inside = ir_operand(g, s->sum[k], 0);
+  if (!rewrite_depends(g, &inside, 1, s->sum, k)) return by(g, inside);
+  ir_node *held = arena_alloc(c->memory, (size_t)k * sizeof *held);
+  for (int n = 0; n < k; n++)
+    held[n] = held_sum(c, n);
+  ir_substitute(g, &inside, 1, s->sum, held, k, &inside);
+  ir_node part = by(g, inside);
+  ir_substitute(g, &part, 1, held, s->sum, k, &part);
+  return part;
+}
+
 /* The derivative of W by what the bond to j alone has: of the sums that it is made of, through
    other sums, too, times that of what stands in them at j while all sums are held. */
 static ir_node slope_at_neighbour(lowering *c, ir_node W, ir_node (*by)(ir *g, ir_node n)) {
@@ -196,11 +207,8 @@ static ir_node slope_at_neighbour(lowering *c, ir_node W, ir_node (*by)(ir *g, i
   sums s;
   if (!find_sums(c, W, by, &s)) return slope;
   for (int k = 0; k < s.count; k++) {
-    ir_node inside = ir_operand(g, s.sum[k], 0);
-    ir_substitute(g, &inside, 1, s.sum, s.stand_in, s.count, &inside);
-    ir_node part = by(g, inside);
+    const ir_node part = slope_inside(c, &s, k, by);
     if (ir_is_number(g, part, 0)) continue;
-    ir_substitute(g, &part, 1, s.stand_in, s.sum, s.count, &part);
     const ir_node outer = ir_derivative(g, W, s.sum[k]);
     slope = ir_add(g, slope, ir_mul(g, outer, part));
   }
@@ -229,13 +237,6 @@ static ir_node by_far_y(ir *g, ir_node n) {
 }
 static ir_node by_far_z(ir *g, ir_node n) {
   return ir_derivative(g, n, kinematics_input(g, ENDS_U_JZ));
-}
-
-bool lower_reads_displacement(ir *g, ir_node W) {
-  ir_node u[FORCE_AXES];
-  for (int d = 0; d < FORCE_AXES; d++)
-    u[d] = kinematics_input(g, own[d]);
-  return rewrite_depends(g, &W, 1, u, FORCE_AXES);
 }
 
 /* What stretches make of it acts along the present bond. */

@@ -23,7 +23,6 @@ ir_node lower_rate_power(ir *g, const law *l, const lowered_law *frozen, ir_node
    other side. */
 ir_node lower_force_state_of_energy(lowering *c, ir_node W);
 /* The same of an energy that reads the displacement `u`: a vector toward each neighbour. */
-bool lower_reads_displacement(ir *g, ir_node W);
 void lower_force_vector_of_energy(lowering *c, ir_node W, ir_node F[FORCE_AXES]);
 
 #endif
