@@ -489,6 +489,13 @@ static void put_vector_product(const law *l, const expr *e, FILE *out) {
   put(l, e->arguments[1].value, HOLDS_ATOM, out);
 }
 
+/* A^T, A^-1 */
+static void put_raised(const law *l, const expr *e, FILE *out) {
+  fputc('{', out);
+  put(l, e->arguments[0].value, HOLDS_ATOM, out);
+  fputs(is_call_of(e, FUNCTION_TRANSPOSE) ? "}^{T}" : "}^{-1}", out);
+}
+
 static void put_call(const law *l, const expr *e, FILE *out) {
   const expr *first = e->argument_count ? e->arguments[0].value : NULL;
   if (is_call_of(e, FUNCTION_PREVIOUS) && first && first->kind == EXPR_NAME) {
@@ -499,6 +506,8 @@ static void put_call(const law *l, const expr *e, FILE *out) {
     put_arguments(l, e, out);
   } else if (is_call_of(e, FUNCTION_DOT) || is_call_of(e, FUNCTION_CROSS)) {
     put_vector_product(l, e, out);
+  } else if (is_call_of(e, FUNCTION_TRANSPOSE) || is_call_of(e, FUNCTION_INVERSE)) {
+    put_raised(l, e, out);
   } else {
     put_function(l, e, out);
   }

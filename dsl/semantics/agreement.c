@@ -26,6 +26,8 @@ const char *shape_words(shape s) {
     return "a vector";
   case SHAPE_TENSOR:
     return "a tensor";
+  case SHAPE_GENERAL:
+    return "a tensor that need not be symmetric";
   }
   return "";
 }
@@ -123,20 +125,33 @@ static bool blame(checker *ck, const expr *e, dimension has, dimension needs) {
   return true;
 }
 
+/* What is not known yet, beside it, may be a tensor that need not be symmetric. */
+static bool may_be_general(const checker *ck, value v) {
+  return v.shape == SHAPE_TENSOR && ck->tree->law == LAW_STATE;
+}
+
 value agree(checker *ck, span where, expr *a, value va, expr *b, value vb, const char *deed) {
   if (va.broken || vb.broken) return BROKEN;
   if (va.zero || va.unknown) {
-    vb.unknown |= va.unknown && vb.zero;
+    vb.unknown |= va.unknown && (vb.zero || may_be_general(ck, vb));
     vb.zero &= va.zero;
     return joined(ck, vb, va);
   }
+  va.unknown |= vb.unknown && may_be_general(ck, va);
   if (vb.zero || vb.unknown) return joined(ck, va, vb);
   bool listed = where.begin == b->where.begin && where.end == b->where.end; /* a line of cases */
   const char *first = quoted(ck, a, listed ? "a value above" : "the left side");
   const char *second = quoted(ck, b, listed ? "this value" : "the right side");
+  if (va.shape != vb.shape && shape_is_tensor(va.shape) && shape_is_tensor(vb.shape)) {
+    va.shape = vb.shape = SHAPE_GENERAL;
+    va.deviator = vb.deviator = false;
+  }
   if (va.shape != vb.shape) {
     complain(ck, DIAG_SHAPE, where, "%s is %s but %s is %s, so they cannot be %s", first,
              shape_words(va.shape), second, shape_words(vb.shape), deed);
+    if (!listed && shape_is_tensor(va.shape) + shape_is_tensor(vb.shape) == 1 &&
+        (is_bare_number(a) || is_bare_number(b)))
+      diag_hint(ck->d, "the unit tensor is `tensor(1, 1, 1, 0)`");
     hint_magnitude(ck, a, va, b, vb);
     return BROKEN;
   }
@@ -164,6 +179,8 @@ bool expect(checker *ck, expr *e, value v, dimension dim, shape s, const char *w
     if (s == SHAPE_SCALAR && (v.shape == SHAPE_BENDING || v.shape == SHAPE_VECTOR))
       diag_hint(ck->d, "take its magnitude: `norm(...)`%s",
                 v.shape == SHAPE_VECTOR ? ", a component, such as `v[x]`, or `dot(v, w)`" : "");
+    if (s == SHAPE_TENSOR && v.shape == SHAPE_GENERAL)
+      diag_hint(ck->d, "take its symmetric part: `sym(...)`");
     return false;
   }
   if (dim_equal(v.dim, dim)) return true;

@@ -70,6 +70,8 @@ enum { MOVES, FIXED };
     "1 where the particle's bonds resolve all strains, else 0")                                    \
   X(DIRECTION, "direction", "1", VECTOR, BOND, IN_LATTICE, FIXED, "x = norm(direction)",           \
     "unit vector along the reference bond")                                                        \
+  X(U, "u", "m", VECTOR, PARTICLE, IN_STATE, MOVES, "x = trace(gradient(u))",                      \
+    "displacement of the particle, in its gradient and in u[j] - u")                               \
   X(SLIP, "slip", "m", SCALAR, BOND, IN_SLIP, MOVES, "x = slip/s",                                 \
     "how far the place has moved along the bar, as its tangent is now")                            \
   X(GAP, "gap", "m", BENDING, BOND, IN_SLIP, MOVES, "x = norm(gap)/s",                             \
@@ -193,9 +195,28 @@ enum { MOVES, FIXED };
   X(DYAD, "dyad", 2, 2, dyad, NO_VALUE, "\\operatorname{dyad}",                                    \
     "x = trace(dyad((1, 0), (0, 1)))",                                                             \
     "symmetric tensor (a b + b a)/2 of two vectors")                                               \
-  X(TENSOR, "tensor", 4, 6, tensor_of_components, NO_VALUE, "\\operatorname{tensor}",              \
+  X(TENSOR, "tensor", 4, 9, tensor_of_components, NO_VALUE, "\\operatorname{tensor}",              \
     "x = trace(tensor(1, 1, 1, 0))",                                                               \
-    "symmetric tensor of its components xx, yy, zz, xy and, where they are not 0, yz, xz")
+    "symmetric tensor of its components xx, yy, zz, xy and, where they are not 0, yz, xz; with "   \
+    "yx, zy, zx behind them one that need not be symmetric")                                       \
+  X(GRADIENT, "gradient", 1, 2, gradient, NO_VALUE, "\\operatorname{grad}",                        \
+    "x = trace(gradient(u))",                                                                      \
+    "gradient of a particle's number or vector over its family, by least squares; "                \
+    "`gradient(u)` is the deformation gradient less 1")                                            \
+  X(CORRESPONDENCE, "correspondence", 1, 2, correspondence, NO_VALUE,                              \
+    "\\operatorname{correspondence}", "x[j] = norm(correspondence(30 [GPa]*gradient(u)))",         \
+    "force state toward each neighbour whose work in `gradient(u)` is that of a stress")           \
+  X(TRANSPOSE, "transpose", 1, 1, transpose, NO_VALUE, "",                                          \
+    "x = norm(gradient(u) - transpose(gradient(u)))", "transpose of a tensor")                     \
+  X(SYM, "sym", 1, 1, sym, NO_VALUE, "\\operatorname{sym}", "x = principal(sym(gradient(u)), 1)",  \
+    "symmetric part (a + transpose(a))/2 of a tensor")                                             \
+  X(DET, "det", 1, 1, det, NO_VALUE, "\\det", "x = det(tensor(1, 1, 1, 0) + fit(stretch))",        \
+    "determinant of a tensor")                                                                     \
+  X(INVERSE, "inverse", 1, 1, inverse, NO_VALUE, "",                                            \
+    "x = trace(inverse(tensor(1, 1, 1, 0) + fit(stretch)))", "inverse of a tensor")                \
+  X(ROTATION, "rotation", 1, 1, rotation, NO_VALUE, "\\operatorname{rotation}",                    \
+    "x = norm(rotation(tensor(1, 1, 1, 0) + gradient(u)))",                                        \
+    "rotation R of a deformation gradient F = R U, with a symmetric, positive U")
 
 typedef enum builtin_quantity {
 #define X(code, ...) QUANTITY_##code,

@@ -280,10 +280,17 @@ static value deviator(checker *ck, expr *e) {
   return v;
 }
 
+/* What goes along the bonds, or is measured so, is a number toward each neighbour. */
+static bool is_along_bonds(checker *ck, const expr *e, value v) {
+  if (v.unknown || v.shape == SHAPE_SCALAR) return true;
+  bad_shape(ck, e, v, "it takes a number toward each neighbour, along the bonds");
+  return false;
+}
+
 /* Of a force state in N, or in N/m^6 (a force per both volumes). */
 static value virtual_work(checker *ck, expr *e) {
   value v = family_argument(ck, e, false);
-  if (v.broken) return v;
+  if (v.broken || !is_along_bonds(ck, e, v)) return BROKEN;
   bool known =
       v.unknown || dim_equal(v.dim, dimension_of("N")) || dim_equal(v.dim, dimension_of("N/m^6"));
   if (!known) {
@@ -303,6 +310,7 @@ static value fit(checker *ck, expr *e) {
   v.place = ON_PARTICLE;
   v.whole = false;
   if (v.broken || v.unknown) return v;
+  if (!is_along_bonds(ck, e, v)) return BROKEN;
   ck->reads_poisson = true;
   return with_shape(v, v.dim, SHAPE_TENSOR);
 }
@@ -351,7 +359,9 @@ static value tensor_argument(checker *ck, expr *e) {
   if (!has_tensors(ck, e)) return BROKEN;
   value v = check_number(ck, operand(e, 0));
   if (v.broken || v.unknown || v.shape == SHAPE_TENSOR) return v;
-  return bad_shape(ck, e, v, "it takes a stress or strain");
+  return bad_shape(ck, e, v,
+                   v.shape == SHAPE_GENERAL ? "take its symmetric part: `sym(...)`"
+                                            : "it takes a stress or strain");
 }
 
 static value deviator_of_tensor(checker *ck, expr *e) {
@@ -360,8 +370,45 @@ static value deviator_of_tensor(checker *ck, expr *e) {
   return v;
 }
 
+/* Also one that need not be symmetric. */
+static value any_tensor_argument(checker *ck, expr *e) {
+  if (!has_tensors(ck, e)) return BROKEN;
+  value v = check_number(ck, operand(e, 0));
+  if (v.broken || v.unknown || shape_is_tensor(v.shape)) return v;
+  return bad_shape(ck, e, v, "it takes a tensor");
+}
+
+static value transpose(checker *ck, expr *e) {
+  return any_tensor_argument(ck, e);
+}
+
+static value sym(checker *ck, expr *e) {
+  value v = any_tensor_argument(ck, e);
+  if (!v.broken && !v.unknown) v.shape = SHAPE_TENSOR;
+  return v;
+}
+
+static value det(checker *ck, expr *e) {
+  value v = any_tensor_argument(ck, e);
+  if (v.broken || v.unknown) return v;
+  return with_shape(v, dim_mul(dim_mul(v.dim, v.dim), v.dim), SHAPE_SCALAR);
+}
+
+static value inverse(checker *ck, expr *e) {
+  value v = any_tensor_argument(ck, e);
+  if (v.broken || v.unknown) return v;
+  return with_shape(v, dim_div(DIMENSIONLESS, v.dim), v.shape);
+}
+
+static value rotation(checker *ck, expr *e) {
+  value v = any_tensor_argument(ck, e);
+  if (v.broken || v.unknown) return v;
+  return with_shape(v, DIMENSIONLESS, SHAPE_GENERAL);
+}
+
 static value tensor_to_scalar(checker *ck, expr *e) {
-  value v = tensor_argument(ck, e);
+  const bool any = e->builtin == FUNCTION_TRACE;
+  value v = any ? any_tensor_argument(ck, e) : tensor_argument(ck, e);
   if (v.broken || v.unknown) return v;
   dimension dim = e->builtin == FUNCTION_J2 ? dim_mul(v.dim, v.dim) : v.dim;
   return with_shape(v, dim, SHAPE_SCALAR);
@@ -400,7 +447,8 @@ static value product(checker *ck, expr *e) {
   return with_shape(v, dim_mul(a.dim, b.dim), SHAPE_TENSOR);
 }
 
-/* xx, yy, zz, xy and, where they are not 0, yz, xz. */
+/* xx, yy, zz, xy and, where they are not 0, yz, xz; of one that need not be symmetric yx, zy, zx,
+   too. */
 static value tensor_of_components(checker *ck, expr *e) {
   if (!has_tensors(ck, e)) return BROKEN;
   value all = {.zero = true};
@@ -412,18 +460,77 @@ static value tensor_of_components(checker *ck, expr *e) {
     if (!v.zero && !v.unknown && v.shape != SHAPE_SCALAR)
       return bad_shape(ck, e, v, "its components are numbers: xx, yy, zz, xy, yz, xz");
   }
-  if (e->argument_count == 5) {
-    complain(ck, DIAG_ARGUMENTS, e->where, "`tensor` takes 4 or %d components, not 5",
-             TENSOR_COMPONENT_COUNT);
-    diag_hint(ck->d, "they are xx, yy, zz, xy, and out of the plane yz, xz");
+  const bool general = e->argument_count == GENERAL_COMPONENT_COUNT;
+  if (e->argument_count != 4 && e->argument_count != TENSOR_COMPONENT_COUNT && !general) {
+    complain(ck, DIAG_ARGUMENTS, e->where, "`tensor` takes 4, %d or %d components, not %d",
+             TENSOR_COMPONENT_COUNT, GENERAL_COMPONENT_COUNT, e->argument_count);
+    diag_hint(ck->d, "they are xx, yy, zz, xy, and out of the plane yz, xz; of a tensor that need "
+                     "not be symmetric yx, zy, zx behind these");
     return BROKEN;
   }
   const bool zero = all.zero;
   all.zero = false;
   all.unknown &= ck->holes;
-  all = with_shape(all, all.dim, SHAPE_TENSOR);
-  all.deviator = zero;
+  all = with_shape(all, all.dim, general ? SHAPE_GENERAL : SHAPE_TENSOR);
+  all.deviator = zero && !general;
   return all;
+}
+
+/* --- gradients of a family -------------------------------------------------------------------- */
+
+/* `weight = w[j]` behind the first argument. */
+static bool has_good_weight(checker *ck, expr *e) {
+  if (e->argument_count == 1) return true;
+  const value weight = reduce_argument(ck, e, 1);
+  return !weight.broken &&
+         expect(ck, operand(e, 1), weight, DIMENSIONLESS, SHAPE_SCALAR, "a weight");
+}
+
+static bool is_displacement(const expr *e) {
+  return e->kind == EXPR_NAME && !e->indexed && e->symbol &&
+         e->symbol->kind == SYMBOL_QUANTITY && e->symbol->index == QUANTITY_U;
+}
+
+/* Of a number a vector, of a vector a tensor. */
+static value gradient(checker *ck, expr *e) {
+  if (!needs_state_law(ck, e)) return BROKEN;
+  expr *of = operand(e, 0);
+  value v = check_number(ck, of);
+  if (v.broken || !has_good_weight(ck, e)) return BROKEN;
+  if (is_displacement(of)) v.place = ON_PARTICLE;
+  if (!v.unknown && v.place != ON_PARTICLE) {
+    const bool toward = v.place > ON_PARTICLE;
+    complain(ck, DIAG_PLACEMENT, of->where,
+             toward ? "`gradient` takes what each particle has, but %s has a value for each "
+                      "neighbour"
+                    : "`gradient` takes what each particle has, but %s is the same for all",
+             quoted(ck, of, "this"));
+    if (toward) diag_hint(ck->d, "write the name without [j]: the sum over the family is its own");
+    return BROKEN;
+  }
+  if (v.unknown) return v;
+  if (v.shape != SHAPE_SCALAR && v.shape != SHAPE_VECTOR)
+    return bad_shape(ck, e, v, "it takes a number or a vector of the particle");
+  return with_shape(v, dim_div(v.dim, dimension_of("m")),
+                    v.shape == SHAPE_VECTOR ? SHAPE_GENERAL : SHAPE_VECTOR);
+}
+
+static value correspondence(checker *ck, expr *e) {
+  if (!needs_state_law(ck, e)) return BROKEN;
+  value v = any_tensor_argument(ck, e);
+  if (v.broken || !has_good_weight(ck, e)) return BROKEN;
+  if (!v.unknown && v.place > ON_PARTICLE) {
+    complain(ck, DIAG_PLACEMENT, operand(e, 0)->where,
+             "`correspondence` takes the stress of the particle, but this has a value for each "
+             "neighbour");
+    return BROKEN;
+  }
+  if (!v.unknown && !expect(ck, operand(e, 0), v, dimension_of("Pa"), v.zero ? SHAPE_TENSOR : v.shape,
+                            "what `correspondence` takes"))
+    return BROKEN;
+  v.place = ON_NEIGHBOUR;
+  v.unknown = false;
+  return with_shape(v, dimension_of("N"), SHAPE_VECTOR);
 }
 
 /* --- vectors ---------------------------------------------------------------------------------- */
@@ -499,14 +606,20 @@ value check_function_body(checker *ck, entry *function) {
   return v;
 }
 
+static bool takes_weight(const expr *e) {
+  return e->builtin == FUNCTION_MEAN || e->builtin == FUNCTION_GRADIENT ||
+         e->builtin == FUNCTION_CORRESPONDENCE;
+}
+
 static bool check_arity(checker *ck, const expr *e, int least, int most, const char *meaning) {
   for (int i = 0; i < e->argument_count; i++) {
     const argument *a = &e->arguments[i];
-    if (!a->keyword || (e->builtin == FUNCTION_MEAN && i == 1 && strcmp(a->keyword, "weight") == 0))
-      continue;
+    if (!a->keyword || (takes_weight(e) && i == 1 && strcmp(a->keyword, "weight") == 0)) continue;
     complain(ck, DIAG_ARGUMENTS, a->keyword_where, "`%s` has no argument called `%s`", e->name,
              a->keyword);
-    if (e->builtin == FUNCTION_MEAN) diag_hint(ck->d, "write `mean(x[j], weight = w[j])`");
+    if (takes_weight(e))
+      diag_hint(ck->d, "write `%s(%s, weight = w[j])`", e->name,
+                e->builtin == FUNCTION_MEAN ? "x[j]" : "x");
     return false;
   }
   if (e->argument_count >= least && e->argument_count <= most) return true;

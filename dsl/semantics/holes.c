@@ -53,10 +53,27 @@ static void want_alike(settling *t, expr *a, expr *b) {
   if (tells_unit(b)) want(t, a, b->dim, b->shape);
 }
 
+/* The shape of a factor that stands beside a known one; false where it may be several: before a
+   vector a number or a tensor, beside a tensor that need not be symmetric anything. */
+static bool shape_of_factor(shape product, shape known, bool left, shape *factor) {
+  *factor = known == SHAPE_SCALAR ? product : SHAPE_SCALAR;
+  if (known == SHAPE_VECTOR) return !left;
+  if (shape_is_tensor(known) && product != known) *factor = product;
+  return known != SHAPE_GENERAL || product == SHAPE_VECTOR;
+}
+
 static void want_factor(settling *t, const expr *product, const expr *known, expr *factor) {
+  shape s;
   if (!tells_unit(known)) return;
-  want(t, factor, dim_div(product->dim, known->dim),
-       known->shape == SHAPE_SCALAR ? product->shape : SHAPE_SCALAR);
+  if (shape_of_factor(product->shape, known->shape, factor == product->left, &s))
+    want(t, factor, dim_div(product->dim, known->dim), s);
+}
+
+/* Of a sum or of cases, as they are; of a tensor that need not be symmetric one part may be. */
+static void want_part(settling *t, const expr *whole, expr *part, const expr *other) {
+  const bool tells = whole->shape != SHAPE_GENERAL || (other && !other->open &&
+                                                       other->shape == SHAPE_TENSOR);
+  if (tells) want(t, part, whole->dim, whole->shape);
 }
 
 static void want_base(settling *t, const expr *power) {
@@ -65,6 +82,11 @@ static void want_base(settling *t, const expr *power) {
   want(t, power->right, DIMENSIONLESS, SHAPE_SCALAR);
   if (twelfths <= 0 || twelfths > 1e3 || twelfths != nearbyint(twelfths)) return;
   if (dim_pow(power->dim, 12, (int)twelfths, &dim)) want(t, power->left, dim, SHAPE_SCALAR);
+}
+
+/* Where a tensor is as good as one that need not be symmetric: those come from families. */
+static bool may_be_general(const settling *t, shape s) {
+  return shape_is_tensor(s) && t->ck->tree->law == LAW_STATE;
 }
 
 static void spread_binary(settling *t, expr *e) {
@@ -76,8 +98,8 @@ static void spread_binary(settling *t, expr *e) {
     return;
   case OP_ADD:
   case OP_SUB:
-    want(t, e->left, e->dim, e->shape);
-    want(t, e->right, e->dim, e->shape);
+    want_part(t, e, e->left, e->right);
+    want_part(t, e, e->right, e->left);
     return;
   case OP_MUL:
     want_factor(t, e, e->left, e->right);
@@ -88,8 +110,10 @@ static void spread_binary(settling *t, expr *e) {
     if (tells_unit(e->left)) want(t, e->right, dim_div(e->left->dim, e->dim), SHAPE_SCALAR);
     return;
   case OP_CONTRACT:
-    if (tells_unit(e->left)) want(t, e->right, dim_div(e->dim, e->left->dim), e->left->shape);
-    if (tells_unit(e->right)) want(t, e->left, dim_div(e->dim, e->right->dim), e->right->shape);
+    if (tells_unit(e->left) && !may_be_general(t, e->left->shape))
+      want(t, e->right, dim_div(e->dim, e->left->dim), e->left->shape);
+    if (tells_unit(e->right) && !may_be_general(t, e->right->shape))
+      want(t, e->left, dim_div(e->dim, e->right->dim), e->right->shape);
     return;
   case OP_POW:
     want_base(t, e);
@@ -139,8 +163,10 @@ static void spread_call(settling *t, const expr *e) {
   case FUNCTION_VECTOR:
     want_all(t, e, e->dim, SHAPE_SCALAR);
     return;
-  case FUNCTION_PRINCIPAL:
   case FUNCTION_TRACE:
+    if (!may_be_general(t, SHAPE_TENSOR)) want(t, first, e->dim, SHAPE_TENSOR);
+    return;
+  case FUNCTION_PRINCIPAL:
   case FUNCTION_DEV:
   case FUNCTION_VON_MISES:
     want(t, first, e->dim, SHAPE_TENSOR);
@@ -171,6 +197,7 @@ static void spread(settling *t, expr *e) {
   case EXPR_HOLE:
     return;
   case EXPR_UNARY:
+    if (e->unary == OP_COMPONENT && may_be_general(t, SHAPE_TENSOR)) return;
     want(t, e->left, e->dim,
          e->unary == OP_COMPONENT ? SHAPE_TENSOR
          : e->unary == OP_AXIS    ? SHAPE_VECTOR
@@ -184,7 +211,7 @@ static void spread(settling *t, expr *e) {
     return;
   case EXPR_CASES:
     for (int k = 0; k < e->case_count; k++)
-      want(t, e->cases[k].value, e->dim, e->shape);
+      want_part(t, e, e->cases[k].value, NULL);
   }
 }
 

@@ -156,7 +156,7 @@ static void check_field_rule(checker *ck, stmt *s, entry *field, value v) {
   if (field->type.broken || field->type.unknown) return;
   if (v.shape == SHAPE_TENSOR && refuse_trace(ck, s, field, v)) return;
   if (s->kind == STMT_FLOW) return;
-  const bool parts = v.shape == SHAPE_TENSOR || v.shape == SHAPE_VECTOR;
+  const bool parts = shape_is_tensor(v.shape) || v.shape == SHAPE_VECTOR;
   if (parts && !v.zero && refuse_components(ck, s, field, v.shape)) return;
   if (s->kind == STMT_RATE) return;
   if (!expect(ck, s->value, v, field->type.dim, field->type.shape, what)) return;
@@ -266,7 +266,14 @@ static void check_force_state(checker *ck, stmt *s) {
   bool per_volumes = !v.broken && dim_equal(v.dim, dimension_of("N/m^6"));
   const char *what = "a force state in N (or N/m^6)";
   dimension dim = dimension_of(per_volumes ? "N/m^6" : "N");
-  if (!expect(ck, s->value, v, dim, SHAPE_SCALAR, what)) v = BROKEN;
+  const bool vector = !v.broken && !v.zero && !v.unknown && v.shape == SHAPE_VECTOR;
+  if (vector && s->along_reference) {
+    complain(ck, DIAG_LAW_KIND, s->name_where,
+             "a force state that is a vector has a direction of its own");
+    diag_hint(ck->d, "leave out `along reference`");
+    v = BROKEN;
+  }
+  if (!expect(ck, s->value, v, dim, vector ? SHAPE_VECTOR : SHAPE_SCALAR, what)) v = BROKEN;
   v.dim = dim;
   v.place = ON_NEIGHBOUR;
   set_type(s, v);

@@ -27,6 +27,10 @@ static value refuse(checker *ck, const expr *e, const char *message, const char 
   return BROKEN;
 }
 
+static bool is_displacement(const symbol *s) {
+  return s->kind == SYMBOL_QUANTITY && s->index == QUANTITY_U;
+}
+
 /* x, x[j], x' and x'[j] of a state law: what lives where decides which of them there are. What is
    fixed on a bond, such as s, may stand without [j]: it is that of the bond at hand. */
 static value check_family_name(checker *ck, expr *e, value v) {
@@ -60,6 +64,7 @@ static value check_family_name(checker *ck, expr *e, value v) {
   }
   if (e->primed && v.place < ON_PARTICLE)
     return refuse(ck, e, "`%s` is the same for every neighbour", "write `%s`");
+  if (is_displacement(e->symbol)) v.place = ON_NEIGHBOUR; /* loops over bonds know it */
   return v;
 }
 
@@ -107,7 +112,7 @@ static value check_axis(checker *ck, expr *e) {
   const char axis = vector_axis(e->component);
   complain(ck, DIAG_SHAPE, e->where, "`%s` is %s and has no component `%c`", e->left->name,
            shape_words(v.shape), axis);
-  if (v.shape == SHAPE_TENSOR)
+  if (shape_is_tensor(v.shape))
     diag_hint(ck->d, "a tensor's component has two axes: `%s[%c,%c]`", e->left->name, axis, axis);
   else
     diag_hint(ck->d, "components are those of vectors, such as `direction[x]`");
@@ -117,7 +122,7 @@ static value check_axis(checker *ck, expr *e) {
 static value check_component(checker *ck, expr *e) {
   value v = check_value(ck, e->left);
   if (v.broken || v.unknown) return v;
-  if (v.shape == SHAPE_TENSOR) {
+  if (shape_is_tensor(v.shape)) {
     v.shape = SHAPE_SCALAR;
     v.deviator = false;
     return v;
@@ -206,6 +211,14 @@ static value check_power(checker *ck, expr *e, value base, value exponent) {
   return BROKEN;
 }
 
+/* Of two tensors, one of which need not be symmetric, or of a tensor and a vector behind it;
+   SHAPE_SCALAR: there is none. That of two symmetric tensors is hardly ever meant: `product`. */
+static shape matrix_product(shape a, shape b) {
+  if (shape_is_tensor(a) && b == SHAPE_VECTOR) return SHAPE_VECTOR;
+  const bool general = a == SHAPE_GENERAL || b == SHAPE_GENERAL;
+  return general && shape_is_tensor(a) && shape_is_tensor(b) ? SHAPE_GENERAL : SHAPE_SCALAR;
+}
+
 static value check_product(checker *ck, expr *e, value a, value b) {
   if (a.broken || b.broken) return BROKEN;
   bool divide = e->binary == OP_DIV;
@@ -213,6 +226,15 @@ static value check_product(checker *ck, expr *e, value a, value b) {
              .place = place_join(ck, a.place, b.place)};
   if (a.unknown || b.unknown) {
     v.unknown = true;
+    return v;
+  }
+  if (ck->holes && shape_is_tensor(a.shape) && shape_is_tensor(b.shape) && !divide) {
+    v.unknown = true; /* what a hole is part of may be symmetric or not */
+    return v;
+  }
+  const shape of_two = divide ? SHAPE_SCALAR : matrix_product(a.shape, b.shape);
+  if (of_two != SHAPE_SCALAR) {
+    v.shape = of_two;
     return v;
   }
   v.shape = a.shape != SHAPE_SCALAR ? a.shape : b.shape;
@@ -228,6 +250,14 @@ static value check_product(checker *ck, expr *e, value a, value b) {
              shape_words(a.shape), shape_words(b.shape));
     if (a.shape == SHAPE_VECTOR && b.shape == SHAPE_VECTOR)
       diag_hint(ck->d, "write `dot(%s, %s)` or `cross(%s, %s)`", left, right, left, right);
+    else if (a.shape == SHAPE_VECTOR && shape_is_tensor(b.shape))
+      diag_hint(ck->d, "the tensor stands first: `%s*%s`",
+                b.shape == SHAPE_GENERAL ? arena_printf(ck->memory, "transpose(%s)", right) : right,
+                left);
+    else if (a.shape == SHAPE_TENSOR && b.shape == SHAPE_TENSOR)
+      diag_hint(ck->d, "for the scalar product write `%s : %s`, for the symmetric one "
+                       "`product(%s, %s)`",
+                left, right, left, right);
     else if (a.shape == b.shape)
       diag_hint(ck->d, "for the scalar product write `%s : %s`", left, right);
     return BROKEN;
@@ -238,7 +268,8 @@ static value check_product(checker *ck, expr *e, value a, value b) {
 static value check_contraction(checker *ck, expr *e, value a, value b) {
   if (a.broken || b.broken) return BROKEN;
   bool unknown = a.unknown || b.unknown;
-  if (!unknown && (a.shape != b.shape || a.shape == SHAPE_SCALAR)) {
+  const bool tensors = shape_is_tensor(a.shape) && shape_is_tensor(b.shape);
+  if (!unknown && !tensors && (a.shape != b.shape || a.shape == SHAPE_SCALAR)) {
     complain(ck, DIAG_SHAPE, e->where,
              "`:` needs two tensors, vectors or bending quantities, not %s and %s",
              shape_words(a.shape), shape_words(b.shape));

@@ -72,7 +72,18 @@ typedef enum binary_op {
 typedef enum unary_op { OP_NEG, OP_PLUS, OP_NOT, OP_COMPONENT, OP_AXIS } unary_op;
 
 /* What a value is, beside its dimension. A bending quantity has one component in 2D, two in 3D. */
-typedef enum shape { SHAPE_SCALAR, SHAPE_LOGICAL, SHAPE_BENDING, SHAPE_VECTOR, SHAPE_TENSOR } shape;
+typedef enum shape {
+  SHAPE_SCALAR,
+  SHAPE_LOGICAL,
+  SHAPE_BENDING,
+  SHAPE_VECTOR,
+  SHAPE_TENSOR, /* symmetric */
+  SHAPE_GENERAL /* a tensor that need not be symmetric */
+} shape;
+
+static inline bool shape_is_tensor(shape s) {
+  return s == SHAPE_TENSOR || s == SHAPE_GENERAL;
+}
 
 /* Where a value lives. Ordered: a bond value may be made of uniform ones. NEIGHBOUR is directed, i
    toward j. */
@@ -90,6 +101,13 @@ typedef enum placement {
 #define TENSOR_COMPONENTS(X)                                                                       \
   X(XX, 'x', 'x') X(YY, 'y', 'y') X(ZZ, 'z', 'z') X(XY, 'x', 'y') X(YZ, 'y', 'z') X(XZ, 'x', 'z')
 enum { TENSOR_COMPONENT_COUNT = 6 };
+/* The components of a general tensor: those above, then these. */
+#define TURNED_COMPONENTS(X) X(YX, 'y', 'x') X(ZY, 'z', 'y') X(ZX, 'z', 'x')
+enum { GENERAL_COMPONENT_COUNT = 9 };
+/* The component of a symmetric tensor that a general one has in its place. */
+static inline int tensor_component(int component) {
+  return component < TENSOR_COMPONENT_COUNT ? component : component - 3;
+}
 /* The component that follows from the others where the trace is 0: zz = -(xx + yy). */
 enum { TENSOR_TRACED = 2 };
 
@@ -130,7 +148,7 @@ struct expr {
   bool primed;  /* NAME: ' follows the name (the neighbour's value toward me) */
 
   unary_op unary;
-  int component; /* UNARY of OP_COMPONENT: which of the tensor's; of OP_AXIS of the vector's */
+  int component; /* UNARY of OP_COMPONENT: which of a general tensor's; of OP_AXIS of the vector's */
   binary_op binary;
   expr *left, *right; /* BINARY; UNARY uses left */
 

@@ -92,11 +92,9 @@ expr *build_vector(parsing *p, expr *x, expr *y, expr *z, span where) {
 }
 
 static int find_component(const char *first, const char *second) {
-  for (int k = 0; k < TENSOR_COMPONENT_COUNT; k++)
-    for (int turned = 0; turned < 2; turned++)
-      if (first[0] == tensor_axis(k, turned) && second[0] == tensor_axis(k, 1 - turned) &&
-          !first[1] && !second[1])
-        return k;
+  for (int k = 0; k < GENERAL_COMPONENT_COUNT; k++)
+    if (first[0] == tensor_axis(k, 0) && second[0] == tensor_axis(k, 1) && !first[1] && !second[1])
+      return k;
   return -1;
 }
 

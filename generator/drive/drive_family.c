@@ -11,6 +11,7 @@
 #include "generator/drive/drive_table.h"
 #include "generator/drive/driven_fields.h"
 #include "generator/interpreter/interpreted.h"
+#include "generator/lower/law_inputs.h"
 #include "generator/lower/lower_inputs.h"
 #include "generator/lower/lower_rest.h"
 #include "generator/plan/plan_family.h"
@@ -37,6 +38,37 @@ static int part(int dimensions, int k) {
   return dimensions == 2 ? plane_parts[k] : space_parts[k];
 }
 
+/* Component `which` of the moment of the force of a bond, times the particle's volume twice: of
+   a force along it F X X/s; of a vector that of both its sides, the mean of F X and X F. */
+static ir_node bond_moment(ir *g, const lowered_law *step, int which) {
+  const int x = first_axis[which], y = second_axis[which];
+  const ir_node X = kinematics_input(g, law_chord[x]), Y = kinematics_input(g, law_chord[y]);
+  const ir_node half = ir_constant(g, 0.5);
+  if (lowered_is_vector(step)) {
+    ir_node other = ir_unary(g, IR_NEIGHBOUR, step->F_of[x]);
+    const ir_node f_x = ir_mul(g, half, ir_sub(g, step->F_of[x], other));
+    other = ir_unary(g, IR_NEIGHBOUR, step->F_of[y]);
+    const ir_node f_y = ir_mul(g, half, ir_sub(g, step->F_of[y], other));
+    const ir_node turned = ir_mul(g, f_y, X);
+    return ir_mul(g, half, ir_add(g, ir_mul(g, f_x, Y), turned));
+  }
+  const ir_node other = ir_unary(g, IR_NEIGHBOUR, step->F);
+  const ir_node force = ir_mul(g, half, ir_add(g, step->F, other));
+  const ir_node moment = ir_div(g, force, lower_quantity(g, QUANTITY_S));
+  return ir_mul(g, ir_mul(g, X, Y), moment);
+}
+
+/* What a neighbour's column shows: the force along the bond, of a vector as the bond was. */
+static ir_node shown_force(ir *g, const lowered_law *step, int dimensions) {
+  if (!lowered_is_vector(step)) return step->F;
+  ir_node sum = ir_constant(g, 0);
+  for (int d = 0; d < dimensions; d++) {
+    const ir_node part = ir_mul(g, step->F_of[d], kinematics_input(g, law_chord[d]));
+    sum = ir_add(g, sum, part);
+  }
+  return ir_div(g, sum, lower_quantity(g, QUANTITY_S));
+}
+
 /* A plan that observes the stress (by virtual work, of the bond forces) and the force state, of
    the step that begins with the fields at hand. NULL when the law cannot be lowered. */
 static kernel_plan *plan_stress(const law *l, diagnostics *d) {
@@ -50,22 +82,16 @@ static kernel_plan *plan_stress(const law *l, diagnostics *d) {
     return NULL;
   }
   rest_take_off_law(g, l, &step);
-  static const ends_input chord[] = {ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y, ENDS_CLASS_CHORD_Z};
   const int count = part_count(p->dimensions), own = 1 + l->outputs.count;
   segment wanted = {.root_count = 0};
-  ir_node other = ir_make(g, IR_NEIGHBOUR, step.F, IR_NONE, IR_NONE);
-  ir_node force = ir_scaled(g, 0.5, ir_add(g, step.F, other));
   ir_node twice = ir_scaled(g, 2, lower_quantity(g, QUANTITY_V));
-  ir_node moment = ir_div(g, force, lower_quantity(g, QUANTITY_S));
   for (int k = 0; k < count; k++) {
-    const int which = part(p->dimensions, k);
-    ir_node x = kinematics_input(g, chord[first_axis[which]]);
-    ir_node y = kinematics_input(g, chord[second_axis[which]]);
-    ir_node term = ir_mul(g, ir_mul(g, x, y), moment);
+    const ir_node term = bond_moment(g, &step, part(p->dimensions, k));
     ir_node sum = ir_make(g, IR_FAMILY_SUM, term, IR_NONE, IR_NONE);
     plan_want(p, &wanted, ir_div(g, sum, twice), TO_OBSERVED, OVER_PARTICLES, own + k);
   }
-  plan_want(p, &wanted, step.F, TO_OBSERVED, OVER_NEIGHBOURS, own + count);
+  const ir_node shown = shown_force(g, &step, p->dimensions);
+  plan_want(p, &wanted, shown, TO_OBSERVED, OVER_NEIGHBOURS, own + count);
   program_motion motion = plan_motion(p, step.along_reference);
   program_build(&p->programs[PROGRAM_OBSERVE], "stress", g, p->memory, &wanted, &motion,
                 SHARE_NOTHING, &p->links);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/semantics/law_reads.h"
 #include "generator/ir/derive.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/kinematics.h"
@@ -387,12 +388,37 @@ static void lower_bond_results(lowering *c, lowered_law *out) {
    itself reads of its force state, a stress say, stays whole. */
 static void take_share(ir *g, lowered_law *out) {
   const ir_node share = kinematics_input(g, ENDS_SHARE_I);
-  out->F = ir_mul(g, share, out->F);
+  if (out->F != IR_NONE) out->F = ir_mul(g, share, out->F);
+  for (int d = 0; d < FORCE_AXES; d++)
+    if (out->F_of[d] != IR_NONE) out->F_of[d] = ir_mul(g, share, out->F_of[d]);
   if (out->W != IR_NONE) out->W = ir_mul(g, share, out->W);
+}
+
+/* In the plane what leaves it is nothing. */
+static void lower_force_vector(lowering *c, const stmt *given, const components *F,
+                               lowered_law *out) {
+  static const char *const names[FORCE_AXES] = {"F_x", "F_y", "F_z"};
+  for (int d = 0; d < lower_dimensions(c->law); d++) {
+    out->F_of[d] = F->of[d];
+    if (lower_is_per_volumes(given->symbol->dim))
+      out->F_of[d] = lower_force_of_density(c->graph, c->law, out->F_of[d]);
+    lower_name_node(c->graph, out->F_of[d], names[d], (span){0, 0, 0});
+  }
+  if (c->variation->shares) take_share(c->graph, out);
 }
 
 static void lower_force_state(lowering *c, lowered_law *out) {
   const stmt *given = law_force_state(c->law);
+  const components vector = components_of(c, given ? given->symbol : NULL);
+  if (vector.count == VECTOR_COMPONENT_COUNT) {
+    lower_force_vector(c, given, &vector, out);
+    return;
+  }
+  if (!given && out->W != IR_NONE && law_reads(c->law, QUANTITY_U)) {
+    lower_force_vector_of_energy(c, out->W, out->F_of);
+    if (c->variation->shares) take_share(c->graph, out);
+    return;
+  }
   out->F = given ? value_of(c, given->symbol) : IR_NONE;
   out->along_reference = given && given->along_reference;
   if (out->F == IR_NONE && out->W == IR_NONE)
@@ -566,6 +592,8 @@ bool lower_law_varying(const law *l, ir *g, lower_mode mode, const law_variation
   *out = (lowered_law){.N = IR_NONE, .T = IR_NONE, .F = IR_NONE, .W = IR_NONE, .rest = IR_NONE};
   for (int k = 0; k < BENDING_AXES; k++)
     out->M_i[k] = out->M_j[k] = IR_NONE;
+  for (int k = 0; k < FORCE_AXES; k++)
+    out->F_of[k] = IR_NONE;
   for (int k = 0; k < LOWERED_STRESSES; k++)
     out->sigma[k] = IR_NONE;
   for (int k = 0; k < LOWERED_TIP; k++)

@@ -4,6 +4,7 @@
 
 #include "generator/ir/derive.h"
 #include "generator/ir/rewrite.h"
+#include "generator/lower/kinematics.h"
 #include "generator/lower/lower_inputs.h"
 
 /* --- of a bond -------------------------------------------------------------------------------- */
@@ -149,37 +150,112 @@ static ir_node by_stretch(ir *g, ir_node n) {
   return ir_add(g, slope, ir_mul(g, lower_quantity(g, QUANTITY_S), by_length));
 }
 
-/* Sums over the family that W is made of, each as if it were an independent variable: dW/dstretch
-   toward j is the sum over them of dW/dsum times the derivative of what stands in it at j. A bond
-   belongs to two particles, so that the force state is twice what W alone gives. */
-ir_node lower_force_state_of_energy(lowering *c, ir_node W) {
+/* Stands for the k-th sum over the family while it is held. */
+static ir_node held_sum(const lowering *c, int k) {
+  return ir_input(c->graph, IR_FROM_FIELD, 2 * c->law->fields.count + 1 + k, "sum", ON_PARTICLE);
+}
+
+/* The sums that W is made of, inner ones first. */
+typedef struct sums {
+  ir_node *sum; /* [count] */
+  int count;
+} sums;
+
+/* False after a message where W is made of the bonds' motion in another way. */
+static bool find_sums(lowering *c, ir_node W, ir_node (*by)(ir *g, ir_node n), sums *found) {
+  ir *g = c->graph;
+  const int nodes = ir_count(g);
+  unsigned char *marks = arena_alloc(c->memory, (size_t)nodes + 1);
+  *found = (sums){arena_alloc(c->memory, ((size_t)nodes + 1) * sizeof(ir_node)), 0};
+  memset(marks, 0, (size_t)nodes + 1);
+  ir_mark(g, &W, 1, marks);
+  for (ir_node n = 0; n < nodes; n++) {
+    const ir_op op = ir_operation(g, n);
+    if (!marks[n]) continue;
+    if (op == IR_FAMILY_SUM) {
+      found->sum[found->count++] = n;
+    } else if ((op == IR_FAMILY_MAX || op == IR_FAMILY_MIN || op == IR_NEIGHBOUR) &&
+               !ir_is_number(g, by(g, ir_operand(g, n, 0)), 0)) {
+      lower_fail(c, c->law->tree->name_where,
+                 "a force state can be derived from an energy that is made of sums over the "
+                 "family only");
+      return false;
+    }
+  }
+  return true;
+}
+
+/* The derivative of what stands in sum k by what the bond to j has, while inner sums are held. */
+static ir_node slope_inside(lowering *c, const sums *s, int k, ir_node (*by)(ir *g, ir_node n)) {
+  ir *g = c->graph;
+  ir_node inside = ir_operand(g, s->sum[k], 0);
+  if (!rewrite_depends(g, &inside, 1, s->sum, k)) return by(g, inside);
+  ir_node *held = arena_alloc(c->memory, (size_t)k * sizeof *held);
+  for (int n = 0; n < k; n++)
+    held[n] = held_sum(c, n);
+  ir_substitute(g, &inside, 1, s->sum, held, k, &inside);
+  ir_node part = by(g, inside);
+  ir_substitute(g, &part, 1, held, s->sum, k, &part);
+  return part;
+}
+
+/* The derivative of W by what the bond to j alone has: of the sums that it is made of, through
+   other sums, too, times that of what stands in them at j while all sums are held. */
+static ir_node slope_at_neighbour(lowering *c, ir_node W, ir_node (*by)(ir *g, ir_node n)) {
   ir *g = c->graph;
   ir_node slope = ir_constant(g, 0);
-  unsigned char *marks = arena_alloc(c->memory, (size_t)ir_count(g) + 1);
-  int count = ir_count(g);
-  memset(marks, 0, (size_t)count + 1);
-  ir_mark(g, &W, 1, marks);
-  for (ir_node n = 0; n < count; n++) {
-    ir_op op = ir_operation(g, n);
-    if (!marks[n] ||
-        (op != IR_FAMILY_SUM && op != IR_FAMILY_MAX && op != IR_FAMILY_MIN && op != IR_NEIGHBOUR))
-      continue;
-    ir_node inside = ir_operand(g, n, 0), by = by_stretch(g, inside);
-    if (ir_is_number(g, by, 0)) continue;
-    if (op != IR_FAMILY_SUM)
-      return lower_fail(c, c->law->tree->name_where,
-                        "a force state can be derived from an energy that is made of sums over "
-                        "the family only");
-    unsigned char *below = arena_alloc(c->memory, (size_t)count + 1);
-    memset(below, 0, (size_t)count + 1);
-    ir_mark(g, &inside, 1, below);
-    for (ir_node k = 0; k < n; k++)
-      if (below[k] && ir_operation(g, k) == IR_FAMILY_SUM &&
-          !ir_is_number(g, by_stretch(g, ir_operand(g, k, 0)), 0))
-        return lower_fail(c, c->law->tree->name_where,
-                          "a force state cannot be derived from sums inside sums over the family");
-    slope = ir_add(g, slope, ir_mul(g, ir_derivative(g, W, n), by));
+  sums s;
+  if (!find_sums(c, W, by, &s)) return slope;
+  for (int k = 0; k < s.count; k++) {
+    const ir_node part = slope_inside(c, &s, k, by);
+    if (ir_is_number(g, part, 0)) continue;
+    const ir_node outer = ir_derivative(g, W, s.sum[k]);
+    slope = ir_add(g, slope, ir_mul(g, outer, part));
   }
+  return slope;
+}
+
+/* A bond belongs to two particles, so that the force state is twice what W alone gives. */
+ir_node lower_force_state_of_energy(lowering *c, ir_node W) {
+  ir *g = c->graph;
+  const ir_node slope = slope_at_neighbour(c, W, by_stretch);
   const ir_node s = lower_quantity(g, QUANTITY_S), per_length = ir_div(g, ir_constant(g, 2), s);
   return ir_mul(g, per_length, slope);
+}
+
+/* --- of a family whose particles move each in its own way ------------------------------------- */
+
+static const ends_input own[] = {ENDS_U_IX, ENDS_U_IY, ENDS_U_IZ},
+                        far[] = {ENDS_U_JX, ENDS_U_JY, ENDS_U_JZ},
+                        chord[] = {ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y, ENDS_CLASS_CHORD_Z};
+
+static ir_node by_far_x(ir *g, ir_node n) {
+  return ir_derivative(g, n, kinematics_input(g, ENDS_U_JX));
+}
+static ir_node by_far_y(ir *g, ir_node n) {
+  return ir_derivative(g, n, kinematics_input(g, ENDS_U_JY));
+}
+static ir_node by_far_z(ir *g, ir_node n) {
+  return ir_derivative(g, n, kinematics_input(g, ENDS_U_JZ));
+}
+
+/* What stretches make of it acts along the present bond. */
+void lower_force_vector_of_energy(lowering *c, ir_node W, ir_node F[FORCE_AXES]) {
+  static ir_node (*const by[FORCE_AXES])(ir *g, ir_node n) = {by_far_x, by_far_y, by_far_z};
+  ir *g = c->graph;
+  ir_node from[FORCE_AXES], to[FORCE_AXES];
+  for (int d = 0; d < FORCE_AXES; d++) {
+    from[d] = ir_unary(g, IR_NEIGHBOUR, kinematics_input(g, own[d]));
+    to[d] = kinematics_input(g, far[d]);
+  }
+  ir_substitute(g, &W, 1, from, to, FORCE_AXES, &W);
+  const ir_node along = lower_force_state_of_energy(c, W);
+  const ir_node per_length = ir_div(g, along, lower_quantity(g, QUANTITY_LENGTH));
+  for (int d = 0; d < lower_dimensions(c->law) && !c->failed; d++) {
+    F[d] = ir_scaled(g, 2, slope_at_neighbour(c, W, by[d]));
+    if (ir_is_number(g, along, 0)) continue;
+    const ir_node moved = ir_sub(g, to[d], kinematics_input(g, own[d]));
+    const ir_node now = ir_add(g, kinematics_input(g, chord[d]), moved);
+    F[d] = ir_add(g, F[d], ir_mul(g, per_length, now));
+  }
 }

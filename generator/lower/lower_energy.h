@@ -22,5 +22,7 @@ ir_node lower_rate_power(ir *g, const law *l, const lowered_law *frozen, ir_node
 /* Force state from `energy W` of a particle (IR_NONE after a message): bonds share it with the
    other side. */
 ir_node lower_force_state_of_energy(lowering *c, ir_node W);
+/* The same of an energy that reads the displacement `u`: a vector toward each neighbour. */
+void lower_force_vector_of_energy(lowering *c, ir_node W, ir_node F[FORCE_AXES]);
 
 #endif

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "generator/lower/kinematics.h"
+#include "generator/lower/lower_general.h"
 #include "generator/lower/lower_inputs.h"
 #include "generator/lower/lower_tensor.h"
 #include "generator/lower/principal_axes.h"
@@ -106,16 +107,11 @@ static components wide(components a) {
   return a;
 }
 
-/* a b, without a node where one of them is 0. */
-static ir_node product_of(ir *g, ir_node a, ir_node b) {
-  return ir_is_number(g, b, 0) ? b : tensor_scaled(g, b, a);
-}
-
 static ir_node vector_dot(ir *g, components a, components b) {
   ir_node sum = ir_constant(g, 0);
   a = wide(a), b = wide(b);
   for (int k = 0; k < VECTOR_COMPONENT_COUNT; k++) {
-    const ir_node part = product_of(g, a.of[k], b.of[k]);
+    const ir_node part = product(g, a.of[k], b.of[k]);
     sum = ir_add(g, sum, part);
   }
   return sum;
@@ -126,8 +122,8 @@ static components vector_cross(ir *g, components a, components b) {
   a = wide(a), b = wide(b);
   for (int k = 0; k < VECTOR_COMPONENT_COUNT; k++) {
     const int p = (k + 1) % VECTOR_COMPONENT_COUNT, q = (k + 2) % VECTOR_COMPONENT_COUNT;
-    const ir_node first = product_of(g, a.of[p], b.of[q]);
-    const ir_node second = product_of(g, a.of[q], b.of[p]);
+    const ir_node first = product(g, a.of[p], b.of[q]);
+    const ir_node second = product(g, a.of[q], b.of[p]);
     v.of[k] = ir_sub(g, first, second);
   }
   return v;
@@ -139,8 +135,8 @@ static components vector_dyad(ir *g, components a, components b) {
   components v = {.count = TENSOR_COUNT};
   a = wide(a), b = wide(b);
   for (int k = 0; k < TENSOR_COUNT; k++) {
-    const ir_node one = product_of(g, a.of[first[k]], b.of[second[k]]);
-    const ir_node other = product_of(g, b.of[first[k]], a.of[second[k]]);
+    const ir_node one = product(g, a.of[first[k]], b.of[second[k]]);
+    const ir_node other = product(g, b.of[first[k]], a.of[second[k]]);
     v.of[k] = one == other ? one : half(g, ir_add(g, one, other));
   }
   return v;
@@ -308,10 +304,20 @@ components lower_family_call(lowering *c, const expr *e, const components *a) {
     return vector_cross(g, a[0], a[1]);
   case FUNCTION_DYAD:
     return vector_dyad(g, a[0], a[1]);
+  case FUNCTION_TRANSPOSE:
+    return general_transpose(a[0]);
+  case FUNCTION_SYM:
+    return general_symmetric(g, a[0]);
+  case FUNCTION_DET:
+    return scalar(general_determinant(g, a[0]));
+  case FUNCTION_ROTATION:
+    return general_rotation(g, a[0]);
+  case FUNCTION_INVERSE:
+    return general_inverse(g, a[0]);
   case FUNCTION_TENSOR: {
-    components v = {.count = TENSOR_COUNT};
-    bool zero = true;
-    for (int k = 0; k < TENSOR_COUNT; k++) {
+    components v = {.count = e->argument_count > TENSOR_COUNT ? GENERAL_COUNT : TENSOR_COUNT};
+    bool zero = v.count == TENSOR_COUNT;
+    for (int k = 0; k < v.count; k++) {
       v.of[k] = k < e->argument_count ? a[k].of[0] : ir_constant(g, 0);
       zero &= ir_is_number(g, v.of[k], 0);
     }

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "generator/lower/lower_general.h"
+
 static bool is_shear(int k) {
   return k >= TENSOR_XY;
 }
@@ -32,6 +34,7 @@ static bool are_same(const components *a, const components *b) {
 }
 
 ir_node tensor_contract(ir *g, components a, components b) {
+  if (a.count == GENERAL_COUNT || b.count == GENERAL_COUNT) return general_contract(g, a, b);
   if (tensor_is_deviator(g, &a) && are_same(&a, &b)) return ir_scaled(g, 2, tensor_J2(g, a));
   ir_node sum = ir_constant(g, 0);
   for (int k = 0; k < a.count; k++) {
@@ -184,8 +187,11 @@ static components with_trace(ir *g, binary_op op, const components *a, const com
 
 components tensor_binary(lowering *c, const expr *e, components a, components b) {
   ir *g = c->graph;
-  if (e->binary == OP_CONTRACT && a.count == b.count) return scalar(tensor_contract(g, a, b));
+  const bool tensors = a.count >= TENSOR_COUNT && b.count >= TENSOR_COUNT;
+  if (e->binary == OP_CONTRACT && (tensors || a.count == b.count)) return scalar(tensor_contract(g, a, b));
   bool scaled = a.count == 1 || b.count == 1;
+  if (e->binary == OP_MUL && !scaled && a.count >= TENSOR_COUNT) return general_product(g, a, b);
+  if (tensors && a.count != b.count) a = general_of(g, a), b = general_of(g, b);
   if (e->binary != OP_ADD && e->binary != OP_SUB && e->binary != OP_MUL && e->binary != OP_DIV)
     return lower_failed_value(c, e->where, "this cannot be done with tensors and vectors");
   if (scaled != (e->binary == OP_MUL || e->binary == OP_DIV))

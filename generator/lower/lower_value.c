@@ -6,6 +6,8 @@
 #include "generator/ir/derive.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/lower_family.h"
+#include "generator/lower/lower_general.h"
+#include "generator/lower/lower_gradient.h"
 #include "generator/lower/lower_inputs.h"
 #include "generator/lower/lower_slip.h"
 #include "generator/lower/lower_tensor.h"
@@ -43,6 +45,7 @@ static components lower_quantity_name(lowering *c, builtin_quantity q) {
   if (c->variation->sizes && (q == QUANTITY_SPACING || q == QUANTITY_HORIZON))
     return scalar(lower_own_size(c->graph, c->law, q));
   if (q == QUANTITY_DIRECTION) return lower_direction(c->graph, c->law);
+  if (q == QUANTITY_U) return lower_displacement(c->graph, c->law);
   return scalar(lower_quantity(c->graph, q));
 }
 
@@ -185,6 +188,8 @@ static components lower_binary(lowering *c, const expr *e) {
 
 static components lower_unary(lowering *c, const expr *e) {
   components a = lower_value(c, e->left);
+  if (e->unary == OP_COMPONENT && a.count == TENSOR_COUNT)
+    return scalar(a.of[tensor_component(e->component)]);
   if (e->unary >= OP_COMPONENT) return scalar(a.of[a.count == 1 ? 0 : e->component]);
   if (e->unary == OP_NOT) return scalar(ir_unary(c->graph, IR_NOT, a.of[0]));
   for (int k = 0; k < a.count && e->unary == OP_NEG; k++)
@@ -220,7 +225,8 @@ static bool all_deviators(const ir *g, const components *a, const components *b)
   return a->count > 1 || b->count > 1;
 }
 
-static components widened(components v, int count) {
+static components widened(ir *g, components v, int count) {
+  if (v.count == TENSOR_COUNT && count == GENERAL_COUNT) return general_of(g, v);
   for (; v.count < count; v.count++)
     v.of[v.count] = v.of[0];
   return v;
@@ -240,8 +246,8 @@ static components lower_cases(lowering *c, const expr *e) {
       return lower_failed_value(c, line->where, "the last line of cases must be `otherwise`");
     ir_node guard = lower_expr(c, line->guard);
     const bool deviators = all_deviators(c->graph, &here, &value);
-    value = widened(value, here.count);
-    here = widened(here, value.count);
+    value = widened(c->graph, value, here.count);
+    here = widened(c->graph, here, value.count);
     for (int q = 0; q < value.count; q++)
       value.of[q] = ir_select(c->graph, guard, here.of[q], value.of[q]);
     value.traced = false;
@@ -395,7 +401,7 @@ static ir_node lower_builtin_call(lowering *c, const expr *e) {
 /* Arguments come first: what goes over a family knows no text. Which principal value is asked for
    is no value. */
 static components lower_of_family(lowering *c, const expr *e) {
-  enum { MOST_ARGUMENTS = TENSOR_COUNT };
+  enum { MOST_ARGUMENTS = GENERAL_COUNT };
   components a[MOST_ARGUMENTS] = {lower_value(c, e->arguments[0].value)};
   const bool which = e->builtin == FUNCTION_PRINCIPAL || e->builtin == FUNCTION_PRINCIPAL_DIRECTION;
   const int count = which ? 1 : e->argument_count;
@@ -404,7 +410,12 @@ static components lower_of_family(lowering *c, const expr *e) {
   for (int k = 1; k < count && !c->failed; k++)
     a[k] = products ? lower_value(c, e->arguments[k].value)
                     : scalar(lower_expr(c, e->arguments[k].value));
-  return c->failed ? a[0] : lower_family_call(c, e, a);
+  if (c->failed) return a[0];
+  const ir_node weight = e->argument_count > 1 ? a[1].of[0] : IR_NONE;
+  if (e->builtin == FUNCTION_GRADIENT) return lower_gradient(c->graph, c->law, a[0], weight);
+  if (e->builtin == FUNCTION_CORRESPONDENCE)
+    return lower_correspondence(c->graph, c->law, a[0], weight);
+  return lower_family_call(c, e, a);
 }
 
 static components lower_call(lowering *c, const expr *e) {

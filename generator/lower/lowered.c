@@ -9,6 +9,8 @@ int lowered_forces(lowered_law *p, ir_node **forces) {
     all[count++] = &p->M_j[k];
   all[count++] = &p->T;
   all[count++] = &p->F;
+  for (int k = 0; k < FORCE_AXES; k++)
+    all[count++] = &p->F_of[k];
   for (int k = 0; k < LOWERED_STRESSES; k++)
     all[count++] = &p->sigma[k];
   for (int k = 0; k < LOWERED_TIP; k++)

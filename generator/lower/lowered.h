@@ -56,9 +56,9 @@ typedef struct lowered_text {
   int line_count, place_count, flow_count;
 } lowered_text;
 
-enum { BENDING_AXES = 3, LOWERED_STRESSES = 6 };
+enum { BENDING_AXES = 3, LOWERED_STRESSES = 6, FORCE_AXES = 3 };
 enum { LOWERED_TIP = 3 }; /* grow (1 or 0), toward (rad), speed (m/s) */
-enum { LOWERED_FORCES = 2 * BENDING_AXES + 3 + LOWERED_STRESSES + LOWERED_TIP };
+enum { LOWERED_FORCES = 2 * BENDING_AXES + 3 + FORCE_AXES + LOWERED_STRESSES + LOWERED_TIP };
 
 /* What a law does not give is IR_NONE. */
 typedef struct lowered_law {
@@ -67,6 +67,9 @@ typedef struct lowered_law {
   ir_node M_i[BENDING_AXES], M_j[BENDING_AXES];
   ir_node T; /* twisting moment on end j, on end i the opposite; in space */
   ir_node F; /* force state in N (the bond force is the mean of both sides), or IR_NONE */
+  /* the same of a law that gives a vector: the force on the particle is half the difference of both
+     sides; components that there are not, and all of other laws, are IR_NONE */
+  ir_node F_of[FORCE_AXES];
   ir_node sigma[LOWERED_STRESSES]; /* of a continuum: xx, yy, zz, xy, yz, xz; Pa */
   ir_node tip[LOWERED_TIP];        /* of a crack */
   bool along_reference;            /* it acts along the reference bond */
@@ -77,7 +80,12 @@ typedef struct lowered_law {
   lowered_text text;
 } lowered_law;
 
-/* The places of N, M_i, M_j, T, F and sigma that are not IR_NONE. Returns how many. */
+/* Whether the force state is a vector toward each neighbour. */
+static inline bool lowered_is_vector(const lowered_law *p) {
+  return p->F_of[0] != IR_NONE;
+}
+
+/* The places of N, M_i, M_j, T, F, F_of and sigma that are not IR_NONE. Returns how many. */
 int lowered_forces(lowered_law *p, ir_node **forces);
 
 #endif

@@ -9,13 +9,15 @@
 enum { MOST_NODES = 150000, MOST_VISITS = 2000000, MOST_CALLS_DEEP = 64, CALL_BUCKETS = 256 };
 
 enum { TENSOR_XX, TENSOR_YY, TENSOR_ZZ, TENSOR_XY, TENSOR_YZ, TENSOR_XZ, TENSOR_COUNT };
+enum { GENERAL_COUNT = GENERAL_COMPONENT_COUNT };
 
 /* A value: one node for a number, a truth value or a bending quantity (which has one component in a
-   plane), three for a vector, six for a symmetric tensor (not engineering shear). A tensor whose
-   trace is known to be 0 is a deviator: its zz is -(xx + yy) by construction. */
+   plane), three for a vector, six for a symmetric tensor (not engineering shear), nine for a general
+   one (lower_general.h). A tensor whose trace is known to be 0 is a deviator: its zz is -(xx + yy)
+   by construction. */
 typedef struct components {
   int count;
-  ir_node of[TENSOR_COUNT];
+  ir_node of[GENERAL_COUNT];
   bool traced; /* of a tensor: its trace is known without summing up */
   ir_node trace;
 } components;
@@ -70,6 +72,11 @@ law_setting lower_hooke_setting(const lowering *c);
 
 static inline ir_node half(ir *g, ir_node n) {
   return ir_mul(g, ir_constant(g, 0.5), n);
+}
+/* a b, without a node where one of them is 0. */
+static inline ir_node product(ir *g, ir_node a, ir_node b) {
+  if (ir_is_number(g, a, 0)) return a;
+  return ir_is_number(g, b, 0) ? b : ir_mul(g, b, a);
 }
 static inline components scalar(ir_node n) {
   return (components){.count = 1, .of = {n}};

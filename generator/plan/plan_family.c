@@ -115,8 +115,24 @@ static void plan_forces_and_moments(const kernel_plan *plan, const lowered_law *
   }
 }
 
+/* Of a vector toward each neighbour: half the difference of both sides. */
+static void plan_vector_forces(const kernel_plan *plan, const lowered_law *of, segment *wanted) {
+  ir *g = plan->graph;
+  static const char *const names[FORCE_AXES] = {"bond_force_x", "bond_force_y", "bond_force_z"};
+  for (int d = 0; d < plan->dimensions; d++) {
+    const ir_node other = ir_unary(g, IR_NEIGHBOUR, of->F_of[d]);
+    const ir_node f = ir_scaled(g, 0.5, ir_sub(g, of->F_of[d], other));
+    ir_set_name(g, f, names[d], (span){0, 0, 0});
+    plan_want(plan, wanted, family_sum(g, f), TO_FORCE, OVER_PARTICLES, d);
+  }
+}
+
 void plan_forces(const kernel_plan *plan, const lowered_law *of, segment *wanted) {
   ir *g = plan->graph;
+  if (lowered_is_vector(of)) {
+    plan_vector_forces(plan, of, wanted);
+    return;
+  }
   if (plan->rotations) {
     plan_forces_and_moments(plan, of, wanted);
     return;
@@ -144,6 +160,7 @@ static ir_node stored_energy(family_planner *p) {
     rewrite_zero(g, &W, 1, &rate, 1, &W);
     return W;
   }
+  if (lowered_is_vector(&p->frozen)) return IR_NONE;
   rewrite_zero(g, &p->frozen.F, 1, &rate, 1, &F);
   ir_node length = lower_quantity(g, QUANTITY_LENGTH); /* s (1 + stretch) is not homogeneous */
   if (rewrite_depends(g, &F, 1, &length, 1) || rewrite_degree(g, F, &stretch, 1) != 1)
@@ -386,7 +403,10 @@ static segment force_state_roots(const kernel_plan *plan, const lowered_law *of)
   if (plan->rotations) a = actions_of(plan, of);
   for (int d = 0; d < plan->dimensions; d++) {
     const ir_node along = plan->law->tree->law == LAW_STATE ? of->F : of->N;
-    if (!plan->rotations) a.force[d] = ir_mul(g, along, present(g, DIRECTION + d));
+    if (lowered_is_vector(of))
+      a.force[d] = of->F_of[d];
+    else if (!plan->rotations)
+      a.force[d] = ir_mul(g, along, present(g, DIRECTION + d));
     const ir_node own = ir_mul(g, ir_constant(g, 0.5), a.force[d]);
     want_component(plan, &r, own, d);
   }

@@ -10,7 +10,7 @@
 
 /* --- forces and what they work over ----------------------------------------------------------- */
 
-enum { MOST_PARTS = 3 };
+enum { MOST_PARTS = FORCE_AXES };
 
 typedef struct force_parts { /* of a bond; of laws of families twice what is the particle's half */
   ir_node force[MOST_PARTS], rate[MOST_PARTS];
@@ -23,11 +23,19 @@ static void add_part(force_parts *p, ir_node force, ir_node rate) {
   p->rate[p->count++] = rate;
 }
 
+static const ends_input own_velocity[FORCE_AXES] = {ENDS_V_IX, ENDS_V_IY, ENDS_V_IZ},
+                        far_velocity[FORCE_AXES] = {ENDS_V_JX, ENDS_V_JY, ENDS_V_JZ};
+
 static force_parts parts_of(const kernel_plan *plan, const lowered_law *of,
                             const ir_node theta_rate[2]) {
   ir *g = plan->graph;
   force_parts p = {.count = 0};
   const ir_node rate = lower_quantity(g, QUANTITY_STRETCH_RATE);
+  for (int d = 0; d < FORCE_AXES && of->F_of[d] != IR_NONE; d++) {
+    const ir_node mine = kinematics_input(g, own_velocity[d]);
+    add_part(&p, of->F_of[d], ir_sub(g, kinematics_input(g, far_velocity[d]), mine));
+  }
+  if (lowered_is_vector(of)) return p;
   add_part(&p, plan->law->tree->law == LAW_STATE ? of->F : of->N,
            ir_mul(g, lower_quantity(g, QUANTITY_S), rate));
   add_part(&p, of->M_i[0], theta_rate[0]);

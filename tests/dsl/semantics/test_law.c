@@ -430,7 +430,7 @@ static void state_law_is_understood(void **state) {
       "output slope = mean(b[j])\noutput mises = von_mises(sigma)\noutput work = sigma : "
       "eps\noutput same = eps : sigma\n"
       "drawn[j] = | 1 when stretch[j] > 0 | 0 otherwise\ncracked = | 1 when w > 0 | 0 otherwise\n"
-      "output part = cracked*mean(drawn[j])\noutput u = mean(uniform[j], "
+      "output part = cracked*mean(drawn[j])\noutput even = mean(uniform[j], "
       "weight = d[j])"));
   const law *l = c.law;
   is_of(l, "k", SYMBOL_CONSTANT, "N", SHAPE_SCALAR, ON_BOND);

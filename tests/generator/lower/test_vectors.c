@@ -1,4 +1,4 @@
-/* Vectors in laws: their products, sums, choices and derivatives against values by hand, of numbers
+/* Vectors and tensors that need not be symmetric in laws: their products, sums, choices and derivatives against values by hand, of numbers
    and of parameters; what parameters they are. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -109,6 +109,65 @@ static void products_have_their_values(void **state) {
   }
 }
 
+/* F has the rows (2, 1, 1/4), (-1, 3, 1/2), (3/4, 0, 4), S the rows (1, 4, 6), (4, 2, 5),
+   (6, 5, 3). */
+static void general_tensors_have_their_values(void **state) {
+  (void)state;
+  static const char *const given = "F = tensor(2, 3, 4, 1, 0.5, 0.25, -1, 0, 0.75)\n"
+                                   "S = tensor(1, 2, 3, 4, 5, 6)\none = tensor(1, 1, 1, 0)\n"
+                                   "Q = tensor(1.5*cos(0.3), 0.7*cos(0.3), 1, -0.7*sin(0.3), 0, 0, "
+                                   "1.5*sin(0.3), 0, 0)\n";
+  const double e_32 = pow(0.6, 32);
+  const struct {
+    const char *lines, *output;
+    double value;
+  } cases[] = {
+      {"", "100*F[x,y] + 10*F[y,x] + F[z,x]", 100 - 10 + 0.75},
+      {"", "det(F)", 27.8125},
+      {"", "det(S)", 101},
+      {"", "trace(F)", 9},
+      {"", "F : F", 31.875},
+      {"", "F : one + S : F - F : S", 9},
+      {"", "norm(F)**2", 31.875},
+      {"c = F*a", "c[x] + 10*c[y] + 100*c[z]", 0.75 - 55 + 1275},
+      {"c = S*a", "c[x] + 10*c[y] + 100*c[z]", 11 + 150 + 500},
+      {"c = F*S", "c[x,x] + 10*c[y,z]", 7.5 + 105},
+      {"c = S*F", "c[x,y]", 13},
+      {"c = F*F", "c[y,x] + 10*c[z,z]", -2 - 3 + 0.375 + 10 * (0.1875 + 16)},
+      {"c = F*inverse(F)", "norm(c - one)", 0},
+      {"c = inverse(F)*F", "norm(c - one)", 0},
+      {"", "inverse(S) : S", 3},
+      {"c = transpose(F)", "100*c[x,y] + 10*c[y,x] + c[x,z]", -100 + 10 + 0.75},
+      {"c = F - transpose(F)", "c[x,y] + 10*c[y,x] + c[z,z]", 2 - 20},
+      {"c = sym(F)", "c[x,y] + 10*c[x,z] + 100*c[y,z] + c[x,x]", 0 + 5 + 25 + 2},
+      {"c = -F/2", "c[y,x] + c[z,z]", 0.5 - 2},
+      {"c = F + 2*S", "c[x,y] + 10*c[y,x]", 9 + 70},
+      {"c = (| F when E < 1 [Pa] | S otherwise)", "c[z,y] + 10*c[y,z]", 55},
+      {"c = (| 0 when E > 1 [Pa] | F otherwise)", "norm(c)", 0},
+      {"", "diff(det(F*E), E)/(1 [Pa^2])", 3 * 4 * 27.8125},
+      {"c = diff(F*E**2, E)", "c[y,x]/(1 [Pa])", -4},
+      {"R = rotation(Q)", "R[y,x] - sin(0.3) + R[x,x] - cos(0.3) + R[z,z]", 1},
+      {"R = rotation(Q)", "norm(transpose(R)*Q - tensor(1.5, 0.7, 1, 0))", 0},
+      {"R = rotation(F/3)", "norm(transpose(R)*R - one)", 0},
+      {"R = rotation(F/3)\nU = transpose(R)*F", "norm(U - transpose(U))", 0},
+      {"R = rotation(S/20 + one)", "norm(R - one)", 0},
+      /* a stretch of 4, after five steps */
+      {"R = rotation(4*one + tensor(0, 0, 0, 0, 1e-30, 0))", "1e7*(R[y,y] - 1)",
+       1e7 * 2 * e_32 / (1 - e_32)},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    reading r;
+    char lines[1000];
+    snprintf(lines, sizeof lines, "%s%s", given, cases[k].lines);
+    read_law(&r, lines, cases[k].output);
+    const double value = value_of(&r);
+    if (!(fabs(value - cases[k].value) <= 1e-8 * (strncmp(cases[k].output, "1e7", 3) == 0) +
+                                              1e-13 * fmax(1, fabs(cases[k].value))))
+      fail_msg("%s, %s: %.17g, not %.17g", cases[k].lines, cases[k].output, value, cases[k].value);
+    forget(&r);
+  }
+}
+
 /* Parameters are numbers, x, y and z one after the other, with what the vector has. */
 static void a_vector_is_three_parameters(void **state) {
   (void)state;
@@ -134,6 +193,7 @@ static void a_vector_is_three_parameters(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(products_have_their_values),
+      cmocka_unit_test(general_tensors_have_their_values),
       cmocka_unit_test(a_vector_is_three_parameters),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -12,8 +12,8 @@ syntax match perilatName "\h\w*" contained
 syntax keyword perilatStatement contained model end law for parameter constant option state damage function force moment energy stress strain yield flow output nonconservative include crack grow toward speed failed require accept rest rate field
 " words that are never names
 syntax keyword perilatReserved when otherwise jump in and or not by along returned on
-syntax keyword perilatQuantity pi stretch stretch_rate theta_i theta_j twist length s spacing t V m m_i m_j area shell horizon weight n resolved direction slip gap slip_rate dt strain strain_rate h K_I K_II energy_release angle_now speed_now rayleigh_speed shear_speed dilatational_speed
-syntax keyword perilatFunction abs sqrt cbrt exp log log10 sin cos tan asin acos sinh cosh tanh atan2 sign soft_sign positive_part min max norm previous diff sum mean deviator virtual_work fit uniform_force uniform_stretch hooke principal trace dev J2 von_mises principal_direction product vector dot cross dyad tensor
+syntax keyword perilatQuantity pi stretch stretch_rate theta_i theta_j twist length s spacing t V m m_i m_j area shell horizon weight n resolved direction u slip gap slip_rate dt strain strain_rate h K_I K_II energy_release angle_now speed_now rayleigh_speed shear_speed dilatational_speed
+syntax keyword perilatFunction abs sqrt cbrt exp log log10 sin cos tan asin acos sinh cosh tanh atan2 sign soft_sign positive_part min max norm previous diff sum mean deviator virtual_work fit uniform_force uniform_stretch hooke principal trace dev J2 von_mises principal_direction product vector dot cross dyad tensor gradient correspondence transpose sym det inverse rotation
 syntax keyword perilatKind central micropolar bond particle neighbour reference plane_stress plane_strain space irregular anisotropic continuum point tip
 syntax keyword perilatConstant pi inf
 
