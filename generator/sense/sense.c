@@ -1,6 +1,5 @@
 #include "generator/sense/sense.h"
 
-#include "dsl/semantics/law_reads.h"
 #include "generator/sense/sense_bench.h"
 #include "generator/sense/sense_bonds.h"
 #include "generator/sense/sense_moduli.h"
@@ -29,9 +28,8 @@ static void check_sense(const law *l, const physics_options *o, diagnostics *d, 
     sense_check_text(&b);
     sense_check_moduli(&b);
     sense_check_numbers(&b);
-    const bool in_time = law_reads_time(l); /* what needs an hour does not show in a step */
-    if (is_of_bonds(l) && !in_time) sense_check_bonds(&b);
-    if (l->tree->law == LAW_CONTINUUM && !in_time) sense_check_points(&b);
+    if (is_of_bonds(l)) sense_check_bonds(&b);
+    if (l->tree->law == LAW_CONTINUUM) sense_check_points(&b);
   }
   sense_bench_close(&b);
 }
