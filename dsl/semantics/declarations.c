@@ -495,9 +495,20 @@ static void declare_ruled(checker *ck, stmt *s) {
   if (e) e->symbol.rule = s;
 }
 
+/* What is meant is of use to readers by its reason alone. */
+static bool says_why(checker *ck, const stmt *s) {
+  if (!s->text || s->text[strspn(s->text, " \t")]) return true;
+  const bool accepts = s->kind == STMT_ACCEPT;
+  complain(ck, DIAG_LAW_KIND, s->where, "`%s%s` says no reason", accepts ? "accept " : "",
+           accepts ? s->name : "nonconservative");
+  diag_hint(ck->d, "say in the text why the law means it");
+  return false;
+}
+
 static void declare_nonconservative(checker *ck, stmt *s) {
   if (ck->law->nonconservative)
     complain(ck, DIAG_DUPLICATE_NAME, s->where, "`nonconservative` is written twice");
+  says_why(ck, s);
   ck->law->nonconservative = s->text ? s->text : "";
 }
 
@@ -544,6 +555,7 @@ static void declare_accepted(checker *ck, stmt *s) {
     complain(ck, DIAG_DUPLICATE_NAME, s->name_where, "`%s` is accepted twice", s->name);
     return;
   }
+  if (!says_why(ck, s)) return;
   l->waivers[l->waiver_count++] = (law_waiver){code, s->text, s->where};
 }
 

@@ -183,7 +183,7 @@ static int flatten_number(flattening *t, const expr *e) {
 }
 
 static int flatten_name(flattening *t, const expr *e) {
-  if (e->symbol->kind == SYMBOL_QUANTITY) return number(t, 2 * PL_HALF_PI_HI); /* pi */
+  if (e->symbol->kind == SYMBOL_QUANTITY) return number(t, M_PI);
   t->f->reads |= 1u << e->symbol->index;
   return add_step(t, (step){.code = STEP_VARIABLE, .a = e->symbol->index});
 }

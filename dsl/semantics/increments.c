@@ -25,7 +25,7 @@ typedef struct increments {
   checker *ck;
   const entry *of;      /* the state x */
   unsigned char *reads; /* [statements] what a definition reads of x, through other names as well */
-  bool *moves;          /* [statements] x moves in it while a yield function is brought back to 0 */
+  bool *moves;          /* [statements] x moves in it while its rule is solved for it */
   bool *told;           /* [statements] a use of the name was warned of */
   bool in_output, in_guard;
 } increments;
@@ -104,7 +104,7 @@ static bool is_increment(const increments *w, const expr *e) {
          reads_of_x(w, e->left) != READS_INCREMENT && reads_of_x(w, e->right) != READS_INCREMENT;
 }
 
-/* --- what moves with x in a yield function ---------------------------------------------------- */
+/* --- what moves with x in a yield function or a rate ------------------------------------------ */
 
 static void mark_moving(increments *w, int reader, const expr *e) {
   const symbol *s = e->kind == EXPR_NAME ? e->symbol : NULL;
@@ -117,10 +117,15 @@ static void mark_moving(increments *w, int reader, const expr *e) {
   visit_guards(w, reader, e, mark_moving);
 }
 
+static bool is_rate(const increments *w) {
+  return w->of->symbol.rule->kind == STMT_RATE;
+}
+
 static void find_moving(increments *w) {
   const stmt *rule = w->of->symbol.rule;
-  if (rule->kind != STMT_FLOW || !rule->returned || !rule->when) return;
-  mark_moving(w, w->of->rule_at, rule->when);
+  const expr *solved = is_rate(w) ? rule->value : rule->returned ? rule->when : NULL;
+  if (!solved) return;
+  mark_moving(w, w->of->rule_at, solved);
   for (int i = w->of->rule_at - 1; i >= 0; i--)
     if (w->moves[i] && w->ck->statements[i]->value) mark_moving(w, i, w->ck->statements[i]->value);
 }
@@ -170,15 +175,15 @@ static void warn_of_name(increments *w, const expr *e) {
            "`%s` reads `%s`: written above the rule of `%s`, it has `%s` of the last step here",
            e->name, x, x, x);
   diag_note(ck->d, definition->name_where,
-            "it is defined here, where `%s - previous(%s)` is 0; only in the yield function does "
-            "it move with `%s`",
-            x, x, x);
+            "it is defined here, where `%s - previous(%s)` is 0; only in the %s does it move with "
+            "`%s`",
+            x, x, is_rate(w) ? "rate" : "yield function", x);
   diag_hint(ck->d, "write `%s_new = ...` below the rule of `%s`, from the new `%s`, and use that",
             e->name, x, x);
 }
 
-/* Whether a name has an increment of 0 where it is read now, unlike in the yield function. That
-   function itself may be asked for as it was before the flow, and so may a guard ask; an output
+/* Whether a name has an increment of 0 where it is read now, unlike in the yield function or the
+   rate. A yield function itself may be asked for as it was before the flow, and so may a guard ask; an output
    asks for it after. */
 static bool is_stale(const increments *w, int definition) {
   return w->reads[definition] == READS_INCREMENT && w->moves[definition] && !w->in_guard &&
@@ -213,9 +218,11 @@ static void find_zeros(increments *w, int reader, const expr *e) {
   w->in_guard = in_guard;
 }
 
-/* A definition that only the yield function sees moves with x; what is kept or given does not. */
+/* A rate, and a definition that only it or the yield function sees, move with x; what is kept or
+   given does not. */
 static bool moves_with_x(const increments *w, int i) {
   const stmt *s = w->ck->statements[i];
+  if (i == w->of->rule_at && is_rate(w)) return true;
   return w->moves[i] && s->symbol && s->symbol->kind == SYMBOL_DEFINED;
 }
 

@@ -68,6 +68,12 @@ void law_waive(const law *l, diagnostics *d, int from) {
   }
 }
 
+bool law_waiver_is_idle(const law_waiver *w, const diagnostics *d) {
+  for (int k = 0; k < d->accepted_count; k++)
+    if (d->accepted[k].code == w->check) return false;
+  return true;
+}
+
 int law_rate_field(const law *l, int k) {
   for (int n = l->fields.count - 1; n > k; n--)
     if (l->fields.items[n]->rate_of == l->fields.items[k]) return n;

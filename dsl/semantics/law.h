@@ -144,6 +144,8 @@ const law_waiver *law_accepts(const law *l, diag_code check);
 bool law_says(const law *l, int k, const char **check, const char **why);
 /* Of the messages from number `from` on those that the law accepts are set apart. */
 void law_waive(const law *l, diagnostics *d, int from);
+/* Whether nothing is set apart by this line: its check has found nothing, as yet. */
+bool law_waiver_is_idle(const law_waiver *w, const diagnostics *d);
 /* The field that keeps the rate of field k; -1 of one that has none. */
 int law_rate_field(const law *l, int k);
 /* The line `force state` of a law of families; NULL without one. */

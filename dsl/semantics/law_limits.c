@@ -53,7 +53,7 @@ static double number_value(const expr *e) {
 
 static double name_value(const expr *e, const double *values) {
   const symbol *s = e->symbol;
-  if (s && s->kind == SYMBOL_QUANTITY && s->index == QUANTITY_PI) return 2 * PL_HALF_PI_HI;
+  if (s && s->kind == SYMBOL_QUANTITY && s->index == QUANTITY_PI) return M_PI;
   return values && s && s->kind == SYMBOL_PARAMETER ? values[s->index] : NAN;
 }
 

@@ -31,9 +31,9 @@ static const struct {
                     {0.57735026918962576, "1/sqrt(3) times", true},
                     {1.4142135623730951, "sqrt(2) times", true},
                     {0.70710678118654752, "1/sqrt(2) times", true},
-                    {3.1415926535897932, "pi times", true},
-                    {6.2831853071795865, "2 pi times", true},
-                    {0.15915494309189534, "1/(2 pi) times", true},
+                    {M_PI, "pi times", true},
+                    {2 * M_PI, "2 pi times", true},
+                    {1 / (2 * M_PI), "1/(2 pi) times", true},
                     {2.3025850929940457, "ln(10) times", true},
                     {0.43429448190325183, "1/ln(10) times", true},
                     {10, "ten times", false},
@@ -69,9 +69,9 @@ static const struct {
 } factors[] = {{1, "", true},
                {1.7320508075688773, "sqrt(3)", true},
                {1.4142135623730951, "sqrt(2)", false},
-               {3.1415926535897932, "pi", false},
-               {1.7724538509055159, "sqrt(pi)", false},
-               {5.4413980927026535, "pi sqrt(3)", false}};
+               {M_PI, "pi", false},
+               {2 / M_2_SQRTPI, "sqrt(pi)", false},
+               {M_PI * 1.7320508075688773, "pi sqrt(3)", false}};
 enum { MOST_WHOLE = 16, MOST_WITH_ROOT = 9 };
 
 /* "3", "sqrt(3)", "3 sqrt(3)"; in brackets where it is a product below a line. */

@@ -158,11 +158,10 @@ static double hoop_stress(double K_I, double K_II, double angle) {
 
 /* An angle beyond half a turn is none; a crack turns to the side on which it is opened more. */
 static void check_direction(tip_bench *b, int lane) {
-  static const double half_turn = 3.14159265358979323846;
   const double K_I = b->in[PL_TIP_K_I][lane], K_II = b->in[PL_TIP_K_II][lane],
                toward = b->out[PL_TIP_TOWARD][lane];
   if (b->out[PL_TIP_GROW][lane] == 0 || !isfinite(toward)) return;
-  if (fabs(toward) > half_turn * (1 + 1e-9))
+  if (fabs(toward) > M_PI * (1 + 1e-9))
     say(b, DIAG_DEGREES, RESULT_TOWARD, lane,
         "angles are in radians: no factor such as 180/pi; a number in degrees has its unit, `30 "
         "[deg]`",

@@ -75,6 +75,14 @@ static void print_counts(const char *path, const model *m) {
   printf(" (%.1f ms)\n", 1e3 * m->seconds_front);
 }
 
+/* Not a warning: with other values, options or settings there may be something. */
+static void print_idle_waivers(const model *m) {
+  const law *l = m->law;
+  for (int k = 0; k < l->waiver_count; k++)
+    if (law_waiver_is_idle(&l->waivers[k], &m->said))
+      printf("  `accept %s`: its check finds nothing here\n", diag_name(l->waivers[k].check));
+}
+
 /* --- a law ------------------------------------------------------------------------------------ */
 
 /* A law with the values that --set gives, name=value. */
@@ -130,6 +138,7 @@ static int check_law(const run_options *o, const char *path, const char *dump) {
   say(o, &c.said);
   if (c.model.memory) say(o, &c.model.said);
   if (!status && !dump && !o->report) print_counts(path, &c.model);
+  if (!status && !dump && !o->report && !o->no_physics) print_idle_waivers(&c.model);
   if (!status && !dump && !o->report && c.physics.states > 0) print_physics(&c.physics);
   if (c.model.memory) model_close(&c.model);
   diag_clear(&c.said);

@@ -60,7 +60,6 @@ typedef struct operation {
   operation_price price;
 } operation;
 
-#define HALF_TURN        3.14159265358979323846
 #define TRUTH(condition) ((condition) ? 1.0 : 0.0)
 
 /* X(code, name, operands, traits, image, counted as, weight, price, value of a, b, c) */
@@ -98,8 +97,8 @@ typedef struct operation {
   X(TAN, "tan", 1, MAKES_NAN | ODD | VANISHES, IMAGE_ALL, FUNCTION, 10, PRICE(110, 60, 1),         \
     pl_tan(a))                                                                                     \
   X(ASIN, "asin", 1, PARTIAL | MAKES_NAN | ODD | VANISHES,                                         \
-    IMAGE_CLOSED(-HALF_TURN / 2, HALF_TURN / 2), FUNCTION, 10, PRICE(130, 40, 3), pl_asin(a))      \
-  X(ACOS, "acos", 1, PARTIAL | MAKES_NAN, IMAGE_CLOSED(0, HALF_TURN), FUNCTION, 10,                \
+    IMAGE_CLOSED(-M_PI / 2, M_PI / 2), FUNCTION, 10, PRICE(130, 40, 3), pl_asin(a))                \
+  X(ACOS, "acos", 1, PARTIAL | MAKES_NAN, IMAGE_CLOSED(0, M_PI), FUNCTION, 10,                     \
     PRICE(130, 45, 3), pl_acos(a))                                                                 \
   X(SINH, "sinh", 1, ODD | VANISHES | RISING, IMAGE_ALL, FUNCTION, 10, PRICE(120, 45, 1),          \
     pl_sinh(a))                                                                                    \
@@ -107,9 +106,9 @@ typedef struct operation {
     pl_cosh(a))                                                                                    \
   X(TANH, "tanh", 1, ODD | VANISHES | RISING, IMAGE_OPEN(-1, 1), FUNCTION, 10, PRICE(110, 35, 1),  \
     pl_tanh(a))                                                                                    \
-  X(ATAN2, "atan2", 2, KINKED, IMAGE_CLOSED(-HALF_TURN, HALF_TURN), FUNCTION, 10,                  \
+  X(ATAN2, "atan2", 2, KINKED, IMAGE_CLOSED(-M_PI, M_PI), FUNCTION, 10,                            \
     PRICE(100, 50, 1), pl_atan2(a, b))                                                             \
-  X(WRAP_ANGLE, "wrap_angle", 1, ODD | VANISHES | KINKED, IMAGE_CLOSED(-HALF_TURN, HALF_TURN),     \
+  X(WRAP_ANGLE, "wrap_angle", 1, ODD | VANISHES | KINKED, IMAGE_CLOSED(-M_PI, M_PI),               \
     FUNCTION, 10, PRICE(35, 10, 0), pl_wrap_angle(a))                                              \
   X(LT, "lt", 2, LOGICAL, IMAGE_CLOSED(0, 1), NOTHING, 1, PRICE(4, 1, 0), TRUTH(a < b))            \
   X(LE, "le", 2, LOGICAL, IMAGE_CLOSED(0, 1), NOTHING, 1, PRICE(4, 1, 0), TRUTH(a <= b))           \

@@ -30,7 +30,7 @@ static components lower_tensor_of_point(const lowering *c, bool rate) {
 }
 
 static components lower_quantity_name(lowering *c, builtin_quantity q) {
-  if (q == QUANTITY_PI) return scalar(ir_constant(c->graph, HALF_TURN));
+  if (q == QUANTITY_PI) return scalar(ir_constant(c->graph, M_PI));
   if (q == QUANTITY_STRAIN || q == QUANTITY_STRAIN_RATE)
     return lower_tensor_of_point(c, q == QUANTITY_STRAIN_RATE);
   if (c->law->tree->law == LAW_CRACK) return scalar(lower_tip_quantity(c->graph, q));

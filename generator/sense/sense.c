@@ -1,6 +1,5 @@
 #include "generator/sense/sense.h"
 
-#include "dsl/semantics/law_reads.h"
 #include "generator/sense/sense_bench.h"
 #include "generator/sense/sense_bonds.h"
 #include "generator/sense/sense_moduli.h"
@@ -22,16 +21,18 @@ static void hush(sense_bench *b, int before) {
   if (b->said_of[DIAG_HEALING] || b->said_of[DIAG_NOT_FINITE]) b->said_of[DIAG_ELASTIC] = true;
 }
 
-static void check_sense(const law *l, const physics_options *o, diagnostics *d, int before) {
+/* What the text alone shows is said of a law that breaks a rule, too: it may be the cause. */
+static void check_sense(const law *l, const physics_options *o, diagnostics *d, int before,
+                        bool obeys) {
   sense_bench b;
-  if (sense_bench_open(&b, l, o, d)) {
-    hush(&b, before);
-    sense_check_text(&b);
+  const bool planned = sense_bench_open(&b, l, o, d);
+  hush(&b, before);
+  sense_check_text(&b);
+  if (planned && obeys) {
     sense_check_moduli(&b);
     sense_check_numbers(&b);
-    const bool in_time = law_reads_time(l); /* what needs an hour does not show in a step */
-    if (is_of_bonds(l) && !in_time) sense_check_bonds(&b);
-    if (l->tree->law == LAW_CONTINUUM && !in_time) sense_check_points(&b);
+    if (is_of_bonds(l)) sense_check_bonds(&b);
+    if (l->tree->law == LAW_CONTINUUM) sense_check_points(&b);
   }
   sense_bench_close(&b);
 }
@@ -39,8 +40,8 @@ static void check_sense(const law *l, const physics_options *o, diagnostics *d, 
 bool law_is_sound(const law *l, const physics_options *o, diagnostics *d, physics_report *report) {
   static const physics_options usual = {0};
   const int errors = d->errors, before = d->count;
-  if (!physics_check(l, o, d, report)) return false;
-  check_sense(l, o ? o : &usual, d, before);
+  const bool obeys = physics_check(l, o, d, report);
+  check_sense(l, o ? o : &usual, d, before, obeys);
   if (!o || !o->strict) law_waive(l, d, before);
   return d->errors == errors;
 }

@@ -52,13 +52,16 @@ void sense_bench_close(sense_bench *b) {
   free(b->parameters);
 }
 
-double sense_parameter(const sense_bench *b, const char *name, const char *measured_in) {
-  for (int k = 0; k < b->law->parameters.count; k++) {
-    const symbol *s = b->law->parameters.items[k];
-    if (strcmp(s->name, name) == 0 && dim_equal(s->dim, dimension_of(measured_in)))
-      return b->parameters[k];
+const symbol *sense_parameter(const law *l, const char *name, const char *measured_in) {
+  for (int k = 0; k < l->parameters.count; k++) {
+    const symbol *s = l->parameters.items[k];
+    if (strcmp(s->name, name) == 0 && dim_equal(s->dim, dimension_of(measured_in))) return s;
   }
-  return NAN;
+  return NULL;
+}
+
+double sense_value(const sense_bench *b, const symbol *parameter) {
+  return parameter ? b->parameters[parameter->index] : NAN;
 }
 
 span sense_force(const law *l) {

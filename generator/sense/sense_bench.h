@@ -25,8 +25,10 @@ typedef struct sense_bench {
 bool sense_bench_open(sense_bench *b, const law *l, const physics_options *o, diagnostics *d);
 void sense_bench_close(sense_bench *b);
 
-/* The parameter of that name and unit, NaN without one. */
-double sense_parameter(const sense_bench *b, const char *name, const char *measured_in);
+/* The parameter of that name and unit; NULL without one. */
+const symbol *sense_parameter(const law *l, const char *name, const char *measured_in);
+/* Its value, SI; of NULL NaN. */
+double sense_value(const sense_bench *b, const symbol *parameter);
 /* The line that gives the force, the stress or the energy. */
 span sense_force(const law *l);
 /* A warning or an error, once a code, with how to mend it (NULL: nothing is said of that). */

@@ -8,12 +8,14 @@
 #include "dsl/base/elementary.h"
 #include "dsl/semantics/law_reads.h"
 #include "generator/check/physics_states.h"
+#include "generator/ir/random_values.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/lower_inputs.h"
+#include "generator/lower/lower_rest.h"
+#include "generator/sense/sense_memory.h"
 
 static const double SAME = 1e-9;          /* of a force or a state */
 static const double OFF_THE_LIMIT = 0.01; /* of an overstress that is small */
-static const double COARSE = 0.01;        /* of the work of all steps */
 static const double CLEARLY = 1e-6;       /* another force */
 
 /* The law on single bonds, with states that they reach; what the drives say is dropped. */
@@ -95,7 +97,12 @@ static motion draw_motion(memory_bench *m, int k) {
   return at;
 }
 
-/* Lanes from the pool, from number `first` on, at their own motion or at another. */
+/* s; of laws that read no time 0. */
+static double draw_time(memory_bench *m) {
+  return m->b->reads_time ? pl_pow(10, draw_uniform(&m->b->seed, -8, 8)) : 0;
+}
+
+/* Lanes from the pool, from number `first` on, at their own motion or at another, in some time. */
 static void take_from_pool(memory_bench *m, int first, bool own) {
   for (int lane = 0; lane < BENCH_LANES; lane++) {
     const int at = (first + lane) % m->p->pool_count;
@@ -105,7 +112,17 @@ static void take_from_pool(memory_bench *m, int first, bool own) {
     } else {
       bench_move(m->b, m->states, lane, draw_motion(m, lane));
     }
+    bench_quantity(m->b, m->states, QUANTITY_DT)[lane] = draw_time(m);
   }
+}
+
+/* The virgin bond with the defaults, in all lanes. */
+static void put_virgins(memory_bench *m) {
+  bench_draw(m->b, m->states, 0);
+  bench_virgin(m->b, m->states, 0);
+  for (int k = 0; k < m->b->width; k++)
+    for (int lane = 1; lane < BENCH_LANES; lane++)
+      m->states[k][lane] = m->states[k][0];
 }
 
 static void copy_states(memory_bench *m) {
@@ -134,6 +151,11 @@ static void look_for_movement(memory_bench *m, effect *seen) {
     }
 }
 
+/* Whether field f is field k, or its rate. */
+static bool is_own(const law *l, int f, int k) {
+  return f == k || l->fields.items[f]->rate_of == l->fields.items[k];
+}
+
 /* Forces and new fields with field k as it is and at its initial value. */
 static void look_for_effect(memory_bench *m, int k, effect *e) {
   forces_of held, held_less, step, step_less;
@@ -153,7 +175,8 @@ static void look_for_effect(memory_bench *m, int k, effect *e) {
     e->on_step = e->on_step || differ(m, m->states, step, step_less, lane, SAME);
     for (int f = 0; f < fields; f++) {
       const double x = after[f * BENCH_LANES + lane], y = m->b->step.out[FORCE_COUNT + f][lane];
-      if (f != k && fabs(x - y) > SAME * pl_fmax(fabs(x), fabs(y))) e->on_others = true;
+      if (!is_own(m->b->law, f, k) && fabs(x - y) > SAME * pl_fmax(fabs(x), fabs(y)))
+        e->on_others = true;
     }
   }
   free(after);
@@ -220,6 +243,7 @@ static void look_in_pure_motion(memory_bench *m, int which, effect *seen) {
    says as much. */
 typedef struct written {
   bool moves, counts;
+  bool on_rest; /* the rest state follows it */
 } written;
 
 static written written_of(const memory_bench *m, int k) {
@@ -228,9 +252,10 @@ static written written_of(const memory_bench *m, int k) {
   const lowered_law *f = &b->law_frozen;
   const ir_node forces[] = {f->N, f->M_i[0], f->M_j[0]};
   written w = {.moves = now != old && !ir_is_uniform(b->graph, now)};
-  w.counts = rewrite_depends(b->graph, forces, FORCE_COUNT, &old, 1);
+  w.on_rest = f->rest != IR_NONE && rewrite_depends(b->graph, &f->rest, 1, &old, 1);
+  w.counts = w.on_rest || rewrite_depends(b->graph, forces, FORCE_COUNT, &old, 1);
   for (int q = 0; q < b->field_count; q++)
-    if (q != k && rewrite_depends(b->graph, &b->law_step.fields[q], 1, &old, 1)) w.counts = true;
+    if (!is_own(b->law, q, k) && rewrite_depends(b->graph, &b->law_step.fields[q], 1, &old, 1)) w.counts = true;
   return w;
 }
 
@@ -259,10 +284,6 @@ static bool is_seen(memory_bench *m, int k) {
   return seen;
 }
 
-static const char *kind_of(const symbol *s) {
-  return s->kind == SYMBOL_DAMAGE ? "damage" : "state";
-}
-
 static int count_damages(const law *l) {
   int count = 0;
   for (int k = 0; k < l->fields.count; k++)
@@ -280,15 +301,11 @@ static void say_effect(memory_bench *m, int k, const effect *e) {
   char mend[256];
   const span where = s->rule ? s->rule->where : s->where;
   if (!e->moves) {
-    sense_say(m->of, DIAG_ELASTIC, where, "look at its guards and limits, and at their units",
-              "the %s `%s` never moves, whatever a bond undergoes: this law is as if it had none",
-              kind_of(s), s->name);
-  } else if (!e->on_forces && !e->on_others && !e->on_step) {
+    sense_say_never_moves(m->of, s);
+  } else if (!e->on_forces && !e->on_others && !e->on_step && !w.on_rest) {
     if (s->kind == SYMBOL_STATE && is_seen(m, k)) return;
     snprintf(mend, sizeof mend, "let the force depend on it, as in `(1 - %s)*...`", s->name);
-    sense_say(m->of, DIAG_ELASTIC, where, s->kind == SYMBOL_DAMAGE ? mend : NULL,
-              "the %s `%s` never changes what this law answers: without it the bond does the same",
-              kind_of(s), s->name);
+    sense_say_without_effect(m->of, s, s->kind == SYMBOL_DAMAGE ? mend : NULL);
   } else if (s->kind == SYMBOL_DAMAGE && e->on_forces) {
     const int damages = count_damages(m->b->law); /* several may share tension and bending */
     for (int which = 0; which < (damages > 1 ? 1 : PURE_COUNT); which++) {
@@ -332,6 +349,7 @@ static bool settled(const memory_bench *m, int lane, bool *moved) {
   bool same = true;
   *moved = false;
   for (int k = 0; k < m->b->field_count; k++) {
+    if (m->b->law->fields.items[k]->rate_of) continue;
     const double old = bench_field(m->b, m->states, k)[lane],
                  once = bench_field(m->b, m->others, k)[lane],
                  twice = m->b->step.out[FORCE_COUNT + k][lane];
@@ -342,31 +360,30 @@ static bool settled(const memory_bench *m, int lane, bool *moved) {
   return same;
 }
 
-/* Fields that stay in a second step at the same motion are the new ones; a force that changes all
-   the same was made of the old ones. */
+/* Fields that stay in a second step at the same motion, in which no time goes on, are the new ones;
+   a force that changes all the same was made of the old ones, or of the step itself. */
 static void check_lateness(memory_bench *m) {
-  enum { ROUNDS = 8, FEW = 8 };
+  enum { ROUNDS = 8 };
+  const bench *b = m->b;
+  const ir_node of_step[] = {b->law_step.N, b->law_step.M_i[0], b->law_step.M_j[0]};
+  const sense_reads reads =
+      sense_forces_read(b->graph, b->law, of_step, FORCE_COUNT, b->law_step.fields);
   forces_of once, twice;
-  int moved_count = 0, late = 0;
+  sense_held held = {0};
   for (int round = 0; round < ROUNDS && !bench_tired(m->b); round++) {
     take_from_pool(m, round * BENCH_LANES, false);
     run(m, &m->b->step, m->states, once);
     copy_states(m);
     bench_accept(m->b, m->others, BENCH_LANES);
+    memset(bench_quantity(b, m->others, QUANTITY_DT), 0, BENCH_LANES * sizeof(double));
     run(m, &m->b->step, m->others, twice);
     for (int lane = 0; lane < BENCH_LANES; lane++) {
       bool moved;
-      if (!settled(m, lane, &moved) || !moved) continue;
-      moved_count++;
-      late += differ(m, m->states, once, twice, lane, CLEARLY);
+      if (settled(m, lane, &moved))
+        sense_hold(&held, moved, differ(m, m->states, once, twice, lane, CLEARLY));
     }
   }
-  if (late < FEW || late * 4 < moved_count) return;
-  sense_say(m->of, DIAG_ONE_STEP_LATE, sense_force(m->b->law),
-            "write it below the rules of what it reads, without `previous` and without names from "
-            "above them",
-            "the force is a step late: held where it is, a bond has another force in the next "
-            "step, though its states are the same");
+  sense_say_held(m->of, &held, reads);
 }
 
 /* --- a stress as a state ---------------------------------------------------------------------- */
@@ -405,16 +422,10 @@ static void check_reversible(memory_bench *m) {
   if (m->b->field_count > 0 || l->nonconservative || l->results[RESULT_W]) return;
   forces_of out;
   double peak = 0, least = INFINITY;
-  for (int lane = 0; lane < STEPS; lane++) {
-    bench_draw(m->b, m->states, 0);
-    double *column = must_alloc((size_t)m->b->width * sizeof *column);
-    bench_virgin(m->b, m->states, 0);
-    bench_get(m->b, m->states, 0, column);
-    bench_put(m->b, m->states, lane, column);
+  put_virgins(m);
+  for (int lane = 0; lane < STEPS; lane++)
     bench_move(m->b, m->states, lane,
                (motion){.at[AXIS_STRETCH] = pl_pow(10, -6 + 5.7 * lane / (STEPS - 1))});
-    free(column);
-  }
   run(m, &m->b->step, m->states, out);
   for (int lane = 0; lane < STEPS; lane++) {
     if (out[FORCE_N][lane] > peak) {
@@ -439,7 +450,7 @@ static bool knows_time(const law *l) {
     const dimension d = l->parameters.items[k]->dim;
     if (d.twelfths[2] != 0 && d.twelfths[2] != -24) return true;
   }
-  return law_reads(l, QUANTITY_STRETCH_RATE) || law_reads(l, QUANTITY_SLIP_RATE);
+  return law_reads_time(l) || law_reads(l, QUANTITY_STRETCH_RATE) || law_reads(l, QUANTITY_SLIP_RATE);
 }
 
 /* Overstress of flow f before and after, with all new fields, at the same motion. */
@@ -510,71 +521,84 @@ static void check_flows(memory_bench *m) {
 
 /* --- energies --------------------------------------------------------------------------------- */
 
+/* How far lane `lane` is drawn out, and in what time (s). */
+static double amplitude_of(int lane) {
+  return pl_pow(10, -5 + 4.7 * lane / (BENCH_LANES - 1));
+}
+
+static double time_of(int lane) {
+  return pl_pow(10, -6 + 15.0 * ((lane * 5) % BENCH_LANES) / (BENCH_LANES - 1));
+}
+
+typedef struct drawn {
+  probe energy;
+  double force[BENCH_LANES], stored[BENCH_LANES];
+  sense_losses lost[BENCH_LANES];
+} drawn;
+
+static void look_at_energy(memory_bench *m, drawn *d, double *stored) {
+  probe_run(m->b, &d->energy, m->states, BENCH_LANES);
+  memcpy(stored, d->energy.out[0], BENCH_LANES * sizeof *stored);
+}
+
+/* To the share `to` of the way, from `from`. */
+static void draw_by(memory_bench *m, drawn *d, double from, double to) {
+  bench *b = m->b;
+  double now[BENCH_LANES], stored[BENCH_LANES];
+  for (int lane = 0; lane < BENCH_LANES; lane++) {
+    bench_move(b, m->states, lane, (motion){.at[AXIS_STRETCH] = amplitude_of(lane) * to});
+    if (b->reads_time)
+      bench_quantity(b, m->states, QUANTITY_DT)[lane] = time_of(lane) * fabs(to - from);
+  }
+  probe_run(b, &b->step, m->states, BENCH_LANES);
+  memcpy(now, b->step.out[FORCE_N], sizeof now);
+  bench_accept(b, m->states, BENCH_LANES);
+  look_at_energy(m, d, stored);
+  for (int lane = 0; lane < BENCH_LANES; lane++) {
+    const double way = (to - from) * amplitude_of(lane) * bench_length(b, m->states, lane);
+    const double work = 0.5 * (d->force[lane] + now[lane]) * way;
+    sense_lose(&d->lost[lane], work, work - (stored[lane] - d->stored[lane]));
+    d->force[lane] = now[lane];
+    d->stored[lane] = stored[lane];
+  }
+}
+
 /* Drawn out and back by amplitudes of many sizes, a bond loses: work less what the law's energy
    grows by. A step that loses less than nothing by more than steps are coarse says that the energy
-   lacks something. */
+   lacks something. A rest state that moves does work of its own. */
 static void check_locked_energy(memory_bench *m) {
   enum { STEPS = 400 };
   bench *b = m->b;
-  if (b->law_frozen.W == IR_NONE || b->law->nonconservative || b->law->tree->law == LAW_SLIP_BOND)
+  if (b->law_frozen.W == IR_NONE || b->law->nonconservative || b->law->tree->law == LAW_SLIP_BOND ||
+      rest_changes(b->graph, b->law, &b->law_frozen))
     return;
-  probe energy = probe_new(b, &b->law_frozen.W, 1);
-  double force[BENCH_LANES] = {0}, stored[BENCH_LANES], size[BENCH_LANES] = {0},
-         gained[BENCH_LANES] = {0};
-  for (int lane = 0; lane < BENCH_LANES; lane++) {
-    bench_draw(b, m->states, 0);
-    bench_virgin(b, m->states, 0);
-    for (int k = 0; k < b->width; k++)
-      m->states[k][lane] = m->states[k][0];
-  }
-  probe_run(b, &energy, m->states, BENCH_LANES);
-  memcpy(stored, energy.out[0], sizeof stored);
-  for (int step = 1; step <= 2 * STEPS; step++) {
-    for (int lane = 0; lane < BENCH_LANES; lane++) {
-      const double amplitude = pl_pow(10, -5 + 4.7 * lane / (BENCH_LANES - 1));
-      const double part = (double)(step <= STEPS ? step : 2 * STEPS - step) / STEPS;
-      bench_move(b, m->states, lane, (motion){.at[AXIS_STRETCH] = amplitude * part});
-    }
-    probe_run(b, &b->step, m->states, BENCH_LANES);
-    double now[BENCH_LANES];
-    memcpy(now, b->step.out[FORCE_N], sizeof now);
-    bench_accept(b, m->states, BENCH_LANES);
-    probe_run(b, &energy, m->states, BENCH_LANES);
-    for (int lane = 0; lane < BENCH_LANES; lane++) {
-      const double amplitude = pl_pow(10, -5 + 4.7 * lane / (BENCH_LANES - 1));
-      const double way =
-          (step <= STEPS ? 1 : -1) * amplitude / STEPS * bench_length(b, m->states, lane);
-      const double work = 0.5 * (force[lane] + now[lane]) * way;
-      const double lost = work - (energy.out[0][lane] - stored[lane]);
-      size[lane] += fabs(work);
-      if (lost < 0) gained[lane] -= lost;
-      force[lane] = now[lane];
-      stored[lane] = energy.out[0][lane];
-    }
-  }
-  probe_free(&energy);
-  for (int lane = 0; lane < BENCH_LANES; lane++) {
-    if (!isfinite(size[lane]) || !(gained[lane] > COARSE * size[lane])) continue;
-    const stmt *W = b->law->results[RESULT_W]->rule;
-    sense_say(m->of, DIAG_LOCKED_ENERGY, W->where,
-              "add what the states lock in, as `H/2*x**2` of a linear hardening",
-              "drawn out and back, this bond gives back %.3g of the work more than its energy "
-              "`W` had left: `W` lacks what the states store",
-              gained[lane] / size[lane]);
-    return;
-  }
+  drawn d = {.energy = probe_new(b, &b->law_frozen.W, 1)};
+  put_virgins(m);
+  look_at_energy(m, &d, d.stored);
+  draw_by(m, &d, 0, 0); /* how quickly states begin to change */
+  for (int step = 1; step <= STEPS; step++)
+    draw_by(m, &d, (step - 1.0) / STEPS, (double)step / STEPS);
+  for (int step = STEPS; step > 0; step--)
+    draw_by(m, &d, (double)step / STEPS, (step - 1.0) / STEPS);
+  probe_free(&d.energy);
+  bool said = false;
+  for (int lane = 0; lane < BENCH_LANES && !said; lane++)
+    said = sense_say_losses(m->of, &d.lost[lane], "drawn out",
+                            b->reads_time
+                                ? "add the springs beside the dashpots, as `E_1/2*v**2`"
+                                : "add what the states lock in, as `H/2*x**2` of a linear hardening");
 }
 
 void sense_check_bonds(sense_bench *b) {
   memory_bench m;
   if (memory_open(&m, b)) {
     check_reversible(&m);
-    check_stress_state(&m);
-    if (m.b->field_count > 0 && m.p->pool_count > 0) {
+    if (!m.b->reads_time) check_stress_state(&m); /* what goes by a rate moves in time alone */
+    if (m.p->pool_count > 0) {
       check_effects(&m);
       if (!b->said_of[DIAG_STRESS_STATE]) check_lateness(&m);
       check_flows(&m);
-      if (!b->said_of[DIAG_ONE_STEP_LATE]) check_locked_energy(&m);
+      if (!b->said_of[DIAG_ONE_STEP_LATE] && m.b->field_count > 0) check_locked_energy(&m);
     }
   }
   memory_close(&m);

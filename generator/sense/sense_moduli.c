@@ -24,25 +24,18 @@ typedef struct moduli {
 
 /* --- what the parameters name ----------------------------------------------------------------- */
 
-static const symbol *parameter_called(const law *l, const char *name, const char *measured_in) {
-  for (int k = 0; k < l->parameters.count; k++) {
-    const symbol *s = l->parameters.items[k];
-    if (strcmp(s->name, name) == 0 && dim_equal(s->dim, dimension_of(measured_in))) return s;
-  }
-  return NULL;
-}
-
 /* Whether `E` is Young's modulus: its description says so, or it has none and the law is one that
    nothing else is known of. A modulus of single bonds or of a part is described as such. */
 static bool is_of_the_material(const law *l, const symbol *E) {
-  const bool has_nu = parameter_called(l, "nu", "1") != NULL;
+  const bool has_nu = sense_parameter(l, "nu", "1") != NULL;
   if (!E->doc) return has_nu || l->tree->law == LAW_CENTRAL_BOND;
   return strstr(E->doc, "Young") || strstr(E->doc, "young");
 }
 
 /* Young's modulus and Poisson's ratio that a plane sees. */
 static moduli named_moduli(const sense_bench *b, law_setting setting) {
-  moduli m = {sense_parameter(b, "E", "Pa"), sense_parameter(b, "nu", "1")};
+  moduli m = {sense_value(b, sense_parameter(b->law, "E", "Pa")),
+              sense_value(b, sense_parameter(b->law, "nu", "1"))};
   if (setting != SETTING_PLANE_STRAIN || isnan(m.nu)) return m;
   return (moduli){m.E / (1 - m.nu * m.nu), m.nu / (1 - m.nu)};
 }
@@ -196,7 +189,7 @@ static void check_point(sense_bench *b, const symbol *E) {
 }
 
 void sense_check_moduli(sense_bench *b) {
-  const symbol *E = parameter_called(b->law, "E", "Pa");
+  const symbol *E = sense_parameter(b->law, "E", "Pa");
   if (!E || !is_of_the_material(b->law, E) || b->law->tree->anisotropic) return;
   if (b->law->tree->law == LAW_CONTINUUM) check_point(b, E);
   const bool bar = law_reads(b->law, QUANTITY_AREA); /* of a bar: a lattice of bars is no solid */

@@ -20,18 +20,6 @@ static const double LEAST_TOUGH = 1e3, MOST_TOUGH = 1e10; /* Pa m^(1/2): snow, t
 static const double LIGHT = 100, HEAVY = 3e4;             /* kg/m^3: cork, beyond osmium */
 static const double WITHOUT_UNITS = 1e3; /* Pa: a law with a smaller modulus has no units at all */
 
-static const symbol *named(const law *l, const char *name, const char *measured_in) {
-  for (int k = 0; k < l->parameters.count; k++) {
-    const symbol *s = l->parameters.items[k];
-    if (strcmp(s->name, name) == 0 && dim_equal(s->dim, dimension_of(measured_in))) return s;
-  }
-  return NULL;
-}
-
-static double value(const sense_bench *b, const symbol *s) {
-  return s ? b->parameters[s->index] : NAN;
-}
-
 /* --- waves ------------------------------------------------------------------------------------ */
 
 /* Of the fastest wave, NaN where it is not known. */
@@ -64,9 +52,9 @@ static double fastest_wave(const sense_bench *b, double density) {
 }
 
 static void check_waves(sense_bench *b) {
-  const symbol *E = named(b->law, "E", "Pa"), *rho = b->law->rho;
-  if (!rho || (E && value(b, E) < WITHOUT_UNITS)) return;
-  const double density = value(b, rho), speed = fastest_wave(b, density);
+  const symbol *E = sense_parameter(b->law, "E", "Pa"), *rho = b->law->rho;
+  if (!rho || (E && sense_value(b, E) < WITHOUT_UNITS)) return;
+  const double density = sense_value(b, rho), speed = fastest_wave(b, density);
   if (!isfinite(speed) || (speed >= SLOWEST && speed <= FASTEST)) return;
   const bool density_is_odd = speed > FASTEST ? density < LIGHT : density > HEAVY;
   if (!E && !density_is_odd) return;
@@ -78,7 +66,7 @@ static void check_waves(sense_bench *b) {
                        : "concrete has 30 [GPa], steel 200 [GPa]; a unit in brackets is all there "
                          "is: no 1e9 before [GPa]",
             "with `%s` = %.4g %s waves run at %.4g m/s: no material has that", odd->name,
-            value(b, odd), unit_of, speed);
+            sense_value(b, odd), unit_of, speed);
 }
 
 /* --- strengths -------------------------------------------------------------------------------- */
@@ -97,8 +85,8 @@ static bool is_strength(const sense_bench *b, const symbol *s, double E) {
   bool found = false;
   for (int sign = 1; sign >= -1 && !found; sign -= 2) {
     memcpy(with, b->parameters, count * sizeof *with);
-    const double low = limit_with(b, with, s, copysign(1e-4 * E, value(b, s)), sign),
-                 high = limit_with(b, with, s, copysign(4e-4 * E, value(b, s)), sign);
+    const double low = limit_with(b, with, s, copysign(1e-4 * E, sense_value(b, s)), sign),
+                 high = limit_with(b, with, s, copysign(4e-4 * E, sense_value(b, s)), sign);
     found = high > 2 * low && high < 8 * low;
   }
   free(with);
@@ -108,7 +96,7 @@ static bool is_strength(const sense_bench *b, const symbol *s, double E) {
 static void say_strength(sense_bench *b, const symbol *s, double over) {
   sense_say(b, DIAG_ABSURD_VALUE, s->where,
             "concrete has 3 [MPa] in tension and 30 [GPa] as its modulus: look at the prefixes",
-            "`%s` = %.4g Pa is %.3g of `E`: no material is %s", s->name, value(b, s), over,
+            "`%s` = %.4g Pa is %.3g of `E`: no material is %s", s->name, sense_value(b, s), over,
             over > 1e-3 ? "so strong" : "so weak");
 }
 
@@ -118,7 +106,7 @@ static void check_length(sense_bench *b, const symbol *G, const bool *is_strengt
   double shortest = INFINITY, longest = 0;
   for (int k = 0; k < b->law->parameters.count; k++) {
     if (!is_strength[k]) continue;
-    const double length = E * value(b, G) / pl_pow(b->parameters[k], 2);
+    const double length = E * sense_value(b, G) / pl_pow(b->parameters[k], 2);
     shortest = pl_fmin(shortest, length);
     longest = pl_fmax(longest, length);
   }
@@ -128,14 +116,14 @@ static void check_length(sense_bench *b, const symbol *G, const bool *is_strengt
               "concrete has 100 [N/m], that is 0.1 [N/mm]: look at the prefixes",
               "`%s` = %.4g N/m gives a length of fracture E G/f^2 of %.4g m: concrete has up to "
               "1 m",
-              G->name, value(b, G), shortest);
+              G->name, sense_value(b, G), shortest);
   else if (longest > 0 && longest < 0.25 * cell)
     sense_say(b, DIAG_ABSURD_VALUE, G->where,
               "concrete has 100 [N/m], that is 0.1 [N/mm]: look at the prefixes, or take a "
               "finer lattice",
               "`%s` = %.4g N/m gives a length of fracture E G/f^2 of %.4g m, below the %s of "
               "%.4g m: what breaks holds more energy than tears it",
-              G->name, value(b, G), longest, b->lattice ? "spacing" : "least that there is", cell);
+              G->name, sense_value(b, G), longest, b->lattice ? "spacing" : "least that there is", cell);
 }
 
 /* --- what names say --------------------------------------------------------------------------- */
@@ -166,13 +154,13 @@ static void check_named_strength(sense_bench *b, const symbol *s) {
   double pulled, pushed;
   bool softens = false, other;
   if (b->law->tree->law != LAW_CONTINUUM || !is_one_of(s->name, strengths)) return;
-  if (bears(b, 1, value(b, s), &pulled, &softens) || isnan(pulled)) return;
-  if (bears(b, -1, value(b, s), &pushed, &other)) return;
+  if (bears(b, 1, sense_value(b, s), &pulled, &softens) || isnan(pulled)) return;
+  if (bears(b, -1, sense_value(b, s), &pushed, &other)) return;
   sense_say(b, DIAG_NAMED_VALUE, s->where,
             "look at factors such as sqrt(2/3), between a norm and an equivalent stress",
             "pulled with its sides free a point %s at %.4g Pa, and `%s` is %.4g Pa",
             softens ? "has its largest stress" : "leaves its first line", pulled, s->name,
-            value(b, s));
+            sense_value(b, s));
 }
 
 static const char MEND_ENERGY[] =
@@ -205,7 +193,7 @@ static bool energies_of_cracks(const sense_bench *b, const double *parameters, d
    taken. */
 static void check_named_energy(sense_bench *b, const symbol *G) {
   static const char *const energies[] = {"G_f", "G_F", NULL};
-  const double is = value(b, G);
+  const double is = sense_value(b, G);
   double of[3], twice_of[3];
   if (!is_one_of(G->name, energies)) return;
   const bool point = b->law->tree->law == LAW_CONTINUUM;
@@ -242,26 +230,26 @@ static void find_strengths(const sense_bench *b, double E, bool *found) {
   for (int k = 0; k < b->law->parameters.count; k++) {
     const symbol *s = b->law->parameters.items[k];
     const bool stress = dim_equal(s->dim, dimension_of("Pa")) && strcmp(s->name, "E") != 0;
-    found[k] = stress && value(b, s) != 0 && is_strength(b, s, E);
+    found[k] = stress && sense_value(b, s) != 0 && is_strength(b, s, E);
   }
 }
 
 static void check_strengths(sense_bench *b) {
-  const symbol *E = named(b->law, "E", "Pa");
-  if (!E || value(b, E) < WITHOUT_UNITS) return;
+  const symbol *E = sense_parameter(b->law, "E", "Pa");
+  if (!E || sense_value(b, E) < WITHOUT_UNITS) return;
   const int count = b->law->parameters.count;
   bool *found = must_calloc((size_t)count + 1, sizeof *found);
-  find_strengths(b, value(b, E), found);
+  find_strengths(b, sense_value(b, E), found);
   for (int k = 0; k < count; k++) {
     const symbol *s = b->law->parameters.items[k];
-    const double over = fabs(value(b, s)) / value(b, E);
+    const double over = fabs(sense_value(b, s)) / sense_value(b, E);
     if (found[k] && (over > STRONGEST || over < WEAKEST)) say_strength(b, s, over);
   }
   for (int k = 0; k < count && !b->said_of[DIAG_ABSURD_VALUE]; k++) {
     const symbol *s = b->law->parameters.items[k];
-    const bool energy = dim_equal(s->dim, dimension_of("N/m")) && value(b, s) > 0;
+    const bool energy = dim_equal(s->dim, dimension_of("N/m")) && sense_value(b, s) > 0;
     if (found[k]) check_named_strength(b, s);
-    if (energy) check_length(b, s, found, value(b, E));
+    if (energy) check_length(b, s, found, sense_value(b, E));
     if (energy && !b->said_of[DIAG_ABSURD_VALUE]) check_named_energy(b, s);
   }
   free(found);
@@ -271,10 +259,10 @@ static void check_toughness(sense_bench *b) {
   for (int k = 0; k < b->law->parameters.count; k++) {
     const symbol *s = b->law->parameters.items[k];
     if (!dim_equal(s->dim, dimension_of("Pa*m^(1/2)"))) continue;
-    if (value(b, s) >= LEAST_TOUGH && value(b, s) <= MOST_TOUGH) continue;
+    if (sense_value(b, s) >= LEAST_TOUGH && sense_value(b, s) <= MOST_TOUGH) continue;
     sense_say(b, DIAG_ABSURD_VALUE, s->where,
               "glass has 0.8 [MPa*m^(1/2)], steel 100: look at the prefixes",
-              "`%s` = %.4g Pa m^(1/2) is a toughness that no material has", s->name, value(b, s));
+              "`%s` = %.4g Pa m^(1/2) is a toughness that no material has", s->name, sense_value(b, s));
   }
 }
 

@@ -9,11 +9,11 @@
 #include "generator/check/physics_point_bench.h"
 #include "generator/ir/random_values.h"
 #include "generator/sense/point_text.h"
+#include "generator/sense/sense_memory.h"
 #include "generator/sense/sense_response.h"
 
 static const double SAME = 1e-9;    /* of a stress or a state */
 static const double CLEARLY = 1e-6; /* another stress */
-static const double COARSE = 0.01;  /* of the work of all steps */
 static const double TIME_STEP = 1e-6;
 
 /* --- states that a point reaches -------------------------------------------------------------- */
@@ -125,18 +125,12 @@ static bool is_seen(point_bench *p, int first, int count, const double *strain) 
 
 static void say_effect(sense_bench *b, const symbol *field, const effect *e) {
   const symbol *s = field->component_of ? field->component_of : field;
-  const char *kind = s->kind == SYMBOL_DAMAGE ? "damage" : "state";
-  const span where = s->rule ? s->rule->where : s->where;
   if (!e->moves)
-    sense_say(b, DIAG_ELASTIC, where, "look at its guards and limits, and at their units",
-              "the %s `%s` never moves, whatever a point undergoes: this law is as if it had none",
-              kind, s->name);
+    sense_say_never_moves(b, s);
   else if (!e->counts &&
            s != b->law->failed) /* what has failed bears nothing, whatever is written */
-    sense_say(b, DIAG_ELASTIC, where,
-              "let the stress depend on it; is its limit in the range of strains?",
-              "the %s `%s` never changes what this law answers: without it the point does the same",
-              kind, s->name);
+    sense_say_without_effect(b, s,
+                             "let the stress depend on it; is its limit in the range of strains?");
 }
 
 static void look_at_states(point_text *t, point_bench *p, effect *seen) {
@@ -194,84 +188,92 @@ static void check_weakening(sense_bench *b) {
 
 static bool fields_differ(const point_bench *p, double *const *x, double *const *y, double by) {
   for (int k = 0; k < p->law->fields.count; k++)
-    if (fabs(x[k][0] - y[k][0]) > by * pl_fmax(fabs(x[k][0]), fabs(y[k][0]))) return true;
+    if (!p->law->fields.items[k]->rate_of &&
+        fabs(x[k][0] - y[k][0]) > by * pl_fmax(fabs(x[k][0]), fabs(y[k][0])))
+      return true;
   return false;
 }
 
 static void check_lateness(sense_bench *b, point_bench *p) {
-  enum { ROUNDS = 120, FEW = 8 };
-  int moved_count = 0, late = 0;
+  enum { ROUNDS = 120 };
+  point_text t;
+  sense_held held = {0};
+  sense_reads reads = {false, false};
+  if (point_text_open(&t, p))
+    reads = sense_forces_read(t.graph, &p->setting, t.step.sigma, LOWERED_STRESSES, t.step.fields);
+  point_text_close(&t);
   for (int round = 0; round < ROUNDS; round++) {
     double strain[POINT_MOST], next[POINT_MOST], once[POINT_MOST], twice[POINT_MOST];
+    if (p->reads_time) p->advance = pl_pow(10, draw_uniform(&p->seed, -8, 8));
     const double size = go_somewhere(p, strain);
     point_bench_direction(p, 2 * size, next);
     point_bench_stress(p, next, once);
     const bool moved = fields_differ(p, p->old_field, p->new_field, CLEARLY);
     point_bench_keep(p);
+    p->advance = 0;
     point_bench_stress(p, next, twice);
-    if (!moved || fields_differ(p, p->old_field, p->new_field, SAME)) continue;
-    moved_count++;
-    late += differ(p, once, twice, CLEARLY);
+    if (!fields_differ(p, p->old_field, p->new_field, SAME))
+      sense_hold(&held, moved, differ(p, once, twice, CLEARLY));
   }
-  if (late < FEW || late * 4 < moved_count) return;
-  sense_say(b, DIAG_ONE_STEP_LATE, sense_force(b->law),
-            "write it below the rules of what it reads, without `previous` and without names from "
-            "above them",
-            "the stress is a step late: held where it is, a point has another stress in the next "
-            "step, though its states are the same");
+  sense_say_held(b, &held, reads);
 }
 
 /* --- energies --------------------------------------------------------------------------------- */
 
-/* Sheared and back by amplitudes of many sizes: what the steps lose, by the law's own energy. */
+/* Sheared and back: what the steps lose, by the law's own energy. */
+static sense_losses sheared(point_bench *p, double amplitude) {
+  enum { STEPS = 200 };
+  const int shear = p->strains == 3 ? 2 : 3;
+  double strain[POINT_MOST] = {0}, before = 0;
+  sense_losses losses = {0, 0};
+  point_bench_virgin(p);
+  for (int step = 1; step <= 2 * STEPS; step++) {
+    const int part = step <= STEPS ? step : 2 * STEPS - step;
+    const double next = amplitude * part / STEPS;
+    const double change = next - strain[shear];
+    strain[shear] = next;
+    point_bench_strain(p, strain, NULL);
+    memset(p->lost, 0, sizeof p->lost);
+    point_bench_run(p, p->kernel->point_ledger, TIME_STEP);
+    double lost = 0;
+    for (int k = 0; k < PL_LOSSES; k++)
+      lost += p->lost[k][0];
+    sense_lose(&losses, (p->stress[shear][0] + before) * change, lost);
+    before = p->stress[shear][0];
+    point_bench_keep(p);
+  }
+  return losses;
+}
+
+/* By amplitudes of many sizes. */
 static void check_locked_energy(sense_bench *b, point_bench *p) {
-  enum { STEPS = 200, SIZES = 12 };
+  enum { SIZES = 12 };
   if (!b->law->results[RESULT_W] || !b->law->results[RESULT_SIGMA] || b->law->nonconservative)
     return;
-  for (int size = 0; size < SIZES; size++) {
+  bool said = false;
+  for (int size = 0; size < SIZES && !said; size++) {
     const double amplitude = pl_pow(10, -4 + 3.7 * size / (SIZES - 1));
-    double strain[POINT_MOST] = {0}, before = 0, work = 0, gained = 0;
-    const int shear = p->strains == 3 ? 2 : 3;
-    point_bench_virgin(p);
-    for (int step = 1; step <= 2 * STEPS; step++) {
-      const int part = step <= STEPS ? step : 2 * STEPS - step;
-      const double next = amplitude * part / STEPS;
-      const double change = next - strain[shear];
-      strain[shear] = next;
-      point_bench_strain(p, strain, NULL);
-      memset(p->lost, 0, sizeof p->lost);
-      point_bench_run(p, p->kernel->point_ledger, TIME_STEP);
-      work += fabs((p->stress[shear][0] + before) * change);
-      before = p->stress[shear][0];
-      double lost = 0;
-      for (int k = 0; k < PL_LOSSES; k++)
-        lost += p->lost[k][0];
-      if (lost < 0) gained -= lost;
-      point_bench_keep(p);
-    }
-    if (!isfinite(work) || !(gained > COARSE * work)) continue;
-    sense_say(b, DIAG_LOCKED_ENERGY, b->law->results[RESULT_W]->rule->where,
-              "add what the states lock in, as `H/3*(eps_p:eps_p)` of a linear kinematic hardening",
-              "sheared by %.3g and back, a point gives back %.3g of the work more than its energy "
-              "`W` had left: `W` lacks what the states store",
-              amplitude, gained / work);
-    return;
+    const sense_losses losses = sheared(p, amplitude);
+    char way[64];
+    snprintf(way, sizeof way, "sheared by %.3g", amplitude);
+    said = sense_say_losses(
+        b, &losses, way,
+        "add what the states lock in, as `H/3*(eps_p:eps_p)` of a linear kinematic hardening");
   }
 }
 
 void sense_check_points(sense_bench *b) {
   const physics_options with = {.parameters = b->parameters};
   physics_report unwanted = {0};
-  if (b->law->fields.count == 0) return;
   point_bench *p = must_calloc(1, sizeof *p);
   *p = (point_bench){.law = b->law, .said = b->said, .report = &unwanted, .seed = 20260102};
   const law_setting setting = law_is_for(b->law, SETTING_SPACE) ? SETTING_SPACE : b->law->setting;
   if (point_bench_open(p, setting)) {
     point_bench_parameters(p, &with, true);
-    check_effects(b, p);
-    check_weakening(b);
+    if (!p->reads_time) check_effects(b, p); /* what needs an hour does not show in a step */
+    if (!p->reads_time) check_weakening(b);
     if (!p->kernel->reads_rates) check_lateness(b, p);
-    if (!b->said_of[DIAG_ONE_STEP_LATE]) check_locked_energy(b, p);
+    if (!p->reads_time && !b->said_of[DIAG_ONE_STEP_LATE]) check_locked_energy(b, p);
   }
   point_bench_close(p);
   free(p);

@@ -22,7 +22,8 @@ static double value_of_number(const expr *e) {
 
 static double value_of_name(const sense_bench *b, const expr *e, int depth) {
   const symbol *s = e->symbol;
-  if (s && s->kind == SYMBOL_PARAMETER) return b->parameters[s->index];
+  if (s && s->kind == SYMBOL_PARAMETER) return sense_value(b, s);
+  if (s && s->kind == SYMBOL_QUANTITY && s->index == QUANTITY_PI) return M_PI;
   if (s && s->kind == SYMBOL_CONSTANT && s->rule) return value_of(b, s->rule->value, depth + 1);
   return NAN;
 }
@@ -67,20 +68,43 @@ static double value_of(const sense_bench *b, const expr *e, int depth) {
 
 /* --- degrees ---------------------------------------------------------------------------------- */
 
-static const double FULL_TURN = 2 * 3.14159265358979323846;
+static const double FULL_TURN = 2 * M_PI, DEGREE = M_PI / 180;
 
-/* The parameter that is the argument of a sine, where its bounds end beyond a full turn. */
-static const symbol *bounded_in_degrees(const sense_bench *b, const expr *e) {
-  const symbol *s = e->kind == EXPR_NAME ? e->symbol : NULL;
-  if (!s || s->kind != SYMBOL_PARAMETER || !s->declared->in.given) return NULL;
-  const double most = value_of(b, s->declared->in.upper, 0);
-  return most > FULL_TURN && most <= 400 ? s : NULL;
+static bool has_unit(const expr *e) {
+  return e && (e->unit_text || has_unit(e->left) || has_unit(e->right));
 }
 
-static void check_angle(sense_bench *b, const expr *call) {
+static const symbol *parameter_of(const expr *e) {
+  return e->kind == EXPR_NAME && e->symbol && e->symbol->kind == SYMBOL_PARAMETER ? e->symbol
+                                                                                  : NULL;
+}
+
+/* The parameter that is the argument of a sine, where its bounds end beyond a full turn. */
+static bool is_bounded_in_degrees(const sense_bench *b, const symbol *angle) {
+  if (!angle || !angle->declared->in.given || has_unit(angle->declared->in.upper)) return false;
+  const double most = value_of(b, angle->declared->in.upper, 0);
+  return most > FULL_TURN && most <= 400;
+}
+
+/* 30, 22.5: angles in degrees are such numbers. */
+static bool is_round(double angle) {
+  const double whole = fabs(angle - nearbyint(angle)),
+               parts = fabs(angle / 7.5 - nearbyint(angle / 7.5));
+  return whole <= 1e-9 * fabs(angle) || parts <= 1e-9 * fabs(angle);
+}
+
+/* The parameter of an angle, declared with its unit, that is turned into radians once more. */
+static const symbol *turned_again(const sense_bench *b, const expr *e, double angle) {
+  const double within = 1e-3; /* 3.14/180, too */
+  const symbol *s = NULL;
+  for (; e->kind == EXPR_BINARY && (e->binary == OP_MUL || e->binary == OP_DIV) && !s; e = e->left)
+    s = parameter_of(e->left) ? parameter_of(e->left) : parameter_of(e->right);
+  if (!s || !has_unit(s->declared->value) || !dim_is_none(s->dim)) return NULL;
+  return fabs(angle / (sense_value(b, s) * DEGREE) - 1) <= within ? s : NULL;
+}
+
+static void say_degrees(sense_bench *b, const expr *call, double value) {
   const expr *angle = call->arguments[0].value;
-  const double value = value_of(b, angle, 0);
-  if (!(fabs(value) > FULL_TURN) && !bounded_in_degrees(b, angle)) return;
   char *text = expr_text(angle);
   sense_say(b, DIAG_DEGREES, angle->where,
             "angles are in radians: write the unit, `30 [deg]`, in the parameter and in its "
@@ -88,6 +112,28 @@ static void check_angle(sense_bench *b, const expr *call) {
             "`%s` takes `%s` = %.6g as radians, but this looks like degrees", call->name, text,
             value);
   free(text);
+}
+
+static void say_turned_again(sense_bench *b, const expr *call, const symbol *s) {
+  char mend[256];
+  snprintf(mend, sizeof mend, "leave the factor out: `%s(%.60s)`", call->name, s->name);
+  sense_say(b, DIAG_DEGREES, call->arguments[0].value->where, mend,
+            "`%s` is in radians already, whatever unit it is written in: the factor turns it into "
+            "radians a second time",
+            s->name);
+}
+
+static void check_angle(sense_bench *b, const expr *call) {
+  const expr *angle = call->arguments[0].value;
+  const symbol *alone = parameter_of(angle);
+  const double value = value_of(b, angle, 0);
+  const symbol *again = turned_again(b, angle, value);
+  if (again)
+    say_turned_again(b, call, again);
+  else if (is_bounded_in_degrees(b, alone) ||
+           (fabs(value) > FULL_TURN && is_round(value) &&
+            !(alone && has_unit(alone->declared->value))))
+    say_degrees(b, call, value);
 }
 
 /* --- powers ----------------------------------------------------------------------------------- */

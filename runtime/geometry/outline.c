@@ -150,7 +150,7 @@ static double turn_to(const arc *e, const double a[2], const double p[2]) {
   const double x = a[0] - e->centre[0], y = a[1] - e->centre[1], u = p[0] - e->centre[0],
                v = p[1] - e->centre[1], sense = e->rise > 0 ? 1 : -1;
   const double turn = pl_atan2(sense * (x * v - y * u), x * u + y * v);
-  return turn < 0 ? turn + 2 * 3.14159265358979323846 : turn;
+  return turn < 0 ? turn + 2 * M_PI : turn;
 }
 
 /* From the first corner to a point of the outline; *whole: all of it. */

@@ -1,5 +1,7 @@
 #include "runtime/mesh/gauss_rule.h"
 
+#include <math.h>
+
 #include "dsl/base/elementary.h"
 
 /* Legendre's polynomial of the order and its derivative. */
@@ -17,7 +19,7 @@ static double legendre(int order, double x, double *slope) {
 void gauss_rule(int order, double at[MESH_MOST_GAUSS], double weight[MESH_MOST_GAUSS]) {
   enum { NEWTON_STEPS = 8 };
   for (int k = 0; k < order; k++) {
-    double x = -pl_cos(3.14159265358979323846 * (k + 0.75) / (order + 0.5)), slope = 1;
+    double x = -pl_cos(M_PI * (k + 0.75) / (order + 0.5)), slope = 1;
     if (order == 1) x = 0;
     for (int step = 0; step < NEWTON_STEPS && order > 1; step++) {
       const double value = legendre(order, x, &slope);

@@ -21,7 +21,7 @@ static bool same(double a, double b) {
 
 /* Numbers of all sizes that angles can have, and those at which something happens. */
 static double draw(uint64_t *seed) {
-  static const double corners[] = {0, -0.0, 1, -1, 0.5, -0.5, 2, HALF_TURN, -HALF_TURN};
+  static const double corners[] = {0, -0.0, 1, -1, 0.5, -0.5, 2, M_PI, -M_PI};
   const size_t corner = draw_bits(seed) % 30;
   return corner < sizeof corners / sizeof *corners ? corners[corner] : draw_size(seed, -6, 2);
 }
