@@ -119,7 +119,7 @@ static void put_implied(json *j, const law_facts *f) {
     json_put_number(j, "transverse_speed", i->waves.transverse);
     json_put_number(j, "rotation_cutoff",
                     f->law->dof > f->law->dimensions ? i->waves.rotation_cutoff : NAN);
-    json_put_number(j, "stable_step", i->step.least < STABILITY_LEAST ? NAN : i->step.limit);
+    json_put_number(j, "stable_step", stability_at_rest(&i->step) ? i->step.limit : NAN);
     json_put_bool(j, "at_surface", i->step.at_surface);
     json_put_text(j, "ruling_mode", i->step.mode);
     json_put_number(j, "omega_max", i->step.omega_max);

@@ -156,7 +156,7 @@ static void print_dynamics(const implied *i, bool rotations) {
     return;
   }
   print_waves(i, rotations);
-  if (i->step.least < STABILITY_LEAST) {
+  if (!stability_at_rest(&i->step)) {
     printf("  stable step           none: the virgin body is unstable at rest\n");
     return;
   }

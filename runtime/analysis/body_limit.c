@@ -29,11 +29,12 @@ enum { BONDS_A_THREAD = 50000, MOST_STEPS = 240, STEPS_NOW = 16, LOOK_EVERY = 8,
 typedef struct stiffness {
   sweep *sweep;
   body *body;
-  long size, length; /* of an array over sites; of a vector: dof of these */
-  double *scale;     /* [length] 1/sqrt(mass), 0 at absent sites */
-  double *probe;     /* [length] */
-  double *base;      /* [length] displacements that it is about; NULL: at rest */
-  double stiffer;    /* one side of a kink at rest than the mean of both; 1 without a kink */
+  long size, length;   /* of an array over sites; of a vector: dof of these */
+  double *scale;       /* [length] 1/sqrt(mass), 0 at absent sites */
+  double *probe;       /* [length] */
+  double *base;        /* [length] displacements that it is about; NULL: at rest */
+  double stiffer;      /* one side of a kink at rest than the mean of both; 1 without a kink */
+  double acceleration; /* m/s^2: the largest at rest */
 } stiffness;
 
 static double *vector_of(const stiffness *b) {
@@ -92,10 +93,29 @@ static void add_forces(const stiffness *b, double factor, double *result) {
     }
 }
 
+/* Largest acceleration, m/s^2, by what bonds carry at rest. */
+static double acceleration_of(const stiffness *b, const double *rest) {
+  double most = 0;
+  for (long q = 0; q < b->size; q++) {
+    double square = 0;
+    for (int d = 0; d < b->body->dimensions; d++) {
+      const double component = b->scale[d * b->size + q] * rest[d * b->size + q];
+      square += component * component;
+    }
+    most = pl_fmax(most, square);
+  }
+  return sqrt(most);
+}
+
 /* Of the start vector, which pushes and pulls all bonds: forces that do not change their sign with
-   the motion. */
+   the motion, beside those at rest. */
 static void find_kink(stiffness *b, const double *x) {
   double *sum = vector_of(b), *difference = vector_of(b);
+  sweep_find_forces(b->sweep);
+  add_forces(b, 1, sum);
+  b->acceleration = acceleration_of(b, sum);
+  for (long k = 0; k < b->length; k++)
+    sum[k] *= -2;
   for (long k = 0; k < b->length; k++)
     b->probe[k] = b->scale[k] * x[k];
   const double size = tiny * b->body->lattice->spacing / longest_way(b);
@@ -306,6 +326,8 @@ static bool find_limit(lanczos *l, step_limit *out) {
   if (!find_largest(l)) return false;
   const double size = size_of(l);
   out->least = size > 0 ? l->least / size : 0;
+  out->prestrain =
+      size > 0 ? l->matrix->acceleration / (size * l->matrix->body->lattice->spacing) : 0;
   out->omega_max = l->value > 0 ? sqrt(l->value + pl_fmin(l->error, accuracy * l->value)) : 0;
   out->limit = out->omega_max > 0 ? 2 / out->omega_max : INFINITY;
   if (l->matrix->body->dof > l->matrix->body->dimensions && turning_share(l) > 0.5)
@@ -328,7 +350,7 @@ static void limit_of(sweep *of, step_limit *out) {
   stiffness b = stiffness_new(of);
   lanczos l = lanczos_new(&b, MOST_STEPS);
   out->omega_max = NAN;
-  out->damping_ratio = out->least = 0;
+  out->damping_ratio = out->least = out->prestrain = 0;
   out->mode = "translation";
   if (!find_limit(&l, out)) out->limit = 0;
   lanczos_free(&l);

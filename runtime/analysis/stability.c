@@ -125,6 +125,11 @@ static crystal crystal_of(const pl_law *law, const double *parameters,
   return c;
 }
 
+bool stability_at_rest(const step_limit *limit) {
+  const double turning = 8; /* twice what the two examples have at most, over the prestrain */
+  return limit->least >= STABILITY_LEAST - turning * limit->prestrain;
+}
+
 /* --- the limit -------------------------------------------------------------------------------- */
 
 double stability_rounded(double x) {
@@ -143,6 +148,7 @@ static void take_body(const pl_law *law, const double *parameters, const paramet
   body.at_surface = body.limit < out->limit * (1 - BODY_ACCURACY);
   if (body.at_surface) *out = body;
   out->least = body.least;
+  out->prestrain = body.prestrain;
 }
 
 /* No particle is lighter. */
@@ -158,7 +164,7 @@ static void find_limit(const pl_law *law, const double *parameters, const parame
                        const rows *w, step_limit *out) {
   bool definite;
   out->at_surface = false;
-  out->least = 0;
+  out->least = out->prestrain = 0;
   if (w->list || (fields && law->kind == PL_STATE)) {
     out->limit = 0;
     body_limit(law, parameters, fields ? fields->value : NULL, w, out);

@@ -66,10 +66,12 @@ static void push(const neighbourhood *n, double *const *moving, int b, double by
 }
 
 /* Column b of the blocks, -df/d(moved), of the particle in the middle. `even` [count] is what the
-   forces by a way and by its opposite have in common, over twice the way. */
+   forces by a way and by its opposite have in common, less those at rest, over twice the way. */
 static void probe(const neighbourhood *n, double *const *moving, double size, int b,
                   site_force *even, stencil *out) {
-  site_force *up = must_calloc(2 * (size_t)out->count, sizeof *up), *down = up + out->count;
+  site_force *up = must_calloc(3 * (size_t)out->count, sizeof *up), *down = up + out->count,
+             *rest = down + out->count;
+  push(n, moving, b, 0, out, rest);
   push(n, moving, b, size, out, up);
   push(n, moving, b, -size, out, down);
   for (int k = 0; k < out->count; k++)
@@ -78,7 +80,7 @@ static void probe(const neighbourhood *n, double *const *moving, double size, in
       double *value = even ? &block->stiffness[a][b] : &block->damping[a][b];
       *value -= up[k][a] / (2 * size);
       *value += down[k][a] / (2 * size);
-      if (even) even[k][a] = fabs(up[k][a] + down[k][a]) / (2 * size);
+      if (even) even[k][a] = fabs(up[k][a] + down[k][a] - 2 * rest[k][a]) / (2 * size);
     }
   free(up);
   moving[b][patch_site(n->p, n->reach)] = 0;

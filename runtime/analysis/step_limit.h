@@ -13,6 +13,8 @@ typedef struct step_limit {
   bool between;         /* instead, between bodies: "contact" or "a link" is faster than they are */
   bool at_surface;      /* the body as it stands has a faster mode than any wave of its lattice */
   double least; /* smallest eigenvalue of the virgin body over the largest; 0: none is negative */
+  double prestrain; /* largest force on a particle at rest, over what the stiffest mode takes for a
+                       way of a spacing: of the order of the rest stretch of its bonds */
 } step_limit;
 
 #endif

@@ -44,12 +44,22 @@ static double taken(const ledger *g, const ledger_laws *of, const body_totals *t
   return of->unchecked && of->families ? lost - g->lost : t->dissipated_state;
 }
 
-static bool is_sound(const ledger *g, const ledger_laws *of, double step, const body_totals *t,
-                     const load_look *look, double omega) {
-  const double phase = step * omega, part = pl_fmin(0.5 * phase * phase, 1);
+/* J: of all particles on ways that strain their bonds by what rounding leaves. */
+static double rounding_of(const body *state, double omega) {
+  const double strain = 1e-14, speed = strain * omega * state->lattice->spacing;
+  double mass = 0;
+  for (long p = 0; p < state->lattice->particle_count; p++)
+    mass += body_mass(state, 0, state->lattice->particle_site[p]);
+  return mass * speed * speed;
+}
+
+static bool is_sound(const ledger *g, const ledger_laws *of, const body *state,
+                     const body_totals *t, const load_look *look, double omega) {
+  const double phase = state->time_step * omega, part = pl_fmin(0.5 * phase * phase, 1);
   if (of->silent || (of->families && of->reads_rates)) return true;
-  return !(t->free + look->free + part * (t->stored + look->stored) <
-           -1e-6 * g->largest); /* numbers that are none are found by the next step */
+  const double sum = t->free + look->free + part * (t->stored + look->stored);
+  if (!(sum < -1e-6 * g->largest)) return true; /* no numbers are found by the next step */
+  return !(sum < -rounding_of(state, omega));
 }
 
 static double imbalance(const ledger *g, const ledger_laws *of, const double *terms) {
@@ -148,5 +158,5 @@ bool ledger_sample(ledger *g, const ledger_laws *of, const body *state, const lo
   terms[LEDGER_IMBALANCE] = imbalance(g, of, terms);
   g->largest = pl_fmax(pl_fmax(g->largest, fabs(kinetic)),
                        pl_fmax(fabs(stored), fabs(terms[LEDGER_EXTERNAL])));
-  return is_sound(g, of, state->time_step, &t, look, omega);
+  return is_sound(g, of, state, &t, look, omega);
 }

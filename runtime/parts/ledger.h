@@ -90,8 +90,8 @@ void ledger_add_law(ledger_laws *of, const pl_law *law, bool kept);
    (dt omega/2)^2 of what is stored is never negative. (That of both, with a factor of 1, would not
    tell: leapfrog steps that are too long leave it as it is while kinetic energy falls below 0
    without end and stored energy rises.) `omega` (rad/s) is the largest frequency that the step was
-   chosen by. Bonds may become twice as stiff; a millionth of the largest energy so far is rounding.
-   Where the stored energy is not known nothing is said. */
+   chosen by. Bonds may become twice as stiff; a millionth of the largest energy so far is rounding,
+   and so is what a strain of 1e-14 takes. Where the stored energy is not known nothing is said. */
 bool ledger_sample(ledger *g, const ledger_laws *of, const body *state, const loads *l,
                    const load_look *look, double omega, double terms[LEDGER_COUNT]);
 /* The step has changed: the same state was `before` and is `after`, as it is now. Kinetic energies

@@ -143,12 +143,12 @@ static interaction_law *laws_beside(const run_body *b) {
 
 /* Of several laws whose body flies apart, or has no stiffness, the first that does so alone. */
 static const run_law *law_at_fault(const run_body *b) {
-  if (b->limit.least >= STABILITY_LEAST && b->limit.limit > 0) return b->laws;
+  if (stability_at_rest(&b->limit) && b->limit.limit > 0) return b->laws;
   for (int n = 0; n < b->law_count; n++) {
     const run_law *l = &b->laws[n];
     step_limit alone = {0};
     stability_limit(l->law, l->parameters, l->planes, b->lattice_rows, &alone);
-    if (alone.least < STABILITY_LEAST || !(alone.limit > 0)) return l;
+    if (!stability_at_rest(&alone) || !(alone.limit > 0)) return l;
   }
   return b->laws;
 }

@@ -8,7 +8,7 @@
 
 static bool is_stable_at_rest(const step_limit *limit, const pl_law *law, span where,
                               diagnostics *d) {
-  if (limit->least >= STABILITY_LEAST) return true;
+  if (stability_at_rest(limit)) return true;
   diag_report(d, DIAG_STIFFNESS, where,
               "the virgin body is unstable at rest: by the law `%s` a small motion pushes its "
               "particles on (smallest eigenvalue of its stiffness %.3g of the largest)",
