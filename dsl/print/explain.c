@@ -295,6 +295,7 @@ static void put_quantities(const page *p) {
     put_name_cells(p, builtin_quantities[q].name);
     put_unit_cell(p, builtin_quantities[q].unit);
     put_text(p, builtin_quantities[q].meaning);
+    if (q == QUANTITY_STRETCH && p->law->rest) put_text(p, ", less the rest stretch");
     end_row(p);
   }
   end_table(p);
@@ -403,7 +404,7 @@ static bool is_rule(const stmt *s) {
   case STMT_INCLUDE:
     return false;
   default:
-    return s->value != NULL;
+    return s->value != NULL && !(s->total && !s->symbol->used);
   }
 }
 
@@ -451,15 +452,19 @@ static void put_head(const page *p) {
 
 static void put_steps(const page *p) {
   const symbol_list *fields = &p->law->fields;
-  bool returned = false;
+  bool returned = false, rates = false;
   if (fields->count == 0) return;
-  for (int k = 0; k < fields->count; k++)
-    returned = returned || (fields->items[k]->rule && fields->items[k]->rule->returned);
+  for (int k = 0; k < fields->count; k++) {
+    const stmt *rule = fields->items[k]->rule;
+    returned = returned || (rule && rule->returned);
+    rates = rates || (rule && rule->kind == STMT_RATE);
+  }
   fprintf(
       p->out,
       "\nThe index $(n)$ marks values of the present step, $(n-1)$ those at the end of the last "
-      "one%s; everything else is of the present step.\n",
-      returned ? ", $(*)$ those on the way back to the limit" : "");
+      "one%s; everything else is of the present step%s.\n",
+      returned ? ", $(*)$ those on the way back to the limit" : "",
+      rates ? ", a state without an index as it goes on within the step" : "");
 }
 
 void explain_law(const law *l, explain_form form, const law_choice *choices, int choice_count,

@@ -316,12 +316,10 @@ static void put_name(const law *l, const expr *e, FILE *out) {
     return;
   }
   const bool flows = math_has_step(s) && s->rule && s->rule->returned;
-  const bool in_time = math_has_step(s) && s->rule && s->rule->kind == STMT_RATE;
-  step_index step = !math_has_step(s) ? NO_STEP
-                    : !e->reads_old   ? STEP_NEW
-                    : in_time         ? NO_STEP
-                    : flows           ? STEP_FLOWING
-                                      : STEP_OLD;
+  step_index step = !math_has_step(s) || e->goes_on ? NO_STEP
+                    : !e->reads_old                 ? STEP_NEW
+                    : flows                         ? STEP_FLOWING
+                                                    : STEP_OLD;
   math_symbol(l, e->name, step, e->indexed, e->primed, out);
 }
 

@@ -773,6 +773,7 @@ law *law_check(arena *memory, tree *t, const source_set *sources, const law_choi
     mark_used(&ck);
     report_unused(&ck);
     report_increments(&ck);
+    mark_going_on(&ck);
     list_rules(&ck);
     split_fields(&ck);
     keep_rates(&ck);

@@ -1,5 +1,6 @@
 #include "dsl/semantics/order.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -130,6 +131,60 @@ void report_undefined(checker *ck, const expr *e, entry *target) {
   complain(ck, DIAG_UNDEFINED, e->name_where, "`%s` is used above its definition", e->name);
   diag_note(ck->d, target->symbol.where, "`%s` is defined here", e->name);
   diag_hint(ck->d, "move its definition up");
+}
+
+/* --- rates ------------------------------------------------------------------------------------ */
+
+/* x = (stretch - v)/tau
+   rate v = x
+
+   In x, too, v is the state as it goes on. Upward from the last line each one hands what it belongs
+   to on to the names that it reads, as bits; states beyond the 63rd share one. */
+typedef struct going {
+  uint64_t *rates;       /* [statements] whose rates the line belongs to */
+  const symbol **owners; /* [64] the states of the bits */
+  int owner_count;
+} going;
+
+static uint64_t bit_of(going *g, const symbol *state) {
+  enum { LAST = 63 };
+  int k = 0;
+  while (k < g->owner_count && k < LAST && g->owners[k] != state)
+    k++;
+  if (k == g->owner_count) g->owners[g->owner_count++] = state;
+  return (uint64_t)1 << k;
+}
+
+static bool has_rate(const symbol *s) {
+  return s->kind == SYMBOL_STATE && s->rule && s->rule->kind == STMT_RATE;
+}
+
+static void hand_on(going *g, uint64_t rates, expr *e) {
+  if (!e) return;
+  const symbol *s = e->kind == EXPR_NAME ? e->symbol : NULL;
+  if (s && has_rate(s)) e->goes_on = e->reads_old && (rates & bit_of(g, s));
+  if (s && s->kind == SYMBOL_DEFINED && entry_of(s)->declared_at >= 0)
+    g->rates[entry_of(s)->declared_at] |= rates;
+  hand_on(g, rates, e->left);
+  hand_on(g, rates, e->right);
+  for (int k = 0; k < e->argument_count; k++)
+    hand_on(g, rates, e->arguments[k].value);
+  for (int k = 0; k < e->case_count; k++) {
+    hand_on(g, rates, e->cases[k].value);
+    hand_on(g, rates, e->cases[k].guard);
+  }
+}
+
+void mark_going_on(checker *ck) {
+  const symbol *owners[64];
+  going g = {.owners = owners};
+  g.rates = must_calloc((size_t)ck->statement_count + 1, sizeof *g.rates);
+  for (int i = ck->statement_count - 1; i >= 0; i--) {
+    const stmt *s = ck->statements[i];
+    if (s->kind == STMT_RATE && s->symbol) g.rates[i] |= bit_of(&g, s->symbol);
+    if (g.rates[i]) hand_on(&g, g.rates[i], s->value);
+  }
+  free(g.rates);
 }
 
 /* --- what has no effect ----------------------------------------------------------------------- */

@@ -161,6 +161,7 @@ struct expr {
   struct symbol *symbol; /* NAME: what it refers to; CALL: a user's function */
   int builtin;           /* CALL: enum builtin_function of builtins.h, or -1 */
   bool reads_old;        /* NAME of a state or damage: value of the last step */
+  bool goes_on;          /* NAME of a state in what its rate is made of: as it goes on in time */
   bool open;             /* unit and shape are not known, because of a hole or an error */
   dimension dim;
   enum shape shape;

@@ -22,6 +22,7 @@
 #include "generator/drive/drive_point.h"
 #include "generator/drive/drive_table.h"
 #include "generator/drive/drive_write.h"
+#include "generator/drive/driven_fields.h"
 #include "generator/drive/driven_law.h"
 #include "generator/drive/explain_bad.h"
 #include "generator/drive/explain_point.h"
@@ -175,20 +176,57 @@ static bool read_input(driving *r) {
 
 /* --- what came out ---------------------------------------------------------------------------- */
 
-/* With the states of the row before. */
+/* What a row of the table was computed from: the states of the row before, the parameters with the
+   law's fields at its time, and by how much that went on, s. */
+typedef struct origin {
+  double *states, *parameters, advance;
+} origin;
+
+static origin origin_of(const driving *r, long row) {
+  const drive_table *t = &r->table;
+  const double *time = t->columns[DRIVE_COLUMN_TIME].values;
+  const size_t parameters = (size_t)r->of.law->parameter_count;
+  origin o = {.states = must_calloc((size_t)t->fields + 1, sizeof *o.states),
+              .parameters = must_calloc(parameters + 1, sizeof *o.parameters),
+              .advance = row ? time[row] - time[row - 1] : 0};
+  for (int f = 0; f < t->fields; f++)
+    o.states[f] = row ? t->columns[t->law_column + f].values[row - 1] : r->of.initial[f];
+  memcpy(o.parameters, r->of.parameters, parameters * sizeof *o.parameters);
+  driven_fields_at(r->in, r->of.law, time[row], o.parameters);
+  return o;
+}
+
+static void origin_free(origin *o) {
+  free(o->states);
+  free(o->parameters);
+}
+
 static void explain_bad_point(const driving *r, long row) {
   const drive_table *t = &r->table;
   double strain[PL_MAX_STRAINS];
-  double *fields = must_calloc((size_t)t->fields + 1, sizeof *fields);
+  origin from = origin_of(r, row);
   for (int k = 0; k < PL_STRAINS(r->of.law->dimensions); k++)
     strain[k] = t->columns[1 + k].values[row];
-  for (int f = 0; f < t->fields; f++)
-    fields[f] = row ? t->columns[t->law_column + f].values[row - 1] : r->of.initial[f];
-  const double *time = t->columns[DRIVE_COLUMN_TIME].values;
-  const asked_point at = {strain, fields, r->in->point.cell_size,
-                          row ? time[row] - time[row - 1] : 1, row ? time[row] - time[row - 1] : 0};
-  explain_point(r->of.model.plan, r->of.parameters, &at, stderr);
-  free(fields);
+  const asked_point at = {strain, from.states, r->in->point.cell_size, row ? from.advance : 1,
+                          from.advance};
+  explain_point(r->of.model.plan, from.parameters, &at, stderr);
+  origin_free(&from);
+}
+
+static void explain_bad_bond(const driving *r, long row) {
+  const drive_table *t = &r->table;
+  origin from = origin_of(r, row);
+  const bad_state at = {.stretch = t->columns[DRIVE_COLUMN_STRETCH].values[row],
+                        .stretch_rate = t->columns[DRIVE_COLUMN_STRETCH_RATE].values[row],
+                        .theta_i = t->columns[DRIVE_COLUMN_THETA_I].values[row],
+                        .theta_j = t->columns[DRIVE_COLUMN_THETA_J].values[row],
+                        .advance = from.advance,
+                        .fields = from.states,
+                        .field_count = t->fields};
+  pl_bond_class bonds;
+  if (drive_bond_class(r->in, material_density(r->of.law, from.parameters), &bonds))
+    explain_bad(r->of.model.plan, from.parameters, &bonds, &at, stderr);
+  origin_free(&from);
 }
 
 static void report_bad(const driving *r) {
@@ -201,20 +239,7 @@ static void report_bad(const driving *r) {
             t->columns[DRIVE_COLUMN_TIME].values[row], t->columns[t->way].name,
             t->columns[t->way].values[row]);
   if (t->of == DRIVE_OF_POINTS) explain_bad_point(r, row);
-  if (t->of != DRIVE_OF_BONDS) return;
-  double *fields = must_calloc((size_t)t->fields + 1, sizeof *fields);
-  for (int f = 0; f < t->fields; f++)
-    fields[f] = row ? t->columns[DRIVE_COLUMN_LAW + f].values[row - 1] : r->of.initial[f];
-  bad_state at = {.stretch = t->columns[DRIVE_COLUMN_STRETCH].values[row],
-                  .stretch_rate = t->columns[DRIVE_COLUMN_STRETCH_RATE].values[row],
-                  .theta_i = t->columns[DRIVE_COLUMN_THETA_I].values[row],
-                  .theta_j = t->columns[DRIVE_COLUMN_THETA_J].values[row],
-                  .fields = fields,
-                  .field_count = t->fields};
-  pl_bond_class bonds;
-  if (drive_bond_class(r->in, material_density(r->of.law, r->of.parameters), &bonds))
-    explain_bad(r->of.model.plan, r->of.parameters, &bonds, &at, stderr);
-  free(fields);
+  if (t->of == DRIVE_OF_BONDS) explain_bad_bond(r, row);
 }
 
 static void describe(const driving *r) {

@@ -9,6 +9,7 @@
 #include "generator/drive/drive_table.h"
 #include "generator/drive/driven_fields.h"
 #include "runtime/analysis/implied.h"
+#include "runtime/analysis/material.h"
 #include "runtime/simulation/simulation.h"
 
 enum { LANES = PL_LANES };
@@ -200,8 +201,35 @@ static const char *const last_names[] = {
 #undef X
 };
 
-static void table_open(drive_table *t, const pl_law *kernel, long room) {
-  int count = DRIVE_COLUMN_LAW + kernel->field_count + kernel->output_count + DRIVE_ENERGY_COUNT;
+static bool has_own(const pl_law *kernel, const char *name) {
+  for (int k = 0; k < kernel->field_count; k++)
+    if (strcmp(kernel->fields[k].name, name) == 0) return true;
+  for (int k = 0; k < kernel->output_count; k++)
+    if (strcmp(kernel->outputs[k].name, name) == 0) return true;
+  for (int k = 0; k < kernel->parameter_count; k++)
+    if (material_is_given(kernel, k) && strcmp(kernel->parameters[k].name, name) == 0) return true;
+  return false;
+}
+
+/* Whether bonds of the law never have it: they do not turn, or not about themselves. */
+static bool is_absent(const pl_law *kernel, int k) {
+  const bool twist = k == DRIVE_COLUMN_TWIST || k == DRIVE_COLUMN_T;
+  const bool turn = k == DRIVE_COLUMN_THETA_I || k == DRIVE_COLUMN_THETA_J ||
+                    k == DRIVE_COLUMN_M_I || k == DRIVE_COLUMN_M_J;
+  return (twist && kernel->dof < 4) || (turn && kernel->dof < 3);
+}
+
+/* Where a law measures `stretch` from a rest stretch, that of a path is what it calls the total.
+   The temperature of a law without twist is `T`. */
+static const char *name_of_column(drive_table *t, const law *l, const pl_law *kernel, int k) {
+  if (k == DRIVE_COLUMN_STRETCH && l->rest) return "total_stretch";
+  const bool gives_way = is_absent(kernel, k) && has_own(kernel, first_names[k]);
+  return gives_way ? arena_printf(t->memory, "bond_%s", first_names[k]) : first_names[k];
+}
+
+static void table_open(drive_table *t, const law *l, const pl_law *kernel, long room) {
+  int count = DRIVE_COLUMN_LAW + kernel->field_count + kernel->output_count +
+              driven_fields_count(kernel) + DRIVE_ENERGY_COUNT;
   *t = (drive_table){.memory = arena_new(),
                      .way = DRIVE_COLUMN_STRETCH,
                      .force = DRIVE_COLUMN_N,
@@ -210,17 +238,18 @@ static void table_open(drive_table *t, const pl_law *kernel, long room) {
                      .bad_row = -1};
   t->columns = arena_alloc(t->memory, (size_t)count * sizeof *t->columns);
   for (int k = 0; k < DRIVE_COLUMN_LAW; k++)
-    drive_add_column(t, first_names[k], first_units[k], room);
+    drive_add_column(t, name_of_column(t, l, kernel, k), first_units[k], room);
   for (int k = 0; k < kernel->field_count; k++)
     drive_add_column(t, kernel->fields[k].name, kernel->fields[k].unit, room);
   for (int k = 0; k < kernel->output_count; k++)
     drive_add_column(t, kernel->outputs[k].name, kernel->outputs[k].unit, room);
+  driven_fields_add(t, kernel, room);
   for (int k = 0; k < DRIVE_ENERGY_COUNT; k++)
     drive_add_column(t, last_names[k], "J", room);
 }
 
-void drive_columns(const pl_law *kernel, drive_table *out) {
-  table_open(out, kernel, 0);
+void drive_columns(const law *l, const pl_law *kernel, drive_table *out) {
+  table_open(out, l, kernel, 0);
 }
 
 /* --- the march -------------------------------------------------------------------------------- */
@@ -248,6 +277,7 @@ static void put_row(marching *m, double time) {
     t->columns[c++].values[row] = m->driven_bond.field[f][0];
   for (int f = 0; f < kernel->output_count; f++)
     t->columns[c++].values[row] = m->driven_bond.observed[1 + f][0];
+  c = driven_fields_put(t, kernel, m->driven_bond.parameters, c, row);
   double *e = m->energy;
   e[DRIVE_ENERGY_DISSIPATED] =
       e[DRIVE_ENERGY_DISSIPATED_DAMAGE] + e[DRIVE_ENERGY_DISSIPATED_DAMPING];
@@ -335,8 +365,8 @@ bool drive_bond_class(const drive_input *in, double rho, pl_bond_class *out) {
   return true;
 }
 
-bool drive_run(const drive_input *in, const pl_law *kernel, const double *parameters,
-               const double *initial, drive_table *out, diagnostics *d) {
+bool drive_run(const drive_input *in, const law *l, const pl_law *kernel,
+               const double *parameters, const double *initial, drive_table *out, diagnostics *d) {
   long count;
   pl_bond_class bonds;
   if (!drive_bond_class(in, material_density(kernel, parameters), &bonds)) {
@@ -346,7 +376,7 @@ bool drive_run(const drive_input *in, const pl_law *kernel, const double *parame
   }
   double *t = drive_times(in, &count);
   marching m = {.in = in, .table = out};
-  table_open(out, kernel, count);
+  table_open(out, l, kernel, count);
   bond_open(&m.driven_bond, kernel, parameters, &bonds);
   for (int f = 0; f < kernel->field_count; f++)
     m.driven_bond.field[f][0] = initial[f];

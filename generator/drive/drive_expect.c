@@ -63,7 +63,11 @@ static int find_column(const judge *j, const drive_expect *e, const char *name) 
     names[k] = t->columns[k].name;
   diag_report(j->d, DIAG_UNKNOWN_NAME, quantity_where(e), "the table has no column `%s`",
               deck_shown(j->memory, name));
-  deck_suggest(j->d, name, names, t->column_count, "the columns are");
+  if (strcmp(name, "stretch") == 0 && j->model->law->rest)
+    diag_hint(j->d, "the law's `stretch` is less its rest stretch: give it an output, `output e = "
+                    "stretch`; that of the path is `total_stretch`");
+  else
+    deck_suggest(j->d, name, names, t->column_count, "the columns are");
   return -1;
 }
 

@@ -218,7 +218,7 @@ enum { STORED, DISSIPATED, EXTERNAL, ENERGIES };
 
 static void table_open(drive_table *t, const pl_law *kernel, int neighbours, long room) {
   const int parts = part_count(kernel->dimensions);
-  int count = 1 + 3 * parts + neighbours + ENERGIES;
+  int count = 1 + 3 * parts + neighbours + driven_fields_count(kernel) + ENERGIES;
   for (int f = 0; f < kernel->field_count; f++)
     count += value_count(&kernel->fields[f], neighbours);
   for (int f = 0; f < kernel->output_count; f++)
@@ -239,6 +239,7 @@ static void table_open(drive_table *t, const pl_law *kernel, int neighbours, lon
   t->fields = t->column_count - t->law_column;
   for (int f = 0; f < kernel->output_count; f++)
     add_values(t, &kernel->outputs[f], neighbours, room);
+  driven_fields_add(t, kernel, room);
   for (int k = 0; k < ENERGIES; k++)
     drive_add_column(t, energy_names[k], "J", room);
 }
@@ -290,7 +291,7 @@ static void put_values(const driven_particle *r, drive_table *t, int *c, const p
 }
 
 static void put_row(const driven_particle *r, drive_table *t, double time, const state *s,
-                    const double *energy) {
+                    const double *given, const double *energy) {
   const pl_law *kernel = r->kernel;
   const double *of_state[] = {s->strain, s->rate, s->stress};
   int c = 0;
@@ -305,6 +306,7 @@ static void put_row(const driven_particle *r, drive_table *t, double time, const
     put_values(r, t, &c, &kernel->fields[f], r->law->field[f]);
   for (int f = 0; f < kernel->output_count; f++)
     put_values(r, t, &c, &kernel->outputs[f], r->law->observed[1 + f]);
+  c = driven_fields_put(t, kernel, given, c, t->rows);
   for (int k = 0; k < ENERGIES; k++)
     t->columns[c++].values[t->rows] = energy[k];
   for (int k = 0; k < t->column_count; k++)
@@ -379,7 +381,7 @@ bool drive_family_run(const drive_input *in, const law *l, const pl_law *kernel,
     energy[STORED] = r.law->observed[0][r.site];
     energy[EXTERNAL] += k ? work_between(&r, &before, &now) : energy[STORED];
     energy[DISSIPATED] = energy[EXTERNAL] - energy[STORED];
-    put_row(&r, out, t[k], &now, energy);
+    put_row(&r, out, t[k], &now, now_given, energy);
     before = now;
   }
   free(t);

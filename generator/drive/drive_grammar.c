@@ -238,7 +238,7 @@ static const deck_key_info expect_keys[] = {
      .unit = "1",
      .fallback = "= the end",
      AT(expect, at_stretch),
-     .doc = "of a column: when the stretch first takes this value"},
+     .doc = "of a column: when that of the path first takes this value"},
     {.name = "after",
      .type = DECK_REAL,
      .unit = "s",

@@ -46,7 +46,8 @@ static void table_open(drive_table *t, const drive_input *in, const pl_law *kern
   const int dimensions = kernel->dimensions, strains = PL_STRAINS(dimensions),
             stresses = PL_STRESSES(dimensions), driven = first_driven(in, dimensions);
   const int count =
-      2 + 2 * strains + stresses + kernel->field_count + kernel->output_count + DRIVE_ENERGY_COUNT;
+      2 + 2 * strains + stresses + kernel->field_count + kernel->output_count +
+      driven_fields_count(kernel) + DRIVE_ENERGY_COUNT;
   *t = (drive_table){.memory = arena_new(), .of = DRIVE_OF_POINTS, .bad_row = -1};
   t->columns = arena_alloc(t->memory, (size_t)count * sizeof *t->columns);
   drive_add_column(t, "time", "s", room);
@@ -62,6 +63,7 @@ static void table_open(drive_table *t, const drive_input *in, const pl_law *kern
     drive_add_column(t, kernel->fields[f].name, kernel->fields[f].unit, room);
   for (int f = 0; f < kernel->output_count; f++)
     drive_add_column(t, kernel->outputs[f].name, kernel->outputs[f].unit, room);
+  driven_fields_add(t, kernel, room);
   for (int k = 0; k < DRIVE_ENERGY_COUNT; k++)
     drive_add_column(t, energy_names[k], "J/m^3", room);
 }
@@ -109,6 +111,7 @@ static void put_row(marching *m, double time) {
     put(t, &c, m->point.old_field[f], 1);
   for (int f = 0; f < kernel->output_count; f++)
     put(t, &c, m->point.observed[1 + f], 1);
+  c = driven_fields_put(t, kernel, m->parameters, c, t->rows);
   put(t, &c, e, DRIVE_ENERGY_COUNT);
   for (int k = 0; k < t->column_count; k++)
     if (!isfinite(t->columns[k].values[t->rows])) t->bad_row = t->rows;

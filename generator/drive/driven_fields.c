@@ -90,3 +90,23 @@ bool driven_fields_at(const drive_input *in, const pl_law *law, double time, dou
     values[find_parameter(law, in->given[k].name)] = time_function_at(&in->given[k].f, time);
   return in->given_count > 0;
 }
+
+int driven_fields_count(const pl_law *law) {
+  int count = 0;
+  for (int p = 0; p < law->parameter_count; p++)
+    count += material_is_given(law, p);
+  return count;
+}
+
+void driven_fields_add(drive_table *t, const pl_law *law, long room) {
+  for (int p = 0; p < law->parameter_count; p++)
+    if (material_is_given(law, p))
+      drive_add_column(t, law->parameters[p].name, law->parameters[p].unit, room);
+}
+
+int driven_fields_put(drive_table *t, const pl_law *law, const double *values, int column,
+                      long row) {
+  for (int p = 0; p < law->parameter_count; p++)
+    if (material_is_given(law, p)) t->columns[column++].values[row] = values[p];
+  return column;
+}

@@ -259,7 +259,7 @@ void driven_law_columns(const driven_law *r, drive_table *out) {
   else if (driven_law_kind(r) == DRIVE_OF_POINTS)
     drive_point_columns(r->in, r->law, out);
   else
-    drive_columns(r->law, out);
+    drive_columns(r->model.law, r->law, out);
 }
 
 bool driven_law_march(const driven_law *r, drive_table *out, drive_band *band) {
@@ -270,7 +270,7 @@ bool driven_law_march(const driven_law *r, drive_table *out, drive_band *band) {
   case DRIVE_OF_POINTS:
     return drive_point_run(r->in, r->law, r->parameters, r->initial, out, band, r->said);
   default:
-    return drive_run(r->in, r->law, r->parameters, r->initial, out, r->said);
+    return drive_run(r->in, r->model.law, r->law, r->parameters, r->initial, out, r->said);
   }
 }
 

@@ -69,7 +69,7 @@ static bool run(const driver *r, const drive_input *in, const double *initial, d
   if (r->of == DRIVE_OF_POINTS)
     return drive_point_suits(in, r->kernel, d) &&
            drive_point_run(in, r->kernel, r->parameters, initial, t, &band, d);
-  return drive_run(in, r->kernel, r->parameters, initial, t, d);
+  return drive_run(in, r->m->law, r->kernel, r->parameters, initial, t, d);
 }
 
 /* False where the path is none, or its answer no number. The table is to be freed where it has

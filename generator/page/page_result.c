@@ -236,11 +236,11 @@ static bool is_of_modes(const page_result *p) {
 }
 
 const char *page_time_name(const page_result *p) {
-  return p->quasi_static ? "time of the deck" : is_of_modes(p) ? "mode" : "time";
+  return is_of_modes(p) ? "mode" : "time";
 }
 
 const char *page_time_unit(const page_result *p) {
-  return p->quasi_static || is_of_modes(p) ? "1" : "s";
+  return is_of_modes(p) ? "1" : "s";
 }
 
 const char *page_moment(const page_result *p, double time, char text[PAGE_MOMENT]) {

@@ -4,8 +4,8 @@
 
 #include "generator/report/run_state.h"
 
-/* "t = 4.1 ms"; in quasi-static runs, whose time is only an order, "increment 170 of 480": the
-   run's state at a time of the deck, s. */
+/* "t = 4.1 ms"; in quasi-static runs "increment 170 of 480": the run's state at a time of the deck,
+   s. */
 enum { MOMENT_TEXT = 80 };
 const char *moment(const run *r, double time, char text[MOMENT_TEXT]);
 

@@ -9,6 +9,7 @@
 #include "generator/report/report_bodies.h"
 #include "generator/report/report_laws.h"
 #include "generator/report/report_mesh.h"
+#include "runtime/base/quantity.h"
 #include "runtime/parts/run_body.h"
 
 static int lattice_of(const run *r, const char *region_name) {
@@ -182,6 +183,7 @@ static void announce_accepted(const run *r) {
 
 void announce(const run *r) {
   const deck_simulation *s = &simulation_deck(r->simulation)->simulation;
+  char when[TIME_TEXT];
   printf("%s\n", s->title ? s->title : r->options->deck_path);
   for (int k = 0; k < r->deck->lattice_count; k++) {
     if (deck_lattice_is_mesh(&r->deck->lattices[k])) {
@@ -204,7 +206,7 @@ void announce(const run *r) {
   if (r->deck->relaxation.increments > 0)
     announce_increments(r);
   else
-    printf("  time       %.6g ms in %ld steps of ", 1e3 * s->end_time,
+    printf("  time       %s in %ld steps of ", time_text(s->end_time, 6, when),
            simulation_step_count(r->simulation));
   if (!r->deck->relaxation.solved) announce_step(r);
   announce_shrinking(r);

@@ -11,6 +11,7 @@
 #include "dsl/base/elementary.h"
 #include "generator/kernel/document.h"
 #include "generator/results/result_table.h"
+#include "runtime/base/quantity.h"
 #include "runtime/result/result_fields.h"
 #include "runtime/result/result_find.h"
 #include "runtime/result/result_names.h"
@@ -208,8 +209,9 @@ static void locate_sample(finding *f, const time_axis *x, const double *a, const
   f->time = x->time[0][row];
   f->values[0] = a[row];
   f->values[1] = x->same ? b[row] : value_at(x, b, f->time, &(long){0});
-  snprintf(f->place, sizeof f->place, "  t = %.6g ms: %.9g and %.9g", 1e3 * f->time, f->values[0],
-           f->values[1]);
+  char when[TIME_TEXT];
+  snprintf(f->place, sizeof f->place, "  t = %s: %.9g and %.9g", time_text(f->time, 6, when),
+           f->values[0], f->values[1]);
 }
 
 /* A series that is not checked in one of the results says nothing about the other's. */
@@ -259,9 +261,10 @@ static void compare_ends(comparison_run *c, const time_axis *x) {
   finding f = finding_of("time", "s", &g);
   for (int k = 0; k < 2; k++)
     f.values[k] = x->time[k][last[k]];
+  char ends[2][TIME_TEXT];
   snprintf(f.place, sizeof f.place,
-           "  %ld samples to %.6g ms and %ld to %.6g ms; compared at the times of the first",
-           x->count[0], 1e3 * f.values[0], x->count[1], 1e3 * f.values[1]);
+           "  %ld samples to %s and %ld to %s; compared at the times of the first", x->count[0],
+           time_text(f.values[0], 6, ends[0]), x->count[1], time_text(f.values[1], 6, ends[1]));
   report(c, &f);
 }
 
@@ -380,10 +383,11 @@ static bool same_instant(const frame_context *x, long frame) {
 
 /* Frames are compared by number: of runs that end at other times they are not of one instant. */
 static int write_instant(char *text, size_t size, const frame_context *x, long frame) {
-  const double a = 1e3 * x->time[0][frame], b = 1e3 * x->time[1][frame];
-  return same_instant(x, frame)
-             ? snprintf(text, size, "  frame %ld, t = %.6g ms, ", frame, a)
-             : snprintf(text, size, "  frame %ld, t = %.6g and %.6g ms, ", frame, a, b);
+  char a[TIME_TEXT], b[TIME_TEXT];
+  time_text(x->time[0][frame], 6, a);
+  time_text(x->time[1][frame], 6, b);
+  return same_instant(x, frame) ? snprintf(text, size, "  frame %ld, t = %s, ", frame, a)
+                                : snprintf(text, size, "  frame %ld, t = %s and %s, ", frame, a, b);
 }
 
 static void locate_row(finding *f, const frame_context *x) {
@@ -492,8 +496,9 @@ static void compare_frame_times(comparison_run *c, const frame_context *x) {
     f.frame = g.frame;
     for (int k = 0; k < 2; k++)
       f.values[k] = x->time[k][g.frame];
-    snprintf(f.place, sizeof f.place, "  frame %ld: %.6g and %.6g ms", g.frame, 1e3 * f.values[0],
-             1e3 * f.values[1]);
+    char times[2][TIME_TEXT];
+    snprintf(f.place, sizeof f.place, "  frame %ld: %s and %s", g.frame,
+             time_text(f.values[0], 6, times[0]), time_text(f.values[1], 6, times[1]));
     report(c, &f);
   }
   if (x->frames[0] == x->frames[1]) return;

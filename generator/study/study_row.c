@@ -93,7 +93,6 @@ static bool read_curve(arena *a, result_file *f, const char *x, const char *y, s
   row->x = series_of(a, f, row->x_name, &counts[0], &row->x_unit);
   row->y = row->x ? series_of(a, f, row->y_name, &counts[1], &row->y_unit) : NULL;
   if (!row->y) return false;
-  if (strcmp(row->x_name, "time") == 0 && result_is_quasi_static(f)) row->x_unit = "1";
   for (int k = 0; k < 2; k++)
     row->count = counts[k] < row->count ? counts[k] : row->count;
   const long most = peak_of(row->y, row->count);

@@ -15,6 +15,17 @@ bool quantity_begins(const char *text) {
   return isdigit((unsigned char)*text);
 }
 
+const char *time_text(double time, int digits, char text[TIME_TEXT]) {
+  const double hour = 3600, size = fabs(time);
+  if (size >= hour)
+    snprintf(text, TIME_TEXT, "%.*g h", digits, time / hour);
+  else if (size >= 10)
+    snprintf(text, TIME_TEXT, "%.*g s", digits, time);
+  else
+    snprintf(text, TIME_TEXT, "%.*g ms", digits, 1e3 * time);
+  return text;
+}
+
 bool quantity_read(const char *text, size_t length, const char *si_unit, double *value) {
   char part[LONGEST + 1], *end;
   const char *bad;

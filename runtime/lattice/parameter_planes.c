@@ -9,6 +9,7 @@
 #include "dsl/base/elementary.h"
 #include "dsl/base/hash.h"
 #include "dsl/semantics/formula.h"
+#include "runtime/base/quantity.h"
 #include "runtime/lattice/placed_values.h"
 #include "runtime/lattice/random_field.h"
 #include "runtime/lattice/rows_select.h"
@@ -482,9 +483,9 @@ static int plane_of(const pl_law *law, int parameter) {
 /* "in the bond from (x, y) mm to (x, y) mm", perhaps " at 2 ms" */
 static void name_place(const value_sources *s, const value_place *at, char *text, size_t size) {
   const rows *w = s->places->rows;
-  char ends[2][ROWS_PLACE_TEXT], when[40] = "";
+  char ends[2][ROWS_PLACE_TEXT], when[TIME_TEXT + 8] = "", shown[TIME_TEXT];
   double here[3];
-  if (s->time > 0) snprintf(when, sizeof when, " at %.4g ms", 1e3 * s->time);
+  if (s->time > 0) snprintf(when, sizeof when, " at %s", time_text(s->time, 4, shown));
   rows_place(w, at->site, here);
   rows_place_text(w->dimensions, here, ends[0]);
   if (at->partner < 0) {

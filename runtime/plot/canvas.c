@@ -137,6 +137,7 @@ const char *readable_unit(const char *si_unit, double largest, double *factor) {
                {"J", "J", 1, 0.5},
                {"J", "mJ", 1e3, 5e-4},
                {"J", "µJ", 1e6, 0},
+               {"s", "h", 1 / 3600., 3600},
                {"s", "s", 1, 0.5},
                {"s", "ms", 1e3, 5e-4},
                {"s", "µs", 1e6, 0},

@@ -13,7 +13,6 @@
 #include "runtime/plot/plot_beside.h"
 #include "runtime/plot/plot_curve.h"
 #include "runtime/result/result_file.h"
-#include "runtime/result/result_find.h"
 #include "runtime/result/result_read.h"
 
 enum { MOST_CURVES = 64 };
@@ -46,7 +45,6 @@ static bool read_curve(result_file *f, const char *x, const char *y, curve *c, c
   c->x = result_read_series(f, x, &c->count, x_unit, 64, error, size);
   c->y = c->x ? result_read_series(f, y, &count_y, y_unit, 64, error, size) : NULL;
   if (c->x && c->y && count_y < c->count) c->count = count_y;
-  if (strcmp(x, "time") == 0 && result_is_quasi_static(f)) snprintf(x_unit, 64, "1");
   return c->x && c->y;
 }
 

@@ -40,7 +40,7 @@ typedef struct plot_frame {
   char shown[256];      /* what the values are, "stress_yy" */
   double time, factor, spacing;
   double *size;     /* [particles] of graded ones their spacing over the mean one; else NULL */
-  long increment;   /* of a quasi-static run, whose time means nothing; -1: a dynamic one */
+  long increment;   /* of a quasi-static run; -1: a dynamic one */
   double frequency; /* Hz: of the mode that the frame is, whose number is `time`; NaN: of none */
 } plot_frame;
 

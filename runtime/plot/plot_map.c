@@ -358,10 +358,11 @@ static void draw_mark_legend(canvas *c, const sheet *s, const char *mark) {
 /* --- head and foot ---------------------------------------------------------------------------- */
 
 static void say_when(const plot_frame *f, char *text, size_t size) {
+  char shown[TIME_TEXT];
   if (!isnan(f->frequency))
     snprintf(text, size, "mode %.0f: %.5g Hz", f->time, f->frequency);
   else if (f->increment < 0)
-    snprintf(text, size, "t = %.5g ms", 1e3 * f->time);
+    snprintf(text, size, "t = %s", time_text(f->time, 5, shown));
   else
     snprintf(text, size, "increment %ld", f->increment);
 }

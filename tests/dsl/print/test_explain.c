@@ -136,6 +136,30 @@ static void steps_are_marked(void **state) {
                "\\mathit{stretch}$$\n");
 }
 
+/* The state of a rate goes on, in names above, too; another one is old above its rule. */
+static void rates_are_equations_in_time(void **state) {
+  (void)state;
+#define CHAIN                                                                                      \
+  "state v = 0\nstate w = 0\nz = stretch - v\nrate v = (z - w)/2 [s]\nrate w = (v - w)/2 [s]\n"     \
+  "y = v + w"
+  assert_reads(CHAIN, "$$z = \\mathit{stretch} - v$$");
+  assert_reads(CHAIN, "\\mathrm{d}t}\\,v = \\frac{z - w^{(n-1)}}{2\\,\\mathrm{s}}$$");
+  assert_reads(CHAIN, "\\mathrm{d}t}\\,w = \\frac{v^{(n)} - w}{2\\,\\mathrm{s}}$$");
+  assert_reads(CHAIN, "$$y = v^{(n)} + w^{(n)}$$");
+  assert_reads(CHAIN, "a state without an index as it goes on within the step.");
+  assert_reads("state v = 0\ny = 2*v\nrate v = stretch/2 [s]", "$$y = 2\\,v^{(n-1)}$$");
+#undef CHAIN
+}
+
+static void stretch_is_measured_from_the_rest(void **state) {
+  (void)state;
+  assert_reads("state v = 0\nrest stretch = v\nrate v = stretch/2 [s]",
+               "change of bond length over reference length, less the rest stretch |");
+  assert_reads("state v = 0\nrest stretch = v\nrate v = stretch/2 [s]",
+               "\\mathit{rest}_{\\mathrm{stretch}} = v^{(n-1)}$$\n\n$$\\frac{");
+  assert_reads("output y = stretch", "change of bond length over reference length |");
+}
+
 static void units_read_as_formulas(void **state) {
   (void)state;
   static const struct {
@@ -298,6 +322,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(expressions_read_as_formulas),
       cmocka_unit_test(steps_are_marked),
+      cmocka_unit_test(rates_are_equations_in_time),
+      cmocka_unit_test(stretch_is_measured_from_the_rest),
       cmocka_unit_test(units_read_as_formulas),
       cmocka_unit_test(descriptions_are_escaped),
       cmocka_unit_test(documents_are_as_expected),

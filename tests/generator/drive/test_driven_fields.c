@@ -93,6 +93,72 @@ static void forces_follow_the_field(void **state) {
   expect(w, "drive path.nml", 0, "2 of 2 expectations hold");
 }
 
+/* The table has the fields, driven or not, between outputs and energies. */
+static void the_table_has_the_fields(void **state) {
+  static const char *const laws[][3] = {
+      {"bond", "stretch", "&bond area = '400 mm^2' /\n&expect quantity = 'T' at_time = 0.5 value = "
+                          "'543 K' /\n&output picture = 'T.svg' x = 'T' /\n"},
+      {"point", "strain_xx", "&expect quantity = 'stress_xx at peak T' formula = "
+                             "'E/0.9*1e-4' /\n"},
+      {"family", "strain_xx", "&expect quantity = 'final T' formula = 'seen' /\n"}};
+  workplace *w = *state;
+  write_laws(w);
+  for (int k = 0; k < 3; k++) {
+    write_path(w, laws[k][0], laws[k][1], 10, k ? laws[k][2] : "");
+    if (k == 0) {
+      char text[1000];
+      snprintf(text, sizeof text, "&simulation steps = 10 /\n&material model = 'bond.plm' /\n" BOTH "%s",
+               "stretch", laws[k][2]);
+      write_text(w, "path.nml", text);
+    }
+    expect(w, "drive path.nml", 0, "1 of 1 expectations hold");
+  }
+  assert_true(exists(w, "T.svg"));
+  write_text(w, "path.nml", "&bond area = '400 mm^2' /\n&material model = 'bond.plm' /\n"
+                            "&path quantity = 'stretch' times = 0, 1 values = 0, 1e-4 /\n"
+                            "&expect quantity = 'T' value = '293 K' /\n");
+  expect(w, "drive path.nml", 0, "1 of 1 expectations hold");
+}
+
+/* `stretch` is the law's, less the rest stretch, or nothing; that of the path is the total. */
+static void stretch_has_one_meaning(void **state) {
+  workplace *w = *state;
+  write_text(w, "dry.plm",
+             "model dry\n  law central bond\n  parameter rho = 2323 [kg/m^3] in (0, inf)\n"
+             "  parameter k = 1e-3 in [0, 0.01]\n  field h on particle = 1 in [0, 1]\n"
+             "  rest stretch = -k*(1 - h)\n  force N = 1 [MN]*stretch\n  output e = stretch\n"
+             "end model\n");
+#define DRY                                                                                        \
+  "&material model = 'dry.plm' /\n"                                                                \
+  "&path quantity = 'stretch' times = 0, 1 values = 0, 1e-4 /\n"                                   \
+  "&path field = 'h' times = 0, 1 values = 1, 0.5 /\n"
+  write_text(w, "path.nml",
+             DRY "&expect quantity = 'final e' formula = 'stretch' /\n"
+                 "&expect quantity = 'final e' value = 6e-4 /\n"
+                 "&expect quantity = 'final total_stretch' formula = 'total_stretch' /\n"
+                 "&expect quantity = 'N' at_stretch = 5e-5 formula = '1 [MN]*(5e-5 + k/4)' /\n");
+  expect(w, "drive path.nml", 0, "4 of 4 expectations hold");
+  write_text(w, "path.nml", DRY "&expect quantity = 'final stretch' formula = 'stretch' /\n");
+  expect(w, "drive path.nml", 1, "that of the path is `total_stretch`");
+}
+
+/* What is explained is the step that went wrong, with its length and what the fields are then. */
+static void what_goes_wrong_is_found(void **state) {
+  workplace *w = *state;
+  write_text(w, "root.plm",
+             "model root\n  law central bond\n  parameter rho = 2323 [kg/m^3] in (0, inf)\n"
+             "  field h on particle = 1 in [0, 1]\n  state v on bond = 0\n"
+             "  rate v = sign(stretch - v)*sqrt(abs(stretch - v))/2 [s]\n  low = sqrt(h - 0.5)\n"
+             "  force N = 1 [MN]*(stretch - v)*low\nend model\n");
+#define STRETCHED "&material model = 'root.plm' /\n&path quantity = 'stretch' "
+  write_text(w, "path.nml", STRETCHED "times = 0, 1, 401 values = 0, 1e-3, 1e-3 /\n"
+                                      "&simulation steps = 4 /\n");
+  expect(w, "drive path.nml", 2, "root.plm:6: the law's `v` stops being finite there");
+  write_text(w, "path.nml", STRETCHED "times = 0, 1e-6 values = 0, 1e-3 /\n"
+                                      "&path field = 'h' times = 0, 1e-6 values = 1, 0 /\n");
+  expect(w, "drive path.nml", 2, "root.plm:7: the law's `low` stops being finite there");
+}
+
 /* Work of the force less what is stored at the end: integral of E x dx less E x^2/2, and what the
    field took is the rest; the imbalance is the error of trapezoids. */
 static void the_balance_holds(void **state) {
@@ -146,6 +212,8 @@ static void what_cannot_be_is_told(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up_workplace, tear_down_workplace)
-      TEST(forces_follow_the_field), TEST(the_balance_holds), TEST(what_cannot_be_is_told)};
+      TEST(forces_follow_the_field),  TEST(the_table_has_the_fields),
+      TEST(stretch_has_one_meaning), TEST(what_goes_wrong_is_found),
+      TEST(the_balance_holds),       TEST(what_cannot_be_is_told)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

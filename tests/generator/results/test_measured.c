@@ -92,10 +92,11 @@ static void directions(void **state) {
 
 /* --- a result and tables ---------------------------------------------------------------------- */
 
-/* Load 1000 N/s over 1 s, at 5 samples; cmod 2 mm/s. */
-static void make_result(const workplace *w) {
+/* Load 1000 N over `end` (s), at 5 samples; cmod 2 mm. A quasi-static run keeps its steps. */
+static void make_result_of(const workplace *w, double end, bool quasi_static) {
   char error[512];
-  double u[2 * PARTICLES], omega[BONDS], time[SAMPLES], load[SAMPLES], cmod[SAMPLES];
+  double u[2 * PARTICLES], omega[BONDS], time[SAMPLES], load[SAMPLES], cmod[SAMPLES],
+      steps[SAMPLES] = {0};
   const double *values[] = {u, omega};
   const result_header h = small_header(in_workplace(w, "a.h5"));
   result *r = small_begin(&h, error, sizeof error);
@@ -103,23 +104,28 @@ static void make_result(const workplace *w) {
   small_frame(0, u, omega);
   assert_true(result_frame(r, 0, values, error, sizeof error));
   for (int k = 0; k < SAMPLES; k++) {
-    time[k] = 0.25 * k;
-    load[k] = 1000 * time[k];
-    cmod[k] = 2e-3 * time[k];
+    time[k] = 0.25 * k * end;
+    load[k] = 250 * k;
+    cmod[k] = 0.5e-3 * k;
   }
   const result_series series[] = {{.name = "load", .unit = "N", .values = load},
                                   {.name = "energy/kinetic", .unit = "J", .values = load},
-                                  {.name = "cmod", .unit = "m", .values = cmod}};
+                                  {.name = "cmod", .unit = "m", .values = cmod},
+                                  {.name = "relaxation_steps", .unit = "1", .values = steps}};
   const result_ending e = {.ended = "at the end",
                            .dt = 1e-3,
                            .steps = 42,
                            .time = time,
                            .history_count = SAMPLES,
                            .series = series,
-                           .series_count = 3};
+                           .series_count = quasi_static ? 4 : 3};
   assert_true(result_finish(r, &e, error, sizeof error));
   result_discard(r);
   result_close(r);
+}
+
+static void make_result(const workplace *w) {
+  make_result_of(w, 1, false);
 }
 
 #define LAB                                                                                        \
@@ -237,6 +243,24 @@ static void units_are_those_of_the_axes(void **state) {
   same_pictures(w, "si.svg", "other.svg", false);
 }
 
+/* Creep in increments: its time is in s as in every result, is drawn in hours, and meets tables. */
+static void quasi_static_runs_have_time(void **state) {
+  workplace *w = *state;
+  make_result_of(w, 36000, true);
+  write_text(w, "lab.csv", "time [h], load [N]\n2.5, 250\n7.5, 760\n");
+  static const run_line list[] = {
+      {"plot a.h5 --x-unit h -o hours.svg", 0, "written"},
+      {"plot a.h5 -o own.svg", 0, "written"},
+      {"plot a.h5 --x-unit s -o seconds.svg", 0, "written"},
+      {"plot a.h5 --data lab.csv -o lab.svg", 0, "written"},
+      {"compare a.h5 lab.csv", 2, "time = 7.5 h: 750 and 760\n"},
+      {"compare a.h5 lab.csv", 2, "compared over time from 2.5 to 7.5 h\n"},
+  };
+  expect_all(w, list, COUNT(list));
+  same_pictures(w, "hours.svg", "own.svg", true);
+  same_pictures(w, "hours.svg", "seconds.svg", false);
+}
+
 static void mistakes_of_plot(void **state) {
   workplace *w = *state;
   make_result(w);
@@ -277,6 +301,7 @@ int main(void) {
       IN_WORKPLACE(a_curve_is_compared_with_a_table),
       IN_WORKPLACE(points_bands_and_lines_stand_where_they_should),
       IN_WORKPLACE(units_are_those_of_the_axes),
+      IN_WORKPLACE(quasi_static_runs_have_time),
       IN_WORKPLACE(mistakes_of_plot)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -58,12 +58,24 @@ static void a_quantity_begins_as_a_number(void **state) {
                quantity_begins("e5"));
 }
 
+static void times_are_read_at_a_glance(void **state) {
+  (void)state;
+  char text[TIME_TEXT];
+  assert_string_equal(time_text(0, 5, text), "0 ms");
+  assert_string_equal(time_text(4.09987654e-3, 5, text), "4.0999 ms");
+  assert_string_equal(time_text(1, 6, text), "1000 ms");
+  assert_string_equal(time_text(10, 6, text), "10 s");
+  assert_string_equal(time_text(3600, 6, text), "1 h");
+  assert_string_equal(time_text(2.16e6, 6, text), "600 h");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(quantities_are_read_in_si),
       cmocka_unit_test(what_is_no_quantity_is_refused),
       cmocka_unit_test(the_length_ends_a_quantity),
       cmocka_unit_test(a_quantity_begins_as_a_number),
+      cmocka_unit_test(times_are_read_at_a_glance),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
