@@ -200,7 +200,7 @@ static ir_node of_both_ends(lowering *c, ir_node value) {
   for (ir_node n = 0; n < nodes; n++)
     if (marks[n] && (ir_operation(g, n) == IR_NEIGHBOUR || ir_is_reduction(ir_operation(g, n))))
       ir_substitution_add(s, n, n);
-  for (int k = v->sizes ? -1 : 0; k < v->varying_count; k++) {
+  for (int k = v->sizes ? -1 : 0; k < v->varying_count - v->before_count; k++) {
     const ir_node mine =
         k < 0 ? kinematics_input(g, ENDS_SIZE_I) : lower_own_parameter(c, v->varying[k]);
     ir_substitution_add(s, mine, half(g, ir_add(g, mine, ir_unary(g, IR_NEIGHBOUR, mine))));

@@ -18,6 +18,9 @@ typedef struct law_variation {
   const int *varying; /* [varying_count] ascending: law->parameters that differ in space: from bond
                          to bond of laws of bonds, else from particle to particle */
   int varying_count;
+  /* of these the last: fields that change in time, which stand before, too, as they were a step
+     ago; read by ledgers alone */
+  int before_count;
   bool masses; /* particles have masses of their own */
   bool shares; /* force state and energy are those of a particle's share (pl_family) */
   bool sizes;  /* `spacing` and `horizon` are a particle's own (pl_family) */

@@ -10,6 +10,7 @@
 #include "generator/lower/lower_inputs.h"
 #include "generator/lower/lowering.h"
 #include "generator/lower/point_inputs.h"
+#include "generator/plan/plan_given.h"
 #include "generator/plan/plan_losses.h"
 #include "generator/plan/plan_roots.h"
 #include "generator/plan/point_rest.h"
@@ -279,6 +280,11 @@ static force_fields stress_fields(planner *p) {
     is_old = is_old && used == old;
     is_new = is_new && (old == IR_NONE || used == with_new_fields(p, old));
   }
+  for (int k = 0; k < TENSOR_COUNT && has_rest(p); k++) {
+    const ir_node used = p->step.rest_strain[k], old = p->rest_at_hand[k];
+    is_old = is_old && used == old;
+    is_new = is_new && used == with_new_fields(p, old);
+  }
   return is_new ? FORCES_OF_NEW : is_old ? FORCES_OF_OLD : FORCES_OF_BOTH;
 }
 
@@ -457,6 +463,18 @@ static ir_node lost_to_states(planner *p, const seen_points *t) {
   return ir_add(g, lost, ir_mul(g, half_step, ir_sub(g, still, after)));
 }
 
+static ir_node given_by_rest(const planner *p, const seen_points *t) {
+  const int rests = has_rest(p) ? TENSOR_COUNT : 0;
+  if (!plan_rest_changes(p->plan, p->rest_at_hand, rests)) return ir_constant(p->graph, 0);
+  return plan_given_by_rest(p->plan, &(rest_energy){.stored = t->stored,
+                                                    .power = t->still_power,
+                                                    .stand_in = p->frozen.rest_strain,
+                                                    .rest = p->rest_at_hand,
+                                                    .rests = rests,
+                                                    .new_fields = p->step.fields,
+                                                    .forces = t->stress});
+}
+
 /* Lost to rates: their power over the step. */
 static void plan_ledger(planner *p, const seen_points *t, segment *a) {
   ir *g = p->graph;
@@ -465,6 +483,9 @@ static void plan_ledger(planner *p, const seen_points *t, segment *a) {
   const ir_node step = kinematics_input(g, ENDS_TIME_STEP);
   want(p, a, ir_mul(g, with_new_fields(p, t->rate_power), step), TO_DISSIPATED_RATE,
        PL_LOST_TO_RATES);
+  const ir_node given = given_by_rest(p, t);
+  p->plan->works_at_rest = !ir_is_number(g, given, 0);
+  if (p->plan->works_at_rest) want(p, a, given, TO_GIVEN_BY_REST, PL_GIVEN_BY_REST);
 }
 
 static void plan_observe(planner *p, const seen_points *t, segment *a) {
@@ -609,16 +630,6 @@ static void measure_from_rest(planner *p, seen_points *t) {
   free(all);
 }
 
-/* The rest strain reads states. */
-static bool rest_follows_states(planner *p) {
-  bool follows = false;
-  for (int k = 0; k < p->plan->law->fields.count && has_rest(p); k++) {
-    const ir_node field = lower_field(p->graph, p->plan->law, k);
-    follows = follows || rewrite_depends(p->graph, p->rest_at_hand, TENSOR_COUNT, &field, 1);
-  }
-  return follows;
-}
-
 bool plan_points(kernel_plan *plan, diagnostics *d) {
   planner p = {.plan = plan, .graph = plan->graph, .z = IR_NONE, .z_rate = IR_NONE};
   const law_variation *v = &plan->variation;
@@ -639,7 +650,6 @@ bool plan_points(kernel_plan *plan, diagnostics *d) {
   plan->stores = plan->law->nonconservative == NULL;
   if (p.frozen.W == IR_NONE && !works_along_z(&p)) p.frozen.W = work_from_rest(&p);
   if (p.frozen.W == IR_NONE && plan->stores) return tell_no_energy(plan->law, d);
-  plan->stores = plan->stores && !rest_follows_states(&p);
   fail_points(&p);
   seen_points seen = {stored_energy(&p), rate_power(&p), still_power(&p), stress};
   measure_from_rest(&p, &seen);
