@@ -37,7 +37,7 @@
 
 #include <stdint.h>
 
-#define PL_KERNEL_ABI 18
+#define PL_KERNEL_ABI 19
 #define PL_MAX_DOF    6
 #define PL_MAX_PLANES 12 /* force planes a bond */
 #define PL_STATE_INPUTS                                                                            \
@@ -52,8 +52,9 @@
 #define PL_HAS(record, member)                                                                     \
   ((uint32_t)((const char *)(&(record)->member + 1) - (const char *)(record)) <= (record)->size)
 
-/* What a law loses: to states and damage; to rate terms. */
-enum pl_loss { PL_LOST_TO_STATES = 0, PL_LOST_TO_RATES = 1, PL_LOSSES = 2 };
+/* What a law loses: to states and damage; to rate terms. And what it is given by a rest state, or
+   fields, that change; of laws with `works_at_rest` alone. */
+enum pl_loss { PL_LOST_TO_STATES = 0, PL_LOST_TO_RATES = 1, PL_GIVEN_BY_REST = 2, PL_LOSSES = 3 };
 enum pl_law_kind {
   PL_CENTRAL = 0,
   PL_MICROPOLAR = 1,
@@ -141,6 +142,9 @@ typedef struct pl_strip {
   /* s: `dt` of laws, by which the host's time has gone on from the state that `field` is of to this
      deformation; 0 in the first step, which finds how quickly states begin to change */
   double advance;
+  /* Of rows_ledger of a law with `works_at_rest`: [count] J, added to: what its rest state and
+     fields that change have given it in this step. */
+  double *given_by_rest;
 } pl_strip;
 
 /* Single states of a law of bonds. */
@@ -431,8 +435,10 @@ typedef struct pl_law {
   /* Parameters that strips and passes read bond by bond, or particle by particle; all else takes
      them as given to `prepare`. */
   int varying_count;
-  const int *varying; /* [varying_count] their places in `parameters` */
-  int varying_place;  /* pl_place: of laws of bonds on bonds, else on particles */
+  /* [varying_count] their places in `parameters`. One that stands there twice is a field that
+     changes in time: the later array has what it was a step ago. */
+  const int *varying;
+  int varying_place; /* pl_place: of laws of bonds on bonds, else on particles */
   int field_count;
   const pl_field *fields; /* [field_count] */
   int output_count;
@@ -542,6 +548,10 @@ typedef struct pl_law {
      `varying` stand in arrays, like all of these. */
   int given_count;
   const int32_t *given; /* [given_count] their places in `parameters` */
+
+  /* The rest state, or fields, change what the law stores: ledgers tell how much (PL_GIVEN_BY_REST).
+   */
+  int works_at_rest;
 } pl_law;
 
 /* The one symbol that a compiled kernel exports. */

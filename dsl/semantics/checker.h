@@ -79,7 +79,7 @@ typedef struct checker {
   bool reads_poisson; /* stress or strain of a family: its third direction follows from `nu` */
   span call_where;    /* the outermost call */
   int depth, expansions, searches, search_mark;
-  int rest_at;                 /* the line `rest stretch`, where law->rest is given */
+  int rest_at;                 /* the line `rest ...`, where law->rest is given */
   const char *of_whole_family; /* the function of a family's values whose argument is no name */
   bool too_deep, in_reduction;
   bool holes;          /* some `?` was met */

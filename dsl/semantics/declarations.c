@@ -261,20 +261,20 @@ static void declare_flow(checker *ck, stmt *s) {
             is_single(ck) ? placement_name(natural_place(ck)) : "neighbour");
 }
 
-/* Of bonds and families; a crack has no stretch, and what slips is measured by its slip. */
+/* Of bonds, families and points; a crack has neither, and what slips is measured by its slip. */
 static bool may_have_rest(checker *ck, const stmt *s) {
-  const law_kind kind = ck->tree->law;
-  const bool here = (builtin_quantities[QUANTITY_STRETCH].kinds & (1 << kind)) != 0;
-  const bool named = here && strcmp(s->rest_of, LAW_RESTING) == 0;
+  const char *resting = law_resting(ck->tree->law);
+  const bool named = resting && strcmp(s->rest_of, resting) == 0;
   if (named && (is_single(ck) || s->indexed)) return true;
-  if (!here)
-    complain(ck, DIAG_LAW_KIND, s->name_where, "a %s law has no `rest stretch`", law_word(ck));
+  if (!resting)
+    complain(ck, DIAG_LAW_KIND, s->name_where, "a %s law has no rest state", law_word(ck));
   else if (named)
-    complain(ck, DIAG_PLACEMENT, s->name_where, "each neighbour has a rest stretch");
+    complain(ck, DIAG_PLACEMENT, s->name_where, "each neighbour has a rest %s", resting);
   else
     complain(ck, DIAG_LAW_KIND, s->name_where, "there is a rest state of `%s` alone, not of `%s`",
-             LAW_RESTING, s->rest_of);
-  if (here) diag_hint(ck->d, "its form is `rest stretch%s = ...`", is_single(ck) ? "" : "[j]");
+             resting, s->rest_of);
+  if (resting)
+    diag_hint(ck->d, "its form is `rest %s%s = ...`", resting, is_single(ck) ? "" : "[j]");
   return false;
 }
 

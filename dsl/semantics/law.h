@@ -116,7 +116,7 @@ typedef struct law {
   const symbol *results[RESULT_COUNT];
   const symbol *rho;    /* the parameter `rho`, or NULL */
   const stmt *sized;    /* `require h in ...`, or NULL */
-  const symbol *rest;   /* `rest_stretch`, the stretch from which `stretch` is measured, or NULL */
+  const symbol *rest; /* `rest_stretch`, `rest_strain`, from which these are measured, or NULL */
   const symbol *failed; /* the damage of `failed when`, or NULL */
   const stmt **rules;   /* statements to evaluate each step, in order (constants first) */
   int rule_count;

@@ -173,14 +173,26 @@ static void set_type(const stmt *s, value v) {
   e->known = true;
 }
 
+/* A pure number of a bond, a tensor of a point. */
+static value check_rest(checker *ck, const stmt *s, value v) {
+  const bool tensor = ck->tree->law == LAW_CONTINUUM;
+  const shape wanted = tensor ? SHAPE_TENSOR : SHAPE_SCALAR;
+  if (expect(ck, s->value, v, dimension_of("1"), wanted,
+             tensor ? "the rest strain" : "the rest stretch")) {
+    v.shape = wanted; /* 0 may be either */
+    return v;
+  }
+  if (tensor && v.shape == SHAPE_SCALAR)
+    diag_hint(ck->d, "what is alike in all directions is times `tensor(1, 1, 1, 0)`");
+  return BROKEN;
+}
+
 static void check_definition(checker *ck, stmt *s) {
   entry *e = s->symbol ? entry_of(s->symbol) : NULL;
   if (s->rest_of && !e) return; /* it has been refused */
   bool field = e && (e->symbol.kind == SYMBOL_STATE || e->symbol.kind == SYMBOL_DAMAGE);
   value v = check_value(ck, s->value);
-  if (s->rest_of && !v.broken && !v.unknown &&
-      !expect(ck, s->value, v, dimension_of("1"), SHAPE_SCALAR, "the rest stretch"))
-    v = BROKEN;
+  if (s->rest_of && !v.broken && !v.unknown) v = check_rest(ck, s, v);
   if (field)
     check_field_rule(ck, s, e, v);
   else

@@ -297,18 +297,20 @@ static entry *find_argument(const checker *ck, const char *name) {
   return NULL;
 }
 
-/* Above its line there is no rest stretch yet, and that itself knows no motion. A function is
+/* Above its line there is no rest state yet, and that itself knows no motion. A function is
    checked where it is called. */
 static bool is_measured_from_rest(checker *ck, const expr *e, const symbol *s) {
-  const bool stretch = s->kind == SYMBOL_QUANTITY && s->index == QUANTITY_STRETCH;
-  if (!stretch || !ck->law->rest || ck->now > ck->rest_at || ck->now >= ck->statement_count ||
+  const bool moves =
+      s->kind == SYMBOL_QUANTITY && (s->index == QUANTITY_STRETCH || s->index == QUANTITY_STRAIN);
+  if (!moves || !ck->law->rest || ck->now > ck->rest_at || ck->now >= ck->statement_count ||
       ck->statements[ck->now]->kind == STMT_FUNCTION)
     return true;
   if (ck->now == ck->rest_at)
-    complain(ck, DIAG_PLACEMENT, e->where, "the rest stretch does not know the stretch");
+    complain(ck, DIAG_PLACEMENT, e->where, "the rest %s does not know the %s", s->name, s->name);
   else
-    complain(ck, DIAG_UNDEFINED, e->where, "`stretch` is read above the line `rest stretch`");
-  diag_note(ck->d, ck->law->rest->where, "from here on it is measured from the rest stretch");
+    complain(ck, DIAG_UNDEFINED, e->where, "`%s` is read above the line `rest %s`", s->name,
+             s->name);
+  diag_note(ck->d, ck->law->rest->where, "from here on it is measured from the rest %s", s->name);
   return false;
 }
 

@@ -159,9 +159,9 @@ void line_settings(parsing *p, const words *list, span where) {
 
 /* The first such line that the checker will take. */
 static bool may_rest(const parsing *p, const stmt *s) {
-  const law_kind kind = p->model->law;
-  return !p->model->rests && strcmp(s->rest_of, LAW_RESTING) == 0 && kind <= LAW_STATE &&
-         s->indexed == (kind == LAW_STATE);
+  const char *resting = law_resting(p->model->law);
+  return !p->model->rests && resting && strcmp(s->rest_of, resting) == 0 &&
+         s->indexed == (p->model->law == LAW_STATE);
 }
 
 bool line_statement(parsing *p, stmt *s, word text, span where) {

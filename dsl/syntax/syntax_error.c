@@ -441,7 +441,7 @@ static const struct {
     {T_RATE, "rate x = expression"},
     {T_OUTPUT, "output x = expression \"what it is\""},
     {T_NONCONSERVATIVE, "nonconservative \"why\""},
-    {T_REST, "rest stretch = expression"},
+    {T_REST, "rest stretch = expression` or, in a law of a continuum, `rest strain = expression"},
     {T_ACCEPT, "accept patch \"why\""},
     {T_INCLUDE, "include \"shared.plm\""},
 };

@@ -347,6 +347,11 @@ const char *law_kind_name(law_kind kind) {
   return names[kind];
 }
 
+const char *law_resting(law_kind kind) {
+  if (kind == LAW_CONTINUUM) return "strain";
+  return kind == LAW_SLIP_BOND || kind == LAW_CRACK ? NULL : "stretch";
+}
+
 void tree_dump(const tree *t, FILE *out) {
   fprintf(out, "model %s\n", t->name);
   dump_doc(t->doc, 1, out);

@@ -29,8 +29,6 @@ enum { VECTOR_COMPONENT_COUNT = 3 };
 #define LAW_ANISOTROPIC "anisotropic"
 /* The damage that `failed when ...` declares. */
 #define LAW_FAILED "failed"
-/* What has a rest state: `rest stretch = ...`. */
-#define LAW_RESTING "stretch"
 
 typedef enum expr_kind {
   EXPR_NUMBER, /* 30 [GPa] */
@@ -214,7 +212,7 @@ struct stmt {
   bool returned;    /* FLOW along ... returned */
   bool tensor;      /* STATE: begins at `tensor 0` or `deviator 0` */
   bool deviator;    /* STATE: begins at `deviator 0` */
-  const char *rest_of; /* DEFINITION: written `rest stretch = ...`, then `stretch`; else NULL */
+  const char *rest_of; /* DEFINITION: written `rest stretch = ...`, then `stretch`; or NULL */
   bool total;          /* DEFINITION: what follows from such a line */
   bool vector;      /* STATE: begins at `vector 0` */
   bool failure;     /* DAMAGE: written `failed when ...` */
@@ -243,6 +241,9 @@ typedef enum law_kind {
 } law_kind;
 
 const char *law_kind_name(law_kind kind);
+/* What has a rest state in such a law, as in `rest stretch = ...`: the stretch of a bond, the
+   strain of a point; NULL where nothing has. */
+const char *law_resting(law_kind kind);
 /* For hints: how to say which kind a law is. */
 #define LAW_LINES                                                                                  \
   "`law central bond`, `law micropolar bond`, `law slip bond`, `law state` or `law continuum`"
@@ -263,7 +264,7 @@ typedef struct tree {
   int setting_count;
   bool anisotropic; /* was in the line `for`; it does not stand among the settings */
   span anisotropic_where;
-  bool rests;  /* has a line `rest stretch` */
+  bool rests;  /* has a line `rest ...` */
   stmt *first; /* in the order written, included statements in place */
 } tree;
 

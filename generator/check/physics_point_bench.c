@@ -45,7 +45,7 @@ static void point_at_planes(point_bench *b) {
 bool point_bench_open(point_bench *b, law_setting setting) {
   b->setting = *b->law;
   b->setting.setting = setting;
-  b->plan = plan_kernel(&b->setting, b->said);
+  b->plan = plan_kernel_varying(&b->setting, &(law_variation){.measured = true}, b->said);
   if (!b->plan) return false;
   b->kernel = plan_interpreted(b->plan);
   b->reads_time = law_reads_time(&b->setting);

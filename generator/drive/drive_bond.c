@@ -28,14 +28,16 @@ typedef struct driven_bond {
   pl_bond_class bonds;
   double *parameters; /* at hand */
   double s, *uniforms, **field, **force, **observed;
-  double *displacement[2], *velocity[2], *lost_state, *lost_rate; /* of i, j: [dof][LANES] */
+  double *displacement[2], *velocity[2], *lost_state, *lost_rate,
+      *given; /* of i, j: [dof][LANES] */
   int64_t *flags;
   void *memory; /* of all arrays */
+  bool rests;   /* pl_law.works_at_rest */
   pl_strip strip;
 } driven_bond;
 
 typedef struct answer {
-  double N, M[2], T, lost_state, power; /* J; W: of the rate terms */
+  double N, M[2], T, lost_state, given, power; /* J, J; W: of the rate terms */
 } answer;
 
 static double **lanes(double **next, int count) {
@@ -54,8 +56,10 @@ static void *aligned(void *memory) {
 static void bond_open(driven_bond *r, const pl_law *kernel, const double *parameters,
                       const pl_bond_class *bonds) {
   int count =
-      kernel->field_count + kernel->force_planes + 1 + kernel->output_count + 4 * kernel->dof + 2;
-  *r = (driven_bond){.kernel = kernel, .s = bonds->s};
+      kernel->field_count + kernel->force_planes + 1 + kernel->output_count + 4 * kernel->dof + 3;
+  *r = (driven_bond){.kernel = kernel,
+                     .s = bonds->s,
+                     .rests = PL_HAS(kernel, works_at_rest) && kernel->works_at_rest};
   r->uniforms = must_calloc((size_t)kernel->uniform_count + 1, sizeof(double));
   r->memory = must_calloc((size_t)(count + 2) * LANES, sizeof(double));
   r->flags = aligned(r->memory);
@@ -70,6 +74,7 @@ static void bond_open(driven_bond *r, const pl_law *kernel, const double *parame
   }
   r->lost_state = next;
   r->lost_rate = next + LANES;
+  r->given = next + 2 * LANES;
   r->flags[0] = PL_PRESENT(0);
   r->strip = (pl_strip){.size = sizeof r->strip,
                         .count = LANES,
@@ -78,6 +83,7 @@ static void bond_open(driven_bond *r, const pl_law *kernel, const double *parame
                         .force = r->force,
                         .dissipated_state = r->lost_state,
                         .dissipated_rate = r->lost_rate,
+                        .given_by_rest = r->given,
                         .observed = r->observed,
                         .time_step = 1};
   for (int k = 0; k < kernel->dof; k++) {
@@ -122,9 +128,12 @@ static void bond_move(driven_bond *r, const motion *m) {
 /* Forces in a motion; state and damage go on. */
 static answer bond_step(driven_bond *r, const motion *m) {
   bond_move(r, m);
-  r->lost_state[0] = r->lost_rate[0] = 0;
+  r->lost_state[0] = r->lost_rate[0] = r->given[0] = 0;
   r->kernel->rows_ledger(r->kernel, r->uniforms, &r->strip);
-  answer a = {.N = r->force[0][0] + 0.0, .lost_state = r->lost_state[0], .power = r->lost_rate[0]};
+  answer a = {.N = r->force[0][0] + 0.0,
+              .lost_state = r->lost_state[0],
+              .given = r->given[0],
+              .power = r->lost_rate[0] / r->strip.time_step};
   for (int end = 0; end < 2 && r->kernel->dof > 2; end++)
     a.M[end] = r->force[2 + end][0] + 0.0;
   if (r->kernel->dof > 3) a.T = r->force[4][0] + 0.0;
@@ -313,7 +322,8 @@ static double given_by_fields(marching *m, const motion *at, double time, double
 
 /* Trapezoids throughout: work and rate losses between the step's ends, and what damage costs as the
    mean of what it costs at the deformation before and after, which is exact to second order and for
-   sudden changes between the two. What fields give is the mean of what they do at either end. */
+   sudden changes between the two. What fields give is the mean of what they do at either end; what a
+   rest state gives that follows states, and what these cost, is as the law books it. */
 static void next_row(marching *m, const motion *from, const motion *to, double time, double step) {
   double *e = m->energy;
   driven_bond *r = &m->driven_bond;
@@ -322,12 +332,14 @@ static void next_row(marching *m, const motion *from, const motion *to, double t
   answer before = same_rates(from, &m->at) ? m->forces : bond_probe(r, from);
   r->strip.time = time;
   r->strip.advance = step;
+  r->strip.time_step = step;
   bond_given(r, m->in, time);
   const double begins = m->in->given_count ? stored_energy(r, from) : e[DRIVE_ENERGY_STORED];
   e[DRIVE_ENERGY_EXTERNAL] += 0.5 * (begins - e[DRIVE_ENERGY_STORED]);
   answer after = bond_step(r, to);
-  double lost_before = begins - stored_energy(r, from);
+  const double lost_before = r->rests ? after.lost_state : begins - stored_energy(r, from);
   e[DRIVE_ENERGY_DISSIPATED_DAMAGE] += 0.5 * (lost_before + after.lost_state);
+  e[DRIVE_ENERGY_EXTERNAL] += after.given;
   e[DRIVE_ENERGY_DISSIPATED_DAMPING] += 0.5 * (before.power + after.power) * step;
   e[DRIVE_ENERGY_EXTERNAL] += 0.5 * (before.N + after.N) * (to->stretch - from->stretch) * r->s;
   for (int end = 0; end < 2; end++)

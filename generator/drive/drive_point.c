@@ -193,6 +193,7 @@ static void next_row(marching *m, const strained *from, const strained *to, cons
   e[DRIVE_ENERGY_DISSIPATED_DAMAGE] += after->lost[PL_LOST_TO_STATES];
   e[DRIVE_ENERGY_DISSIPATED_DAMPING] +=
       0.5 * (before.lost[PL_LOST_TO_RATES] + after->lost[PL_LOST_TO_RATES]);
+  e[DRIVE_ENERGY_EXTERNAL] += after->lost[PL_GIVEN_BY_REST];
   e[DRIVE_ENERGY_EXTERNAL] += work_between(&m->point, &before, after, from, to) +
                               0.5 * given_by_fields(m, to, time - to->step, time);
   e[DRIVE_ENERGY_STORED] = driven_point_observe(&m->point, to);

@@ -114,6 +114,7 @@ static void write_law(c_text *out, const kernel_plan *p) {
   if (p->variation.varying_count)
     c_text_add(out, "    .varying_count = %d,\n    .varying = law_varying,\n",
                p->variation.varying_count);
+  if (p->works_at_rest) c_text_add(out, "    .works_at_rest = 1,\n");
   if (given_count(p))
     c_text_add(out, "    .given_count = %d,\n    .given = law_given,\n", given_count(p));
   write_table(out, "field", "law_fields", p->law->fields.count);

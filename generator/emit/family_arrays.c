@@ -116,6 +116,7 @@ const char *family_root_array(const emitter *e, const segment_root *r, const fam
                [TO_FORCE] = {SAY_FORCE, SAY_FORCE_STATE},
                [TO_DISSIPATED_STATE] = {.own = SAY_LOST},
                [TO_DISSIPATED_RATE] = {.own = SAY_LOST},
+               [TO_GIVEN_BY_REST] = {.own = SAY_LOST},
                [TO_LINK] = {SAY_LINK, SAY_BOND_LINK},
                [TO_FIELD] = {SAY_NEW_FIELD, SAY_NEW_FIELD_TOWARD},
                [TO_OBSERVED] = {SAY_OBSERVED, SAY_OBSERVED_TOWARD},

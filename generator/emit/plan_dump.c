@@ -68,6 +68,8 @@ static const char *root_name(const kernel_plan *p, const segment_root *r, char *
     return "lost to states";
   case TO_DISSIPATED_RATE:
     return "lost to rates";
+  case TO_GIVEN_BY_REST:
+    return "given by rest";
   case TO_OBSERVED:
     return observed_name(p, r->index);
   case TO_TANGENT:

@@ -79,13 +79,11 @@ static const scope of_points = {
 /* --- results ---------------------------------------------------------------------------------- */
 
 static const char *array_of_root(emitter *e, const segment_root *r) {
-  static const word members[] = {[TO_FORCE] = SAY_POINT_STRESS,
-                                 [TO_FIELD] = SAY_POINT_NEW_FIELD,
-                                 [TO_DISSIPATED_STATE] = SAY_POINT_LOST,
-                                 [TO_DISSIPATED_RATE] = SAY_POINT_LOST,
-                                 [TO_OBSERVED] = SAY_POINT_OBSERVED,
-                                 [TO_TANGENT] = SAY_POINT_TANGENT,
-                                 [TO_OUT] = SAY_TIP_OUT};
+  static const word members[] = {
+      [TO_FORCE] = SAY_POINT_STRESS,          [TO_FIELD] = SAY_POINT_NEW_FIELD,
+      [TO_DISSIPATED_STATE] = SAY_POINT_LOST, [TO_DISSIPATED_RATE] = SAY_POINT_LOST,
+      [TO_GIVEN_BY_REST] = SAY_POINT_LOST,    [TO_OBSERVED] = SAY_POINT_OBSERVED,
+      [TO_TANGENT] = SAY_POINT_TANGENT,       [TO_OUT] = SAY_TIP_OUT};
   return spell(e, members[r->target], numeral(e, r->index));
 }
 

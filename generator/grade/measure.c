@@ -171,8 +171,9 @@ double measure_implied(arena *a, const exercise_item *item, const char *answer, 
 /* --- a run ------------------------------------------------------------------------------------ */
 
 static double largest_energy(result_file *f) {
-  static const char *const terms[] = {"energy/kinetic", "energy/stored", "energy/dissipated_damage",
-                                      "energy/dissipated_damping", "energy/external"};
+  static const char *const terms[] = {"energy/kinetic",           "energy/stored",
+                                      "energy/dissipated_damage", "energy/dissipated_damping",
+                                      "energy/external",          "energy/rest"};
   double most = 0;
   char unit_text[64], error[256];
   for (size_t k = 0; k < sizeof terms / sizeof *terms; k++) {

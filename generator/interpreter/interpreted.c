@@ -301,6 +301,7 @@ static void describe(interpreted *p) {
       .context = p,
   };
   describe_given(p);
+  p->law.works_at_rest = plan->works_at_rest;
   if (plan->form == FORM_STRIPS)
     describe_strips(p);
   else if (plan->form == FORM_POINTS)

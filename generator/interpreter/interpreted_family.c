@@ -172,6 +172,7 @@ static double *target_of(runner *r, const segment_root *root, const pl_family *f
                : f->force_state[root->index] + first + k * f->new_plane;
   case TO_DISSIPATED_STATE:
   case TO_DISSIPATED_RATE:
+  case TO_GIVEN_BY_REST:
     return f->lost[root->index] + first;
   case TO_OBSERVED:
     return f->observed[root->index] + first + (own ? 0 : k * f->new_plane);
@@ -205,6 +206,7 @@ static void store(runner *r, const segment_root *root, const double *value, cons
       break;
     case TO_DISSIPATED_STATE:
     case TO_DISSIPATED_RATE:
+    case TO_GIVEN_BY_REST:
       to[q] += value[q];
       break;
     case TO_LARGEST:

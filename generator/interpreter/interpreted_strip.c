@@ -67,6 +67,8 @@ static double *target_of(const segment_root *r, const pl_strip *s, bool *absent)
     return s->dissipated_state;
   case TO_DISSIPATED_RATE:
     return s->dissipated_rate;
+  case TO_GIVEN_BY_REST:
+    return s->given_by_rest;
   default:
     return s->observed[r->index];
   }
@@ -78,7 +80,7 @@ static void store(const segment_root *r, const pl_strip *s, long first, int coun
   const int64_t *flags = s->flags + first;
   const int64_t present = PL_PRESENT(s->direction);
   double *restrict to = target_of(r, s, &absent) + first;
-  if (r->target == TO_DISSIPATED_STATE || r->target == TO_DISSIPATED_RATE)
+  if (segment_is_loss(r))
     for (int k = 0; k < count; k++)
       to[k] += flags[k] & present ? from[k] : 0;
   else if (absent)

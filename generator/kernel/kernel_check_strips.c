@@ -37,7 +37,7 @@ typedef struct strip_arrays {
 
 static strip_arrays arrays_new(const pl_law *kernel) {
   strip_arrays a = {.law = kernel,
-                    .kept_planes = kernel->field_count + 2,
+                    .kept_planes = kernel->field_count + PL_LOSSES,
                     .motion = planes_new(MOTIONS, SITES + 1)};
   a.parameter = planes_new(kernel->varying_count, SITES);
   a.before = planes_new(a.kept_planes, SITES);
@@ -145,7 +145,8 @@ static pl_strip strip_of(const strip_arrays *a, int side) {
                 .force = a->force[side],
                 .observed = a->observed[side],
                 .dissipated_state = a->kept[side][fields],
-                .dissipated_rate = a->kept[side][fields + 1]};
+                .dissipated_rate = a->kept[side][fields + 1],
+                .given_by_rest = a->kept[side][fields + 2]};
   for (int k = 0; k < EACH; k++) {
     s.displacement_i[k] = a->motion[k];
     s.displacement_j[k] = a->motion[EACH + k] + 1;
@@ -170,7 +171,7 @@ static void run_pass(const law_readers *l, const strip_arrays *a, const strip_pa
 
 static void compare_pass(const strip_arrays *a, const strip_pass *p, comparison *c) {
   const pl_law *kernel = a->law;
-  const char *energies[2] = {"dissipated_state", "dissipated_rate"};
+  const char *energies[PL_LOSSES] = {"dissipated_state", "dissipated_rate", "given_by_rest"};
   for (int k = 0; p->task != PROGRAM_OBSERVE && k < kernel->force_planes; k++)
     comparison_add(c, p->name, "force", k, a->force[0][k], a->force[1][k], SITES);
   for (int k = 0; p->task == PROGRAM_OBSERVE && k <= kernel->output_count; k++)

@@ -9,6 +9,7 @@
 #include "dsl/syntax/parse.h"
 #include "generator/lower/lowered.h"
 #include "runtime/deck/bravais.h"
+#include "runtime/deck/deck_formula.h"
 
 enum { ERROR_LENGTH = 4096 };
 
@@ -322,11 +323,24 @@ static bool is_placed(const deck_material *m, const symbol *parameter) {
   return false;
 }
 
-/* The parameters that random fields, regions or formulas make differ, as the law orders them. */
+/* The same of a field that changes in time. */
+static bool changes_in_time(const deck_material *m, const symbol *parameter) {
+  for (int k = -1; k < m->regional_count; k++) {
+    const deck_material *of = k < 0 ? m : m->regional[k];
+    for (int n = 0; n < of->assignment_count; n++)
+      if (of->assignments[n].placed && deck_placed_changes(of->assignments[n].placed) &&
+          strcasecmp(of->assignments[n].name, parameter->name) == 0)
+        return true;
+  }
+  return false;
+}
+
+/* The parameters that random fields, regions or formulas make differ, as the law orders them; then
+   once more those that change in time. */
 static bool find_variation(const deck_material *m, const deck_lattice *l, model *out,
                            law_variation *v, diagnostics *said) {
   const symbol_list *all = &out->law->parameters;
-  int *varying = arena_alloc(out->memory, ((size_t)all->count + 1) * sizeof *varying);
+  int *varying = arena_alloc(out->memory, (2 * (size_t)all->count + 1) * sizeof *varying);
   bool good = true;
   *v = (law_variation){.varying = varying};
   for (int k = 0; k < m->varying_count; k++)
@@ -335,6 +349,9 @@ static bool find_variation(const deck_material *m, const deck_lattice *l, model 
     if (has_field(m, all->items[p]) || differs_by_region(m, all->items[p]) ||
         is_placed(m, all->items[p]))
       varying[v->varying_count++] = p;
+  for (int p = 0; p < all->count && good; p++)
+    if (changes_in_time(m, all->items[p])) varying[v->varying_count + v->before_count++] = p;
+  v->varying_count += v->before_count;
   v->shares = m->beside && out->law->tree->law == LAW_STATE;
   v->masses = m->beside;
   v->sizes = l && l->graded;

@@ -201,7 +201,7 @@ static ir_node of_both_ends(lowering *c, ir_node value) {
   for (ir_node n = 0; n < nodes; n++)
     if (marks[n] && (ir_operation(g, n) == IR_NEIGHBOUR || ir_is_reduction(ir_operation(g, n))))
       ir_substitution_add(s, n, n);
-  for (int k = v->sizes ? -1 : 0; k < v->varying_count; k++) {
+  for (int k = v->sizes ? -1 : 0; k < v->varying_count - v->before_count; k++) {
     const ir_node mine =
         k < 0 ? kinematics_input(g, ENDS_SIZE_I) : lower_own_parameter(c, v->varying[k]);
     ir_substitution_add(s, mine, half(g, ir_add(g, mine, ir_unary(g, IR_NEIGHBOUR, mine))));
@@ -465,10 +465,22 @@ static void lower_tip(lowering *c, lowered_law *out) {
   }
 }
 
+/* A stretch, or a strain that may be the number 0; what leaves the plane is none. */
+static void lower_rest_state(lowering *c, lowered_law *out) {
+  const components v = components_of(c, c->law->rest);
+  if (c->law->tree->law != LAW_CONTINUUM) {
+    out->rest = value_of(c, c->law->rest);
+    return;
+  }
+  for (int k = 0; k < LOWERED_STRESSES; k++)
+    out->rest_strain[k] =
+        lower_is_none(c->law, k) ? ir_constant(c->graph, 0) : v.of[v.count == 1 ? 0 : k];
+}
+
 static void lower_results(lowering *c, lowered_law *out) {
   const symbol_list *outputs = &c->law->outputs;
   out->W = result_node(c, RESULT_W);
-  if (c->law->rest) out->rest = value_of(c, c->law->rest);
+  if (c->law->rest) lower_rest_state(c, out);
   if (lower_is_state_law(c))
     lower_force_state(c, out);
   else if (c->law->tree->law == LAW_CONTINUUM)
@@ -551,10 +563,12 @@ static void resolve_fields(lowering *c, lowered_law *out) {
     pairs++;
   }
   ir_substitution_free(known);
-  ir_node *results[LOWERED_FORCES + 2];
+  ir_node *results[LOWERED_FORCES + 2 + LOWERED_STRESSES];
   int count = lowered_forces(out, results);
   if (out->W != IR_NONE) results[count++] = &out->W;
   if (out->rest != IR_NONE) results[count++] = &out->rest;
+  for (int k = 0; k < LOWERED_STRESSES && out->rest_strain[0] != IR_NONE; k++)
+    results[count++] = &out->rest_strain[k];
   for (int k = 0; k < count; k++)
     ir_substitute(g, results[k], 1, from, to, pairs, results[k]);
   ir_substitute(g, out->outputs, c->law->outputs.count, from, to, pairs, out->outputs);
@@ -565,12 +579,18 @@ static void resolve_fields(lowering *c, lowered_law *out) {
 
 /* By a state above, say. */
 static void refuse_moving_rest(lowering *c, const lowered_law *out) {
-  if (out->rest == IR_NONE) return;
-  ir_node moving[] = {lower_quantity(c->graph, QUANTITY_STRETCH),
-                      lower_quantity(c->graph, QUANTITY_STRETCH_RATE),
-                      lower_quantity(c->graph, QUANTITY_LENGTH)};
-  if (rewrite_depends(c->graph, &out->rest, 1, moving, 3))
+  ir *g = c->graph;
+  ir_node of_bond[] = {lower_quantity(g, QUANTITY_STRETCH),
+                       lower_quantity(g, QUANTITY_STRETCH_RATE),
+                       lower_quantity(g, QUANTITY_LENGTH)};
+  if (out->rest != IR_NONE && rewrite_depends(g, &out->rest, 1, of_bond, 3))
     lower_fail(c, c->law->rest->where, "the rest stretch may not follow the bond's own motion");
+  if (out->rest_strain[0] == IR_NONE) return;
+  ir_node of_point[2 * POINT_STRAINS];
+  for (int k = 0; k < 2 * POINT_STRAINS; k++)
+    of_point[k] = point_input_node(g, k);
+  if (rewrite_depends(g, out->rest_strain, LOWERED_STRESSES, of_point, 2 * POINT_STRAINS))
+    lower_fail(c, c->law->rest->where, "the rest strain may not follow the point's own motion");
 }
 
 /* Stands for the new value of field k until all rules are known. */
@@ -595,7 +615,7 @@ bool lower_law_varying(const law *l, ir *g, lower_mode mode, const law_variation
   for (int k = 0; k < FORCE_AXES; k++)
     out->F_of[k] = IR_NONE;
   for (int k = 0; k < LOWERED_STRESSES; k++)
-    out->sigma[k] = IR_NONE;
+    out->sigma[k] = out->rest_strain[k] = IR_NONE;
   for (int k = 0; k < LOWERED_TIP; k++)
     out->tip[k] = IR_NONE;
   c.text.rules = arena_alloc(memory, field_bytes);

@@ -140,6 +140,17 @@ ir_node lower_rate_power(ir *g, const law *l, const lowered_law *frozen, ir_node
   return power;
 }
 
+ir_node lower_still_power(ir *g, const law *l, const lowered_law *frozen, ir_node theta_rate_i,
+                          ir_node theta_rate_j, ir_node twist_rate) {
+  const energy_parts p = parts_at_zero_rate(g, l, frozen);
+  const ir_node length_rate = ir_mul(g, lower_quantity(g, QUANTITY_STRETCH_RATE), p.s),
+                rate[] = {length_rate, theta_rate_i, theta_rate_j, twist_rate};
+  ir_node power = IR_NONE;
+  for (int k = 0; k < p.count; k++)
+    power = add_some(g, power, ir_mul(g, p.force[k], rate[k]));
+  return power;
+}
+
 /* --- of a family ------------------------------------------------------------------------------ */
 
 /* By the stretch of the bond to j; its length is s (1 + stretch). */

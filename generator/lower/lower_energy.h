@@ -19,6 +19,10 @@ ir_node lower_stored_energy(ir *g, const law *l, const lowered_law *frozen);
 ir_node lower_rate_power(ir *g, const law *l, const lowered_law *frozen, ir_node theta_rate_i,
                          ir_node theta_rate_j, ir_node twist_rate);
 
+/* Power (W) of the results at zero rate, likewise. */
+ir_node lower_still_power(ir *g, const law *l, const lowered_law *frozen, ir_node theta_rate_i,
+                          ir_node theta_rate_j, ir_node twist_rate);
+
 /* Force state from `energy W` of a particle (IR_NONE after a message): bonds share it with the
    other side. */
 ir_node lower_force_state_of_energy(lowering *c, ir_node W);

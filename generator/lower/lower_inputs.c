@@ -31,6 +31,15 @@ ir_node lower_parameter(ir *g, const law *l, int k) {
   return ir_input(g, IR_FROM_PARAMETER, k, l->parameters.items[k]->name, ON_BODY);
 }
 
+ir_node lower_varying(ir *g, const law *l, const law_variation *v, int k) {
+  const law_kind kind = l->tree->law;
+  return ir_input(g, kind == LAW_STATE ? IR_FROM_PARTICLE_PARAMETER : IR_FROM_BOND_PARAMETER, k,
+                  l->parameters.items[v->varying[k]]->name,
+                  kind == LAW_CONTINUUM ? ON_POINT
+                  : kind == LAW_STATE   ? ON_PARTICLE
+                                        : ON_BOND);
+}
+
 ir_node lower_field(ir *g, const law *l, int k) {
   return ir_input(g, IR_FROM_FIELD, k, l->fields.items[k]->name, l->fields.items[k]->place);
 }

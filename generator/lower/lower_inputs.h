@@ -14,6 +14,8 @@ static inline int lower_bending_axes(const law *l) {
   return l->bends_in_space ? BENDING_AXES : 1;
 }
 ir_node lower_bending(ir *g, const law *l, builtin_quantity theta, int axis);
+/* What plane k of the parameters that differ in space has at a bond, a point or a particle. */
+ir_node lower_varying(ir *g, const law *l, const law_variation *v, int k);
 /* The input node of parameter or field k. */
 ir_node lower_parameter(ir *g, const law *l, int k);
 ir_node lower_field(ir *g, const law *l, int k);

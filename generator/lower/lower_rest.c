@@ -11,19 +11,19 @@ void rest_take_off(ir *g, const lowered_law *of, ir_node *nodes, int count) {
     if (nodes[k] != IR_NONE) ir_substitute(g, &nodes[k], 1, &stretch, &measured, 1, &nodes[k]);
 }
 
-static ir_node stand_in(ir *g, const law *l) {
+ir_node rest_stand_in(ir *g, const law *l) {
   return ir_input(g, IR_FROM_FIELD, l->fields.count, "rest", ON_BOND);
 }
 
 void rest_hold(ir *g, const law *l, const lowered_law *of, ir_node *node) {
   lowered_law held = *of;
-  if (of->rest != IR_NONE) held.rest = stand_in(g, l);
+  if (of->rest != IR_NONE) held.rest = rest_stand_in(g, l);
   rest_take_off(g, &held, node, 1);
 }
 
 ir_node rest_filled_in(ir *g, const law *l, ir_node rest, ir_node node) {
   if (rest == IR_NONE || node == IR_NONE) return node;
-  const ir_node from = stand_in(g, l);
+  const ir_node from = rest_stand_in(g, l);
   ir_substitute(g, &node, 1, &from, &rest, 1, &node);
   return node;
 }
@@ -36,13 +36,4 @@ void rest_take_off_law(ir *g, const law *l, lowered_law *of) {
   rest_take_off(g, of, &of->W, 1);
   rest_take_off(g, of, of->fields, l->fields.count);
   rest_take_off(g, of, of->outputs, l->outputs.count);
-}
-
-bool rest_changes(ir *g, const law *l, const lowered_law *of) {
-  bool changes = false;
-  for (int k = 0; k < l->fields.count && of->rest != IR_NONE; k++) {
-    const ir_node field = lower_field(g, l, k);
-    changes = changes || rewrite_depends(g, &of->rest, 1, &field, 1);
-  }
-  return changes;
 }

@@ -13,8 +13,7 @@ void rest_take_off_law(ir *g, const law *l, lowered_law *of);
 /* The same with a stand-in for the rest stretch, which may then be that of other states than the
    rest of the node. */
 void rest_hold(ir *g, const law *l, const lowered_law *of, ir_node *node);
+ir_node rest_stand_in(ir *g, const law *l);
 ir_node rest_filled_in(ir *g, const law *l, ir_node rest, ir_node node);
-/* Whether the rest stretch may change with time: it reads states. */
-bool rest_changes(ir *g, const law *l, const lowered_law *of);
 
 #endif

@@ -18,6 +18,9 @@ typedef struct law_variation {
   const int *varying; /* [varying_count] ascending: law->parameters that differ in space: from bond
                          to bond of laws of bonds, else from particle to particle */
   int varying_count;
+  /* of these the last: fields that change in time, which stand before, too, as they were a step
+     ago; read by ledgers alone */
+  int before_count;
   bool masses; /* particles have masses of their own */
   bool shares; /* force state and energy are those of a particle's share (pl_family) */
   bool sizes;  /* `spacing` and `horizon` are a particle's own (pl_family) */
@@ -25,6 +28,9 @@ typedef struct law_variation {
   /* what is needed only where something grows is computed everywhere (plan/seldom.h): for
      comparisons */
   bool everywhere;
+  /* strains of points are given as measured from the rest strain, none along z in plane strain:
+     for checks of what the law says of them */
+  bool measured;
 } law_variation;
 
 /* What became of the law's text (LOWER_STEP only), for checks that speak about it. */
@@ -73,8 +79,9 @@ typedef struct lowered_law {
   ir_node sigma[LOWERED_STRESSES]; /* of a continuum: xx, yy, zz, xy, yz, xz; Pa */
   ir_node tip[LOWERED_TIP];        /* of a crack */
   bool along_reference;            /* it acts along the reference bond */
-  ir_node rest;     /* stretch from which the input `stretch` of all this is measured; IR_NONE: 0 */
-  ir_node W;        /* the law's own `energy`, or IR_NONE */
+  ir_node rest; /* stretch from which the input `stretch` of all this is measured; IR_NONE: 0 */
+  ir_node rest_strain[LOWERED_STRESSES]; /* the same of strains, as sigma; all or none IR_NONE */
+  ir_node W;                             /* the law's own `energy`, or IR_NONE */
   ir_node *fields;  /* [law->fields.count] new values (LOWER_FROZEN: the inputs themselves) */
   ir_node *outputs; /* [law->outputs.count] */
   lowered_text text;

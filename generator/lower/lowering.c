@@ -37,14 +37,7 @@ static binding *place_of(const lowering *c, const symbol *s) {
 ir_node lower_own_parameter(const lowering *c, int k) {
   const law_variation *v = c->variation;
   for (int n = 0; n < v->varying_count; n++)
-    if (v->varying[n] == k) {
-      const bool families = lower_is_state_law(c), points = c->law->tree->law == LAW_CONTINUUM;
-      return ir_input(c->graph, families ? IR_FROM_PARTICLE_PARAMETER : IR_FROM_BOND_PARAMETER, n,
-                      c->law->parameters.items[k]->name,
-                      points     ? ON_POINT
-                      : families ? ON_PARTICLE
-                                 : ON_BOND);
-    }
+    if (v->varying[n] == k) return lower_varying(c->graph, c->law, v, n);
   return lower_parameter(c->graph, c->law, k);
 }
 

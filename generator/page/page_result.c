@@ -176,6 +176,7 @@ int page_series_find(const page_result *p, const char *name) {
 const char *page_series_words(const char *name) {
   static const char *const words[][2] = {
       {"energy/external", "external work"},
+      {"energy/rest", "work of rest states and fields"},
       {"energy/kinetic", "kinetic energy"},
       {"energy/stored", "stored energy"},
       {"energy/dissipated_damage", "dissipated by damage and states"},

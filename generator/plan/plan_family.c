@@ -12,6 +12,7 @@
 #include "generator/lower/lower_inputs.h"
 #include "generator/lower/lower_rest.h"
 #include "generator/plan/particle_parts.h"
+#include "generator/plan/plan_given.h"
 #include "generator/plan/plan_losses.h"
 #include "generator/plan/plan_roots.h"
 
@@ -186,8 +187,7 @@ static segment observe_roots(family_planner *p) {
   const symbol_list *outputs = &plan->law->outputs;
   segment r = {.root_count = 0};
   const ir_node stored = p->stored;
-  plan->stores = stored != IR_NONE && plan->law->nonconservative == NULL &&
-                 !rest_changes(p->g, plan->law, &p->frozen);
+  plan->stores = stored != IR_NONE && plan->law->nonconservative == NULL;
   plan_want(plan, &r, stored != IR_NONE ? stored : ir_constant(p->g, 0), TO_OBSERVED,
             OVER_PARTICLES, 0);
   for (int k = 0; k < outputs->count; k++)
@@ -196,17 +196,49 @@ static segment observe_roots(family_planner *p) {
   return r;
 }
 
-/* What is lost in the step with these roots; empty where nothing can be, or it is not known. */
-static segment loss_roots(family_planner *p, const law_energy *of, const segment *step) {
-  const int fields = p->plan->law->fields.count;
-  const bool loses = fields > 0 || p->plan->reads_rates;
+/* What is stored and the forces, with a stand-in for the rest stretch. */
+static void hold_rest(const family_planner *p, law_energy *of, lowered_law *held) {
+  ir_node *force[LOWERED_FORCES];
+  *held = p->frozen;
+  for (int k = lowered_forces(held, force) - 1; k >= 0; k--)
+    rest_hold(p->g, p->plan->law, &p->frozen, force[k]);
+  rest_hold(p->g, p->plan->law, &p->frozen, &of->stored);
+  of->frozen = held;
+}
+
+static ir_node given_by_rest(const family_planner *p, const law_energy *of,
+                             const ir_node *new_fields) {
+  const bool rests = p->frozen.rest != IR_NONE;
+  const ir_node stand_in = rests ? rest_stand_in(p->g, p->plan->law) : IR_NONE;
+  return plan_given_by_rest(p->plan, &(rest_energy){.stored = of->stored,
+                                                    .power = plan_still_power(p->plan, of),
+                                                    .stand_in = &stand_in,
+                                                    .rest = &p->frozen.rest,
+                                                    .rests = rests,
+                                                    .new_fields = new_fields,
+                                                    .forces = of->forces});
+}
+
+/* What is lost in the step with these roots, and given; empty where nothing can be, or it is not
+   known. */
+static segment loss_roots(family_planner *p, law_energy of, const segment *step) {
+  kernel_plan *plan = p->plan;
+  const int fields = plan->law->fields.count;
+  const bool rest_moves = plan_rest_changes(plan, &p->frozen.rest, p->frozen.rest != IR_NONE),
+             loses = fields > 0 || plan->reads_rates || rest_moves;
   ir_node lost[PL_LOSSES], *new_fields = must_alloc(((size_t)fields + 1) * sizeof *new_fields);
+  lowered_law held;
   segment r = {.root_count = 0};
   for (int k = 0; k < fields; k++)
     new_fields[k] = step->roots[k].node;
-  if (p->plan->stores && loses && plan_losses(p->plan, of, new_fields, lost))
-    for (int k = 0; k < PL_LOSSES; k++)
-      plan_want(p->plan, &r, lost[k], TO_DISSIPATED_STATE + k, OVER_PARTICLES, k);
+  hold_rest(p, &of, &held);
+  if (plan->stores && loses && plan_losses(plan, &of, new_fields, lost)) {
+    lost[PL_GIVEN_BY_REST] = rest_moves ? given_by_rest(p, &of, new_fields) : ir_constant(p->g, 0);
+    plan->works_at_rest = !ir_is_number(p->g, lost[PL_GIVEN_BY_REST], 0);
+    for (int k = 0; k < PL_LOSSES - !plan->works_at_rest; k++)
+      plan_want(plan, &r, rest_filled_in(p->g, plan->law, p->frozen.rest, lost[k]),
+                TO_DISSIPATED_STATE + k, OVER_PARTICLES, k);
+  }
   free(new_fields);
   return r;
 }
@@ -495,7 +527,7 @@ static void build_losses(family_planner *p, const segment *r, const program_moti
   kernel_plan *plan = p->plan;
   kernel_program *losses = &plan->programs[PROGRAM_LEDGER];
   program_build(losses, "losses", p->g, plan->memory, r, motion, SHARE_NOTHING, &plan->links);
-  plan->loses_by_own_fields = losses->pass_count == 1 &&
+  plan->loses_by_own_fields = losses->pass_count == 1 && !plan->works_at_rest &&
                               ir_is_number(p->g, r->roots[PL_LOST_TO_RATES].node, 0) &&
                               !program_reads(plan, losses, is_of_neighbours_fields);
 }
@@ -558,11 +590,10 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   share_reciprocals_of_roots(p.g, &observe);
   rewrite_last(plan, (segment *[]){&step, &observe}, 2);
   segment alone = alone_roots(&p, &step);
-  segment losses = loss_roots(&p, &energy, &step);
   take_off_roots(&p, &p.step, &step);
   take_off_roots(&p, &p.step, &alone);
   take_off_roots(&p, &p.frozen, &observe);
-  take_off_roots(&p, &p.frozen, &losses);
+  segment losses = loss_roots(&p, energy, &step);
   program_motion motion = plan_motion(plan, p.step.along_reference);
   fuse_motion(plan, &motion);
   if (l->irregular || v->masses) {

@@ -74,6 +74,11 @@ force_fields plan_force_fields(const kernel_plan *plan, const lowered_law *step,
     is_old = is_old && used.force[k] == old.force[k];
     is_new = is_new && used.force[k] == new[k];
   }
+  if (step->rest != IR_NONE) {
+    with_fields(plan, &frozen->rest, 1, step->fields, new);
+    is_old = is_old && step->rest == frozen->rest;
+    is_new = is_new && step->rest == new[0];
+  }
   return is_new ? FORCES_OF_NEW : is_old ? FORCES_OF_OLD : FORCES_OF_BOTH;
 }
 
@@ -172,6 +177,16 @@ static ir_node power_between(ir *g, const force_parts *old, const ir_node *new) 
   for (int k = 0; k < old->count; k++)
     power = ir_add(g, power, ir_mul(g, difference(g, old->force[k], new[k]), old->rate[k]));
   return ir_mul(g, ir_constant(g, 0.5), power);
+}
+
+ir_node plan_still_power(const kernel_plan *plan, const law_energy *of) {
+  ir *g = plan->graph;
+  force_parts p = parts_of(plan, of->frozen, of->theta_rate);
+  ir_node power = ir_constant(g, 0);
+  at_zero_rate(g, &p);
+  for (int k = 0; k < p.count; k++)
+    power = ir_add(g, power, ir_mul(g, p.force[k], p.rate[k]));
+  return family_sum(g, ir_mul(g, ir_constant(g, 0.5), power));
 }
 
 bool plan_losses(const kernel_plan *plan, const law_energy *of, const ir_node *new_fields,

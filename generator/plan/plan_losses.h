@@ -4,7 +4,8 @@
 
 #include "generator/plan/plan.h"
 
-/* Which fields the forces of a step are those of. */
+/* Which fields the forces of a step, and the rest state that they are measured from, are those
+   of. */
 typedef enum force_fields { FORCES_OF_BOTH, FORCES_OF_NEW, FORCES_OF_OLD } force_fields;
 
 /* As lowered: `step` has new fields where the law reads them, `frozen` the old ones. */
@@ -19,7 +20,12 @@ typedef struct law_energy {
   force_fields forces;
 } law_energy;
 
-/* lost[PL_LOSSES] of a particle (J), given the fields that the step ends with (new_fields[fields]).
+/* W of a particle's halves of its bonds: what forces at zero rate do as the body moves; of bending in
+   space it is left out. */
+ir_node plan_still_power(const kernel_plan *plan, const law_energy *of);
+
+/* Of lost[PL_LOSSES] of a particle (J) the first two, given the fields that the step ends with
+   (new_fields[fields]).
    False: the power of a bond's rate terms is not known.
 
    States: what is stored with the old fields less what is with the new ones. Both are those of the

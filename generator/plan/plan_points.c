@@ -10,6 +10,7 @@
 #include "generator/lower/lower_inputs.h"
 #include "generator/lower/lowering.h"
 #include "generator/lower/point_inputs.h"
+#include "generator/plan/plan_given.h"
 #include "generator/plan/plan_losses.h"
 #include "generator/plan/plan_roots.h"
 #include "generator/plan/point_rest.h"
@@ -26,7 +27,43 @@ typedef struct planner {
   ir_node tangent[MOST_TANGENTS];
   ir_node rest[MOST_STRAINS + 1]; /* of a law with states: look_at_rest */
   int rest_count;
+  /* Of a law with a rest strain: that of the fields at hand, for which `frozen` has a stand-in. */
+  ir_node rest_at_hand[TENSOR_COUNT];
 } planner;
+
+/* --- the rest strain -------------------------------------------------------------------------- */
+
+static bool has_rest(const planner *p) {
+  return p->frozen.rest_strain[0] != IR_NONE;
+}
+
+/* What is kept and what is lost to states is compared at one rest strain. */
+static void stand_in_for_rest(planner *p) {
+  static const char *const names[TENSOR_COUNT] = {"rest_xx", "rest_yy", "rest_zz",
+                                                  "rest_xy", "rest_yz", "rest_xz"};
+  for (int k = 0; k < TENSOR_COUNT; k++) {
+    p->rest_at_hand[k] = p->frozen.rest_strain[k];
+    p->frozen.rest_strain[k] =
+        ir_input(p->graph, IR_FROM_FIELD, p->plan->law->fields.count + k, names[k], ON_POINT);
+  }
+}
+
+/* From strains as the law has them to those of the body. */
+static void take_off_rest(planner *p, const lowered_law *of, ir_node *node) {
+  ir_node measured[MOST_STRAINS];
+  if (!has_rest(p) || *node == IR_NONE) return;
+  for (int k = 0; k < p->strains; k++)
+    measured[k] =
+        ir_sub(p->graph, p->strain[k], of->rest_strain[point_component(p->plan->dimensions, k)]);
+  ir_substitute(p->graph, node, 1, p->strain, measured, p->strains, node);
+}
+
+/* With the rest strain of the fields at hand. */
+static ir_node at_rest_at_hand(planner *p, ir_node n) {
+  if (!has_rest(p) || n == IR_NONE) return n;
+  ir_substitute(p->graph, &n, 1, p->frozen.rest_strain, p->rest_at_hand, TENSOR_COUNT, &n);
+  return n;
+}
 
 /* --- the third direction ---------------------------------------------------------------------- */
 
@@ -205,6 +242,7 @@ static void settle_plane(planner *p) {
   find_tangent(p, is_free);
   for (int k = 0; k < 2; k++) {
     ir_node z = zero, z_rate = zero, doubt = zero;
+    if (has_rest(p)) z = ir_neg(g, both[k]->rest_strain[TENSOR_ZZ]); /* in plane strain */
     if (is_free) {
       ir_node sigma_zz = both[k]->sigma[TENSOR_ZZ];
       z_rate = rate_along_z(p, at_rest(p, sigma_zz));
@@ -241,6 +279,11 @@ static force_fields stress_fields(planner *p) {
     const ir_node used = p->step.sigma[k], old = p->frozen.sigma[k];
     is_old = is_old && used == old;
     is_new = is_new && (old == IR_NONE || used == with_new_fields(p, old));
+  }
+  for (int k = 0; k < TENSOR_COUNT && has_rest(p); k++) {
+    const ir_node used = p->step.rest_strain[k], old = p->rest_at_hand[k];
+    is_old = is_old && used == old;
+    is_new = is_new && used == with_new_fields(p, old);
   }
   return is_new ? FORCES_OF_NEW : is_old ? FORCES_OF_OLD : FORCES_OF_BOTH;
 }
@@ -391,7 +434,7 @@ static void want(planner *p, segment *a, ir_node node, segment_target target, in
 }
 
 typedef struct seen_points {
-  ir_node stored; /* IR_NONE: not known */
+  ir_node stored; /* IR_NONE: not known; it and still_power have a stand-in for the rest strain */
   ir_node rate_power, still_power;
   force_fields stress; /* that of a step */
 } seen_points;
@@ -410,12 +453,26 @@ static void plan_step(planner *p, const seen_points *t, segment *a) {
 static ir_node lost_to_states(planner *p, const seen_points *t) {
   ir *g = p->graph;
   if (t->stored == IR_NONE) return ir_constant(g, 0);
-  const ir_node kept = with_new_fields(p, t->stored), after = with_new_fields(p, t->still_power);
-  const ir_node lost = kept == t->stored ? ir_constant(g, 0) : ir_sub(g, t->stored, kept);
-  if (t->stress == FORCES_OF_BOTH || after == t->still_power) return lost;
+  const ir_node stored = at_rest_at_hand(p, t->stored), still = at_rest_at_hand(p, t->still_power),
+                kept = at_rest_at_hand(p, with_new_fields(p, t->stored)),
+                after = at_rest_at_hand(p, with_new_fields(p, t->still_power));
+  const ir_node lost = kept == stored ? ir_constant(g, 0) : ir_sub(g, stored, kept);
+  if (t->stress == FORCES_OF_BOTH || after == still) return lost;
   const double part = t->stress == FORCES_OF_NEW ? -0.5 : 0.5;
   const ir_node half_step = ir_scaled(g, part, kinematics_input(g, ENDS_TIME_STEP));
-  return ir_add(g, lost, ir_mul(g, half_step, ir_sub(g, t->still_power, after)));
+  return ir_add(g, lost, ir_mul(g, half_step, ir_sub(g, still, after)));
+}
+
+static ir_node given_by_rest(const planner *p, const seen_points *t) {
+  const int rests = has_rest(p) ? TENSOR_COUNT : 0;
+  if (!plan_rest_changes(p->plan, p->rest_at_hand, rests)) return ir_constant(p->graph, 0);
+  return plan_given_by_rest(p->plan, &(rest_energy){.stored = t->stored,
+                                                    .power = t->still_power,
+                                                    .stand_in = p->frozen.rest_strain,
+                                                    .rest = p->rest_at_hand,
+                                                    .rests = rests,
+                                                    .new_fields = p->step.fields,
+                                                    .forces = t->stress});
 }
 
 /* Lost to rates: their power over the step. */
@@ -426,10 +483,14 @@ static void plan_ledger(planner *p, const seen_points *t, segment *a) {
   const ir_node step = kinematics_input(g, ENDS_TIME_STEP);
   want(p, a, ir_mul(g, with_new_fields(p, t->rate_power), step), TO_DISSIPATED_RATE,
        PL_LOST_TO_RATES);
+  const ir_node given = given_by_rest(p, t);
+  p->plan->works_at_rest = !ir_is_number(g, given, 0);
+  if (p->plan->works_at_rest) want(p, a, given, TO_GIVEN_BY_REST, PL_GIVEN_BY_REST);
 }
 
 static void plan_observe(planner *p, const seen_points *t, segment *a) {
-  want(p, a, t->stored != IR_NONE ? t->stored : ir_constant(p->graph, 0), TO_OBSERVED, 0);
+  const ir_node stored = at_rest_at_hand(p, t->stored);
+  want(p, a, stored != IR_NONE ? stored : ir_constant(p->graph, 0), TO_OBSERVED, 0);
   for (int k = 0; k < p->plan->law->outputs.count; k++)
     want(p, a, p->frozen.outputs[k], TO_OBSERVED, 1 + k);
 }
@@ -535,6 +596,40 @@ static bool tell_no_energy(const law *l, diagnostics *d) {
   return false;
 }
 
+/* Of a rest strain the work along z counts in plane strain, too: what is stored is that of all three
+   directions. */
+static bool works_along_z(const planner *p) {
+  return has_rest(p) && p->plan->law->setting == SETTING_PLANE_STRAIN;
+}
+
+/* Before the plane is settled. */
+static void look_before(planner *p) {
+  const int strains = p->strains;
+  if (works_along_z(p)) {
+    p->strain[p->strains] = p->z;
+    p->rate[p->strains++] = p->z_rate;
+  }
+  if (p->plan->law->fields.count > 0) look_at_rest(p);
+  if (works_along_z(p) && p->frozen.W == IR_NONE) p->frozen.W = work_from_rest(p);
+  p->strains = strains;
+}
+
+/* Everything is given by the body's strains. */
+static void measure_from_rest(planner *p, seen_points *t) {
+  ir_node **all = places_for(p);
+  for (int k = all_of(p, &p->step, all) - 1; k >= 0; k--)
+    take_off_rest(p, &p->step, all[k]);
+  for (int k = all_of(p, &p->frozen, all) - 1; k >= 0; k--)
+    take_off_rest(p, &p->frozen, all[k]), *all[k] = at_rest_at_hand(p, *all[k]);
+  for (int k = 0; k < p->strains * p->strains; k++)
+    take_off_rest(p, &p->step, &p->tangent[k]);
+  take_off_rest(p, &p->frozen, &t->stored);
+  take_off_rest(p, &p->frozen, &t->still_power);
+  take_off_rest(p, &p->frozen, &t->rate_power);
+  t->rate_power = at_rest_at_hand(p, t->rate_power);
+  free(all);
+}
+
 bool plan_points(kernel_plan *plan, diagnostics *d) {
   planner p = {.plan = plan, .graph = plan->graph, .z = IR_NONE, .z_rate = IR_NONE};
   const law_variation *v = &plan->variation;
@@ -542,7 +637,10 @@ bool plan_points(kernel_plan *plan, diagnostics *d) {
       !lower_law_varying(plan->law, plan->graph, LOWER_FROZEN, v, plan->memory, &p.frozen, d))
     return false;
   point_at_inputs(&p);
-  if (plan->law->fields.count > 0) look_at_rest(&p);
+  for (int k = 0; k < TENSOR_COUNT && v->measured; k++)
+    p.step.rest_strain[k] = p.frozen.rest_strain[k] = IR_NONE;
+  if (has_rest(&p)) stand_in_for_rest(&p);
+  look_before(&p);
   const force_fields alive = stress_fields(&p),
                      stress = plan->law->failed && alive == FORCES_OF_OLD ? FORCES_OF_BOTH : alive;
   if (plan->dimensions == 3)
@@ -550,13 +648,14 @@ bool plan_points(kernel_plan *plan, diagnostics *d) {
   else
     settle_plane(&p);
   plan->stores = plan->law->nonconservative == NULL;
-  if (p.frozen.W == IR_NONE) p.frozen.W = work_from_rest(&p);
+  if (p.frozen.W == IR_NONE && !works_along_z(&p)) p.frozen.W = work_from_rest(&p);
   if (p.frozen.W == IR_NONE && plan->stores) return tell_no_energy(plan->law, d);
   fail_points(&p);
+  seen_points seen = {stored_energy(&p), rate_power(&p), still_power(&p), stress};
+  measure_from_rest(&p, &seen);
   plan->linear = is_linear(&p);
   plan->reads_rates = reads_rates(&p);
   plan->reads_size = law_reads(plan->law, QUANTITY_CELL_SIZE);
-  seen_points seen = {stored_energy(&p), rate_power(&p), still_power(&p), stress};
   improve(&p, &seen);
   static void (*const program[])(planner *, const seen_points *,
                                  segment *) = {[PROGRAM_STEP] = plan_step,

@@ -11,12 +11,14 @@
 #include "generator/lower/lower_energy.h"
 #include "generator/lower/lower_inputs.h"
 #include "generator/lower/lower_rest.h"
+#include "generator/plan/plan_given.h"
 #include "generator/plan/plan_roots.h"
 
 typedef struct planner {
   kernel_plan *plan;
   lowered_law step;   /* protectable, reciprocals shared */
   lowered_law frozen; /* as lowered */
+  force_fields forces;
 } planner;
 
 /* The law in terms of what particles have. */
@@ -24,8 +26,9 @@ typedef struct seen_law {
   bond_forces force;
   lowered_law step;
   ir_node stored; /* J, with the fields at hand */
-  ir_node held,
-      rest; /* of it: where the rest stretch has a stand-in; that with the fields at hand */
+  /* Where the rest stretch has a stand-in: what is stored, and (W) what forces do at rest, if that
+     is asked for; the rest stretch with the fields at hand. */
+  ir_node held, power, rest;
   ir_node rate_power; /* W, with the fields at hand; IR_NONE */
   ir_node *outputs;   /* with the fields at hand */
 } seen_law;
@@ -83,12 +86,12 @@ static void share_reciprocals(ir *g, const law *l, lowered_law *p) {
 /* Parameters that differ from bond to bond, and the values that a strip brings. */
 static int parameter_pairs(const kernel_plan *p, ir_node *from, ir_node *to) {
   const law_variation *v = &p->variation;
-  for (int k = 0; k < v->varying_count; k++) {
+  const int count = v->varying_count - v->before_count;
+  for (int k = 0; k < count; k++) {
     from[k] = lower_parameter(p->graph, p->law, v->varying[k]);
-    to[k] = ir_input(p->graph, IR_FROM_BOND_PARAMETER, k,
-                     p->law->parameters.items[v->varying[k]]->name, ON_BOND);
+    to[k] = lower_varying(p->graph, p->law, v, k);
   }
-  return v->varying_count;
+  return count;
 }
 
 /* Law-level inputs and the kinematics that take their place. */
@@ -112,10 +115,10 @@ static int kinematic_pairs(ir *g, const bond_kinematics *k, ir_node *from, ir_no
    where the fields do not differ. */
 static void fuse(planner *p, seen_law *t) {
   const law *l = p->plan->law;
-  const int most = PL_MAX_PLANES + 2 + l->fields.count + l->outputs.count;
+  const int most = PL_MAX_PLANES + 3 + l->fields.count + l->outputs.count;
   ir_node *all = must_alloc((size_t)most * sizeof *all);
   ir_node *const single[] = {&t->force.f_x, &t->force.f_y,  &t->force.moment_i, &t->force.moment_j,
-                             &t->stored,    &t->rate_power, &t->force.twisting};
+                             &t->stored,    &t->rate_power, &t->force.twisting, &t->power};
   const int singles = (int)(sizeof single / sizeof *single);
   int count = 0;
   for (int k = 0; k < singles; k++)
@@ -157,6 +160,11 @@ static seen_law see_law(planner *p) {
   rest_take_off(g, &p->frozen, &t.rate_power, 1);
   if (t.rate_power != IR_NONE) rewrite_reciprocals(g, &t.rate_power, 1, &t.rate_power);
   substitute(g, &t.rate_power, 1, from, to, pairs);
+  t.power = IR_NONE;
+  if (plan_rest_changes(p->plan, &p->frozen.rest, p->frozen.rest != IR_NONE))
+    t.power = lower_still_power(g, l, &p->frozen, k.theta_rate_i, k.theta_rate_j, k.twist_rate);
+  rest_hold(g, l, &p->frozen, &t.power);
+  substitute(g, &t.power, 1, from, to, pairs);
   t.outputs = copy_nodes(memory, p->frozen.outputs, l->outputs.count);
   rest_take_off(g, &p->frozen, t.outputs, l->outputs.count);
   rewrite_reciprocals(g, t.outputs, l->outputs.count, t.outputs);
@@ -197,6 +205,19 @@ static void plan_step(planner *p, const seen_law *t, segment *a) {
     want(p->plan, a, t->step.fields[k], TO_FIELD, k);
 }
 
+static ir_node given_by_rest(planner *p, const seen_law *t) {
+  const kernel_plan *plan = p->plan;
+  const bool rests = t->rest != IR_NONE;
+  const ir_node stand_in = rests ? rest_stand_in(plan->graph, plan->law) : IR_NONE;
+  return plan_given_by_rest(plan, &(rest_energy){.stored = t->held,
+                                                 .power = t->power,
+                                                 .stand_in = &stand_in,
+                                                 .rest = &t->rest,
+                                                 .rests = rests,
+                                                 .new_fields = t->step.fields,
+                                                 .forces = p->forces});
+}
+
 /* Energy lost to damage and plastic flow: what the bond held with the old fields less what it holds
    with the new ones, both at the present deformation. Lost to rate terms: their power over the
    step. */
@@ -213,6 +234,9 @@ static void plan_ledger(planner *p, const seen_law *t, segment *a) {
   }
   want(p->plan, a, lost, TO_DISSIPATED_STATE, 0);
   want(p->plan, a, rate_lost, TO_DISSIPATED_RATE, 0);
+  const ir_node given = given_by_rest(p, t);
+  p->plan->works_at_rest = !ir_is_number(g, given, 0);
+  if (p->plan->works_at_rest) want(p->plan, a, given, TO_GIVEN_BY_REST, 0);
 }
 
 static void plan_observe(planner *p, const seen_law *t, segment *a) {
@@ -290,6 +314,7 @@ static bool lower_both(planner *p, diagnostics *d) {
   if (!lower_law(plan->law, plan->graph, LOWER_PROTECTABLE, plan->memory, &p->step, d) ||
       !lower_law(plan->law, plan->graph, LOWER_FROZEN, plan->memory, &p->frozen, d))
     return false;
+  p->forces = plan_force_fields(plan, &p->step, &p->frozen);
   rest_take_off_law(plan->graph, plan->law, &p->step);
   share_reciprocals(plan->graph, plan->law, &p->step);
   return true;
@@ -305,8 +330,7 @@ bool plan_strips(kernel_plan *plan, diagnostics *d) {
   STRIP_PROGRAMS(X)
 #undef X
   lowered_law bare = unprotected_step(&p);
-  plan->stores =
-      plan->law->nonconservative == NULL && !rest_changes(plan->graph, plan->law, &p.frozen);
+  plan->stores = plan->law->nonconservative == NULL;
   plan->reads_rates = plan_reads_rates(plan, &bare);
   plan_states(&p, &bare);
   plan_tangent(&p, &bare);

@@ -34,6 +34,7 @@ typedef enum segment_target {
   TO_FIELD,            /* field[index] = node, of families new_field */
   TO_DISSIPATED_STATE, /* dissipated_state += node; of families lost[index] */
   TO_DISSIPATED_RATE,  /* dissipated_rate += node; the same */
+  TO_GIVEN_BY_REST,    /* given_by_rest += node; the same */
   TO_OBSERVED,         /* observed[index] = node */
   TO_TANGENT,          /* of points: tangent[index] = node */
   TO_OUT,              /* out[index] = node, behind these new_field: of single states */
@@ -61,9 +62,9 @@ typedef struct segment_root {
   bool vanishes;
 } segment_root;
 
-/* What adds to what is lost already. */
+/* What adds to what is lost, or given, already. */
 static inline bool segment_is_loss(const segment_root *r) {
-  return r->target == TO_DISSIPATED_STATE || r->target == TO_DISSIPATED_RATE;
+  return r->target >= TO_DISSIPATED_STATE && r->target <= TO_GIVEN_BY_REST;
 }
 
 /* Whether it matters for a root over neighbours or bonds that the bond exists. */

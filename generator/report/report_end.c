@@ -16,10 +16,12 @@ static void conclude_energy(const run *r) {
   const double external = unless_nothing(last_value(r, "energy/external"),
                                          sample_of(r, "energy/kinetic", false)),
                imbalance = last_value(r, "energy/imbalance");
+  const double rest = last_value(r, "energy/rest");
   if (!isfinite(external)) return;
-  printf("  energy     external work %.5g J: kinetic %.3g, stored %.3g, dissipated by %s %.5g, "
-         "by damping %.3g; ",
-         external, last_value(r, "energy/kinetic"), last_value(r, "energy/stored"), lost_to(r),
+  printf("  energy     external work %.5g J", external);
+  if (fabs(rest) > 0) printf(", of rest states and fields %.5g J", rest);
+  printf(": kinetic %.3g, stored %.3g, dissipated by %s %.5g, by damping %.3g; ",
+         last_value(r, "energy/kinetic"), last_value(r, "energy/stored"), lost_to(r),
          unless_nothing(last_value(r, "energy/dissipated_damage"), external),
          last_value(r, "energy/dissipated_damping"));
   const char *unchecked;

@@ -63,13 +63,15 @@ static void tell_growth(const run *r, bool failed) {
   }
 }
 
-/* A rest state that changes with time does work, which stands among what states have taken. */
-static bool rests_change(const run *r) {
+/* Where the balance is not kept, the work of rest states that change stands among what states have
+   taken. */
+static bool rest_works(const run *r) {
+  const char *unchecked;
   bool some = false;
-  for (int k = 0; k < r->deck->interaction_count; k++) {
-    const kernel_plan *plan = r->model_of[k] ? r->model_of[k]->plan : NULL;
-    some = some || (plan && plan->law->rest && !plan->law->nonconservative && !plan->stores);
-  }
+  simulation_imbalance(r->simulation, &unchecked);
+  for (int k = 0; k < r->deck->interaction_count && unchecked; k++)
+    some = some || (r->model_of[k] && r->model_of[k]->plan->variation.before_count > 0) ||
+           (r->model_of[k] && r->model_of[k]->plan->law->rest);
   return some;
 }
 
@@ -82,7 +84,7 @@ static void warn_of_gain(const run *r) {
   const double scale = simulation_largest_energy(r->simulation);
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
     const double lost = last_value(r, parts[k].series);
-    if (!(lost < -1e-3 * scale) || (k == 0 && (cracks_have_grown(r) || rests_change(r)))) continue;
+    if (!(lost < -1e-3 * scale) || (k == 0 && (cracks_have_grown(r) || rest_works(r)))) continue;
     fprintf(stderr,
             "perilat: warning: the law gives energy: %s dissipated %.5g J, less than nothing\n"
             "  `perilat drive` along a closed path shows where (`perilat help dissipation`)%s\n",

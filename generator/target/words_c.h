@@ -171,11 +171,13 @@
   X(STRIP_FIELD, "strip->field[$1]")                                                               \
   X(STRIP_STATE_LOSS, "strip->dissipated_state")                                                   \
   X(STRIP_RATE_LOSS, "strip->dissipated_rate")                                                     \
+  X(STRIP_REST_GIFT, "strip->given_by_rest")                                                       \
   X(STRIP_OBSERVED, "strip->observed[$1]")                                                         \
   X(FORCE_ARRAY, "at_force_$1")                                                                    \
   X(FIELD_ARRAY, "at_field_$1")                                                                    \
   X(STATE_LOSS_ARRAY, "at_dissipated_state")                                                       \
   X(RATE_LOSS_ARRAY, "at_dissipated_rate")                                                         \
+  X(REST_GIFT_ARRAY, "at_given_by_rest")                                                           \
   X(OBSERVED_ARRAY, "at_observed_$1")                                                              \
   /* protection and presence */                                                                    \
   X(PROTECTED_BIT, "  const int64_t protected_bit = PL_PROTECTED(strip->direction);\n")            \

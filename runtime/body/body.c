@@ -208,6 +208,7 @@ body_totals body_sum(const body *w) {
     t.free += r->free;
     t.dissipated_state += r->state;
     t.dissipated_rate += r->rate;
+    t.given_by_rest += r->given;
     t.dissipated += r->mass;
     t.internal += r->internal;
   }

@@ -41,6 +41,7 @@ typedef struct body_block { /* what one thread works on */
 typedef struct body_row { /* of a row in the state observed, J */
   double kinetic, stored, free;
   double state, rate; /* dissipated by the law of bonds since the start */
+  double given;       /* by its rest state, likewise */
   /* mass damping, work against the bonds: from the middle of the last step on */
   double mass, internal;
 } body_row;
@@ -50,10 +51,11 @@ typedef struct body_totals { /* sums over all particles and bonds, J, up to the 
   double stored;
   double free;                              /* kinetic, had only bonds acted */
   double dissipated_state, dissipated_rate; /* laws of bonds: by the law since the start */
-  double internal;   /* laws of families: work done against the forces of the bonds */
-  double dissipated; /* by mass damping since the start */
-  double gravity;    /* work of gravity since the start */
-  double outer;      /* the same of outer forces */
+  double given_by_rest; /* to the law since the start, by its rest state and fields that change */
+  double internal;      /* laws of families: work done against the forces of the bonds */
+  double dissipated;    /* by mass damping since the start */
+  double gravity;       /* work of gravity since the start */
+  double outer;         /* the same of outer forces */
 } body_totals;
 
 typedef struct body {

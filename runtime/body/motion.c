@@ -145,7 +145,7 @@ void motion_observe(body *w, const body_block *b, int row) {
   const long count = w->count[row];
   const row_part whole = whole_row(w, row);
   body_row *r = &w->observed[row];
-  r->kinetic = r->free = r->mass = r->internal = r->state = r->rate = 0;
+  r->kinetic = r->free = r->mass = r->internal = r->state = r->rate = r->given = 0;
   for (int d = 0; d < w->dof; d++) {
     const double *v = w->velocity[d] + start, *next = b->next + d * w->lattice->pitch;
     const double *m = relative_mass(w, d, &whole);

@@ -190,6 +190,7 @@ static point_row points_of_row(const sweep *w, int row) {
     sum.stored += p->rows[row].stored;
     sum.state += p->rows[row].state;
     sum.rate += p->rows[row].rate;
+    sum.given += p->rows[row].given;
     sum.pending += p->rows[row].pending;
   }
   return sum;
@@ -210,7 +211,7 @@ static void show_states(const point_forces *p, const unsigned char *sites, sweep
     double *const before[] = {w->dissipated_state, w->dissipated_rate}, *const now[] = {
                                                                             w->lost_state,
                                                                             w->lost_rate};
-    for (int k = 0; k < PL_LOSSES; k++) {
+    for (int k = 0; k < 2; k++) {
       before[k][site] = point_forces_share(p, p->lost + k * all, node);
       now[k][site] = point_forces_share(p, p->lost_now + k * all, node);
     }
@@ -240,6 +241,7 @@ static void observe_rows(sweep *w, int block) {
     const double taken = taken_by_row(w, r);
     seen->stored = points.stored;
     seen->rate = e->row_rate[r] + taken + points.rate;
+    seen->given = points.given;
     seen->state = points.state + (r == 0 && e->of->tips ? e->of->tips->released : 0);
     seen->free += 0.5 * taken + points.pending;
     show_all_states(e, r);

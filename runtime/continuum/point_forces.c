@@ -95,7 +95,8 @@ void point_forces_give(point_forces *p, int k, const double *nodes) {
 static void open_states(point_forces *p, bool ledger) {
   const long count = p->strips.count;
   const pl_law *law = p->law;
-  p->loses = ledger && (law->field_count > 0 || law->reads_rates);
+  p->loses = ledger && (law->field_count > 0 || law->reads_rates ||
+                        (PL_HAS(law, works_at_rest) && law->works_at_rest));
   p->old_field = doubles(p, law->field_count * count);
   p->new_field = doubles(p, law->field_count * count);
   for (int f = 0; f < law->field_count; f++)
@@ -645,6 +646,8 @@ static void add_losses(const point_forces *p, const point_strip *s, double *cons
   row->state += lane_dot(s->count, NULL, before[PL_LOST_TO_STATES], volume) +
                 lane_dot(s->count, NULL, lost[PL_LOST_TO_STATES], volume);
   row->rate += lane_dot(s->count, NULL, before[PL_LOST_TO_RATES], volume) + 0.5 * now;
+  row->given += lane_dot(s->count, NULL, before[PL_GIVEN_BY_REST], volume) +
+                lane_dot(s->count, NULL, lost[PL_GIVEN_BY_REST], volume);
   row->pending += 0.5 * now;
 }
 

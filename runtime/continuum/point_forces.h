@@ -25,7 +25,7 @@
 /* What is known of a row of cells in the state observed, J; and how much stiffer than at rest one
    of its points is: the largest eigenvalue of the tangent by that at rest. */
 typedef struct point_row {
-  double stored, state, rate, pending, stiffness;
+  double stored, state, rate, given, pending, stiffness;
 } point_row;
 
 typedef struct point_forces {

@@ -109,6 +109,10 @@ static bool read_file(arena *a, const namelist_group *g, const namelist_key *key
   return false;
 }
 
+bool deck_placed_changes(const deck_placed *p) {
+  return p->in_time || (p->formula && formula_reads(p->formula, FORMULA_T));
+}
+
 bool deck_placed_read(arena *a, const namelist_group *g, const char *unit_text, deck_placed *p,
                       diagnostics *d) {
   const namelist_key *value = namelist_find(g, "value"), *file = namelist_find(g, "file");

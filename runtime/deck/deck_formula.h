@@ -22,6 +22,8 @@ bool deck_place_file_read(arena *a, uint16_t file, const namelist_value *v, deck
                           diagnostics *d);
 
 /* What the group's `value` or `file` says: a number, a formula of x, y, z, or places and values. */
+/* Whether the value changes in time. */
+bool deck_placed_changes(const deck_placed *p);
 bool deck_placed_read(arena *a, const namelist_group *g, const char *unit_text, deck_placed *p,
                       diagnostics *d);
 

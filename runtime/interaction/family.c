@@ -78,11 +78,8 @@ static void step(sweep *w, int stage, int block) {
 static void clear_lost(sweep *w, int block) {
   const body_block *b = &w->body->blocks[block];
   if (!w->lost_state || !b->aside) return;
-  for (int row = b->first; row < b->last; row++) {
-    const size_t bytes = (size_t)w->body->count[row] * sizeof(double);
-    memset(w->lost_state + body_start(w->body, row), 0, bytes);
-    memset(w->lost_rate + body_start(w->body, row), 0, bytes);
-  }
+  for (int row = b->first; row < b->last; row++)
+    sweep_clear_losses(w, row);
 }
 
 /* Begins to find forces: of a law beside others, for a step or for a look at the present state. */
@@ -118,11 +115,13 @@ static bool stores(const rows *g, long site) {
 
 /* At the other sites what passes have added means nothing. */
 void family_add_losses(sweep *w, int row) {
-  double *const energies[] = {w->dissipated_state, w->dissipated_rate, w->lost_state, w->lost_rate};
+  double *const energies[] = {w->dissipated_state, w->dissipated_rate, w->lost_state,
+                              w->lost_rate,        w->given_by_rest,   w->given_now};
+  const int count = w->given_by_rest ? 6 : 4;
   const long start = body_start(w->body, row);
   if (!w->lost_state) return;
   for (long q = start; q < start + w->body->count[row]; q++)
-    for (int k = 0; k < 4 && !stores(w->lattice, q); k++)
+    for (int k = 0; k < count && !stores(w->lattice, q); k++)
       energies[k][q] = 0;
   sweep_add_losses(w, row);
 }

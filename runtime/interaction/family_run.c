@@ -73,6 +73,8 @@ void family_run_part(const sweep *w, int block, const row_part *at, pl_family *r
     const bool aside = w->body->blocks[block].aside;
     run->lost[PL_LOST_TO_STATES] = (aside ? w->lost_state : w->dissipated_state) + start;
     run->lost[PL_LOST_TO_RATES] = (aside ? w->lost_rate : w->dissipated_rate) + start;
+    if (w->given_by_rest)
+      run->lost[PL_GIVEN_BY_REST] = (aside ? w->given_now : w->given_by_rest) + start;
   }
   point_at_neighbours(w->lattice, at->row, start, run);
   for (int d = 0; d < w->body->dof; d++) {

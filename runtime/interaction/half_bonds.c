@@ -17,7 +17,7 @@ typedef struct direction_bonds {
   double *ends[4][PL_MAX_DOF];         /* [room] places and velocities of i, of j */
   double **field, **force, **observed; /* [fields], [planes], [1 + outputs][room] */
   double **parameter;                  /* [varying][room] */
-  double *lost[2];                     /* [room] J: by states, by rates */
+  double *lost[PL_LOSSES];             /* [room] J: by states, by rates */
 } direction_bonds;
 
 struct half_bonds {
@@ -25,7 +25,7 @@ struct half_bonds {
   direction_bonds *parts; /* [directions] */
   pool *memory;           /* of values */
   arena *pointers;
-  double booked; /* J */
+  double booked[2]; /* J: taken by rates, given by rest states, in steps that are done */
 };
 
 static double *doubles(half_bonds *h, long count) {
@@ -74,7 +74,7 @@ static void open_direction(half_bonds *h, direction_bonds *p, const double *para
   p->field = planes(h, law->field_count, p->room);
   p->force = planes(h, law->force_planes, p->room);
   p->observed = planes(h, 1 + law->output_count, p->room);
-  for (int k = 0; k < 2; k++)
+  for (int k = 0; k < PL_LOSSES; k++)
     p->lost[k] = doubles(h, p->room);
   prepare(h, p, parameters);
   p->parameter = planes(h, law->varying_count, p->room);
@@ -136,6 +136,7 @@ static pl_strip strip_of(const half_bonds *h, const direction_bonds *p) {
                 .force = p->force,
                 .dissipated_state = p->lost[0],
                 .dissipated_rate = p->lost[1],
+                .given_by_rest = p->lost[2],
                 .observed = p->observed,
                 .time = of->time,
                 .time_step = of->time_step,
@@ -149,16 +150,17 @@ static pl_strip strip_of(const half_bonds *h, const direction_bonds *p) {
   return s;
 }
 
-static double lost_now(const half_bonds *h) {
+static double lost_now(const half_bonds *h, enum pl_loss to) {
   double sum = 0;
   for (int k = 0; k < h->of->lattice->directions; k++)
-    sum += lane_total(h->parts[k].room, h->parts[k].lost[1]);
+    sum += lane_total(h->parts[k].room, h->parts[k].lost[to]);
   return sum;
 }
 
 void half_bonds_find(half_bonds *h, bool stepped) {
   const pl_law *law = h->of->law;
-  if (stepped) h->booked += lost_now(h);
+  h->booked[0] += stepped ? lost_now(h, PL_LOST_TO_RATES) : 0;
+  h->booked[1] += stepped ? lost_now(h, PL_GIVEN_BY_REST) : 0;
   for (int k = 0; k < h->of->lattice->directions; k++) {
     direction_bonds *p = &h->parts[k];
     if (p->count == 0) continue;
@@ -167,7 +169,7 @@ void half_bonds_find(half_bonds *h, bool stepped) {
     for (int f = 0; f < law->field_count; f++)
       for (long n = 0; n < p->room; n++)
         p->field[f][n] = law->fields[f].initial;
-    for (int e = 0; e < 2; e++)
+    for (int e = 0; e < PL_LOSSES; e++)
       memset(p->lost[e], 0, (size_t)p->room * sizeof(double));
     const pl_strip s = strip_of(h, p);
     (h->of->body->ledger ? law->rows_ledger : law->rows)(law, p->uniforms, &s);
@@ -205,9 +207,13 @@ double half_bonds_stored(half_bonds *h) {
 }
 
 double half_bonds_taken(const half_bonds *h) {
-  return h->booked + 0.5 * lost_now(h);
+  return h->booked[0] + 0.5 * lost_now(h, PL_LOST_TO_RATES);
+}
+
+double half_bonds_given(const half_bonds *h) {
+  return h->booked[1] + lost_now(h, PL_GIVEN_BY_REST);
 }
 
 double *half_bonds_booked(half_bonds *h) {
-  return &h->booked;
+  return h->booked;
 }

@@ -28,6 +28,8 @@ void half_bonds_add(const half_bonds *h, double *const force[PL_MAX_DOF]);
 /* J: stored in the state found; taken by rate terms up to it. */
 double half_bonds_stored(half_bonds *h);
 double half_bonds_taken(const half_bonds *h);
+/* The same that their rest states, and fields that change, have given. */
+double half_bonds_given(const half_bonds *h);
 /* J: taken up to the last step, for checkpoints. */
 double *half_bonds_booked(half_bonds *h);
 

@@ -104,6 +104,7 @@ static void strip_ends(const sweep *w, pairwise_block *b, int row, int direction
   if (w->body->ledger) {
     s->dissipated_state = w->dissipated_state + near;
     s->dissipated_rate = w->dissipated_rate + near;
+    if (w->given_by_rest) s->given_by_rest = w->given_by_rest + near;
   }
 }
 
@@ -160,13 +161,6 @@ static void evaluate_part(sweep *w, pairwise_block *b, row_part at, const row_fo
   }
 }
 
-/* What a row's bonds take in the state observed, to begin with. */
-static void clear_lost(const sweep *w, int row) {
-  const size_t bytes = (size_t)w->body->count[row] * sizeof(double);
-  memset(w->lost_state + body_start(w->body, row), 0, bytes);
-  memset(w->lost_rate + body_start(w->body, row), 0, bytes);
-}
-
 /* The same on a copy of the fields: forces and new fields of the present state. Of a row of another
    block, whose first row needs them, only the forces are kept. */
 static void evaluate_aside(sweep *w, int block, int row, row_forces *buffer) {
@@ -175,7 +169,7 @@ static void evaluate_aside(sweep *w, int block, int row, row_forces *buffer) {
   const bool foreign = row < w->body->blocks[block].first, ledger = w->body->ledger && !foreign;
   const long start = body_start(w->body, row);
   take_buffer_for_row(w, buffer, row);
-  if (ledger) clear_lost(w, row);
+  if (ledger) sweep_clear_losses(w, row);
   for (int k = 0; k < g->directions && w->body->count[row] > 0; k++) {
     double *force[PL_MAX_PLANES];
     for (int p = 0; p < w->law->force_planes; p++)
@@ -190,6 +184,7 @@ static void evaluate_aside(sweep *w, int block, int row, row_forces *buffer) {
     if (ledger) {
       s.dissipated_state = w->lost_state + start;
       s.dissipated_rate = w->lost_rate + start;
+      if (w->given_now) s.given_by_rest = w->given_now + start;
     }
     (ledger ? w->law->rows_ledger : w->law->rows)(w->law, pairwise_uniforms(w, k), &s);
   }

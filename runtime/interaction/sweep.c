@@ -114,6 +114,16 @@ void sweep_new_losses(sweep *w) {
                                &w->lost_rate};
   for (int k = 0; k < 4; k++)
     *energies[k] = body_doubles(w->body, w->lattice->size);
+  if (!sweep_works_at_rest(w->law)) return;
+  w->given_by_rest = body_doubles(w->body, w->lattice->size);
+  w->given_now = body_doubles(w->body, w->lattice->size);
+}
+
+void sweep_clear_losses(sweep *w, int row) {
+  double *const now[] = {w->lost_state, w->lost_rate, w->given_now};
+  for (int k = 0; k < 3; k++)
+    if (now[k])
+      memset(now[k] + body_start(w->body, row), 0, (size_t)w->body->count[row] * sizeof(double));
 }
 
 /* Rate terms, like other forces, count half a step until the state is reached; they are none of
@@ -126,12 +136,19 @@ void sweep_add_losses(sweep *w, int row) {
       lane_total(count, w->dissipated_state + start) + lane_total(count, w->lost_state + start);
   r->rate += lane_total(count, w->dissipated_rate + start) + pending;
   r->free += pending;
+  if (w->given_by_rest)
+    r->given +=
+        lane_total(count, w->given_by_rest + start) + lane_total(count, w->given_now + start);
+}
+
+bool sweep_works_at_rest(const pl_law *law) {
+  return PL_HAS(law, works_at_rest) && law->works_at_rest;
 }
 
 bool sweep_knows_losses(const pl_law *law, bool kept) {
   if (law->kind != PL_STATE) return true;
   if (!law->stores) return false;
-  const bool may_lose = law->field_count > 0 || law->reads_rates;
+  const bool may_lose = law->field_count > 0 || law->reads_rates || sweep_works_at_rest(law);
   return !may_lose || (kept && PL_HAS(law, ledger) && law->ledger.pass_count > 0);
 }
 

@@ -51,6 +51,9 @@ struct sweep {
      bonds': of all steps, and of what the law takes in the state observed; NULL where they are not
      kept. */
   double *dissipated_state, *dissipated_rate, *lost_state, *lost_rate;
+  /* The same of what a rest state or fields that change give; NULL of laws without `works_at_rest`,
+     too. */
+  double *given_by_rest, *given_now;
   sweep_engine engine;
 };
 
@@ -91,7 +94,11 @@ double sweep_bond_value(const sweep *w, const double *values, const rows_bond *b
 /* For engines: makes the arrays of losses; adds those of a row, since the start and in the state
    observed, to what is known of it (body_row). */
 void sweep_new_losses(sweep *w);
+/* Of a row those of the state observed, to begin with. */
+void sweep_clear_losses(sweep *w, int row);
 void sweep_add_losses(sweep *w, int row);
+/* Whether its rest state, or fields that change in time, do work. */
+bool sweep_works_at_rest(const pl_law *law);
 /* Whether what the law loses is known: of laws of bonds on strips always; of laws of families,
    which then store energy, too, where it is `kept`, or where they cannot lose any. */
 bool sweep_knows_losses(const pl_law *law, bool kept);

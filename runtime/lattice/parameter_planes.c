@@ -10,6 +10,7 @@
 #include "dsl/base/hash.h"
 #include "dsl/semantics/formula.h"
 #include "runtime/base/quantity.h"
+#include "runtime/deck/deck_formula.h"
 #include "runtime/lattice/placed_values.h"
 #include "runtime/lattice/random_field.h"
 #include "runtime/lattice/rows_select.h"
@@ -607,10 +608,19 @@ static double *new_plane(parameter_planes *r, const value_places *p) {
   return must_align(PL_ALIGNMENT, bytes);
 }
 
+/* Without those that stand once more, as they were a step ago. */
+static int own_planes(const pl_law *law) {
+  int count = law->varying_count;
+  while (count > 0 && plane_of(law, law->varying[count - 1]) < count - 1)
+    count--;
+  return count;
+}
+
 static parameter_planes *planes_new(const value_places *p) {
   const size_t count = (size_t)p->law->varying_count + 1;
   parameter_planes *r = must_calloc(1, sizeof *r);
-  r->count = p->law->varying_count;
+  r->count = own_planes(p->law);
+  r->all = p->law->varying_count;
   r->plane_size = (size_t)planes_of(p) * (size_t)p->rows->size;
   r->value = must_calloc(count, sizeof *r->value);
   r->smallest = must_calloc(count, sizeof *r->smallest);
@@ -661,9 +671,9 @@ static void sources_free(value_sources *s) {
 /* --- what changes in time --------------------------------------------------------------------- */
 
 typedef struct changing_plane {
-  int plane;
-  bool everywhere; /* the same at all places */
-  double last;     /* of these: the value at hand */
+  int plane, before; /* `before`: where it stands as it was a step ago; -1: nowhere */
+  bool everywhere;   /* the same at all places */
+  double last;       /* of these: the value at hand */
 } changing_plane;
 
 struct plane_clock {
@@ -674,14 +684,17 @@ struct plane_clock {
   double *mine; /* [size] of particles */
 };
 
-static bool changes(const deck_placed *p) {
-  return p->in_time || (p->formula && formula_reads(p->formula, FORMULA_T));
-}
-
 static bool is_everywhere(const deck_placed *p) {
   for (int k = FORMULA_X; k <= FORMULA_Z; k++)
     if (!p->in_time && formula_reads(p->formula, k)) return false;
   return true;
+}
+
+/* A parameter that stands twice. */
+static int plane_before(const pl_law *law, int plane) {
+  for (int k = plane + 1; k < law->varying_count; k++)
+    if (law->varying[k] == law->varying[plane]) return k;
+  return -1;
 }
 
 static void find_changing(struct plane_clock *c) {
@@ -692,12 +705,15 @@ static void find_changing(struct plane_clock *c) {
     bool any = false;
     for (int region = 0; region <= s->regions && !any; region++) {
       const deck_assignment *a = s->placed[region * planes + k];
-      any = a && changes(a->placed);
+      any = a && deck_placed_changes(a->placed);
     }
     if (!any || s->field[k].field) continue;
     const deck_assignment *whole = s->placed[k];
-    c->planes[c->count++] = (changing_plane){
-        .plane = k, .everywhere = s->regions == 0 && is_everywhere(whole->placed), .last = NAN};
+    c->planes[c->count++] =
+        (changing_plane){.plane = k,
+                         .before = plane_before(c->places.law, k),
+                         .everywhere = s->regions == 0 && is_everywhere(whole->placed),
+                         .last = NAN};
   }
   if (c->count) c->mine = must_calloc((size_t)c->places.rows->size, sizeof *c->mine);
 }
@@ -743,6 +759,17 @@ bool parameter_planes_go_to(parameter_planes *p, double time) {
   return other;
 }
 
+bool parameter_planes_turn(parameter_planes *p) {
+  if (!p || !p->changing || p->before == p->time) return false;
+  p->before = p->time;
+  for (int k = 0; k < p->clock->count; k++) {
+    const changing_plane *of = &p->clock->planes[k];
+    if (of->before >= 0)
+      memcpy(p->value[of->before], p->value[of->plane], p->plane_size * sizeof(double));
+  }
+  return p->all > p->count;
+}
+
 plane_change parameter_planes_change(const parameter_planes *p, int plane) {
   for (int k = 0; p->changing && k < p->clock->count; k++)
     if (p->clock->planes[k].plane == plane)
@@ -785,6 +812,8 @@ static bool check_in_time(parameter_planes *r, struct plane_clock *c, double end
   }
   free(times);
   parameter_planes_go_to(r, 0);
+  r->before = NAN;
+  parameter_planes_turn(r);
   return good;
 }
 
@@ -839,6 +868,10 @@ parameter_planes *parameter_planes_new(const deck *k, int lattice, const deck_ma
     r->value[n] = new_plane(r, &c->places);
     fill_plane(s, n, r->value[n]);
   }
+  for (int n = r->count; good && n < r->all; n++) {
+    r->value[n] = new_plane(r, &c->places);
+    memcpy(r->value[n], r->value[plane_of(law, law->varying[n])], r->plane_size * sizeof(double));
+  }
   good = good && check_values(r, s, d);
   if (good) find_extremes(r, s);
   if (good) take_clock(r, c);
@@ -865,7 +898,7 @@ uint64_t parameter_planes_fingerprint(const parameter_planes *p) {
 
 void parameter_planes_free(parameter_planes *p) {
   if (!p) return;
-  for (int k = 0; k < p->count; k++)
+  for (int k = 0; k < p->all; k++)
     free(p->value[k]);
   free(p->value);
   free(p->density);

@@ -25,16 +25,16 @@ typedef enum plane_source {
 } plane_source;
 
 typedef struct parameter_planes {
-  int count; /* law->varying_count */
-  double *
-      *value; /* [count], aligned, as the sweep has them (sweep.h): on particles [size], on bonds
+  int count;       /* of law->varying those that differ */
+  int all;         /* law->varying_count: behind them some of these as they were a step ago */
+  double **value;  /* [all], aligned, as the sweep has them (sweep.h): on particles [size], on bonds
                      [directions * size], of laws of families [2 directions * size]; the mean where
                      there is no particle or bond */
-  double *density;            /* [size] kg/m^3 of the particles; NULL where all have one */
+  double *density; /* [size] kg/m^3 of the particles; NULL where all have one */
   double *smallest, *largest; /* [count] of the particles or bonds there are, at all times */
   plane_source *source;       /* [count] */
   bool changing;              /* some change in time */
-  double time;                /* s: of `value` */
+  double time, before;        /* s: of `value`, and of what stands there as it was a step ago */
   struct plane_clock *clock;  /* how they change; NULL where none does */
   size_t plane_size;          /* doubles of one of `value` */
   size_t bytes;
@@ -53,6 +53,9 @@ parameter_planes *parameter_planes_new(const deck *k, int lattice, const deck_ma
 /* The values of a time (s), a function of it alone. Nothing is allocated, and what stays is not
    touched. NULL is allowed. False where all stays. */
 bool parameter_planes_go_to(parameter_planes *p, double time);
+/* A step ends: what values are now they were a step ago. NULL is allowed. False where nobody reads
+   those. */
+bool parameter_planes_turn(parameter_planes *p);
 /* How one of them changes in time. */
 typedef enum plane_change { PLANE_STAYS, PLANE_CHANGES_ALIKE, PLANE_CHANGES } plane_change;
 plane_change parameter_planes_change(const parameter_planes *p, int plane);

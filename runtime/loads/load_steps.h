@@ -38,6 +38,7 @@ typedef struct load_look {
   double work;                   /* of reactions, from the last half step on */
   double dissipated;             /* by mass damping, likewise */
   double stored, free, internal; /* what ties add to those of the body */
+  double given;                  /* the same, by rest states */
 } load_look;
 
 /* Of a static run: the motion prescribed after `step` steps (m), counted from the anchor; the force

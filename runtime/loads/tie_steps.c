@@ -198,4 +198,5 @@ void tie_steps_look(const tie_steps *t, load_look *look, long step) {
   if (!t->halves) return;
   look->stored += half_bonds_stored(t->halves);
   look->dissipated += half_bonds_taken(t->halves);
+  look->given += half_bonds_given(t->halves);
 }

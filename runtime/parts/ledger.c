@@ -27,8 +27,7 @@ const char *ledger_unchecked(const pl_law *law, bool kept) {
 }
 
 const char *ledger_why(const ledger_laws *of) {
-  if (of->unchecked) return of->unchecked;
-  return of->given ? "a field changes in time, and gives or takes energy" : NULL;
+  return of->unchecked;
 }
 
 void ledger_add_law(ledger_laws *of, const pl_law *law, bool kept) {
@@ -65,8 +64,8 @@ static bool is_sound(const ledger *g, const ledger_laws *of, const body *state,
 static double imbalance(const ledger *g, const ledger_laws *of, const double *terms) {
   const double held = terms[LEDGER_KINETIC] + terms[LEDGER_STORED];
   if (ledger_why(of)) return NAN;
-  return terms[LEDGER_EXTERNAL] - (held - g->initial) - terms[LEDGER_DISSIPATED_DAMAGE] -
-         terms[LEDGER_DISSIPATED_DAMPING];
+  return terms[LEDGER_EXTERNAL] + terms[LEDGER_REST] - (held - g->initial) -
+         terms[LEDGER_DISSIPATED_DAMAGE] - terms[LEDGER_DISSIPATED_DAMPING];
 }
 
 double ledger_stored_by(const sweep *law) {
@@ -85,7 +84,7 @@ double ledger_taken_by(const sweep *law) {
   return sum;
 }
 
-static const ledger_term summed[] = {LEDGER_EXTERNAL, LEDGER_DISSIPATED_DAMAGE,
+static const ledger_term summed[] = {LEDGER_EXTERNAL, LEDGER_REST, LEDGER_DISSIPATED_DAMAGE,
                                      LEDGER_DISSIPATED_DAMPING};
 enum { SUMMED = sizeof summed / sizeof *summed };
 
@@ -107,11 +106,12 @@ void ledger_sample_link(ledger *g, const ledger_laws *of, const body *state, dou
   const double lost = work - t.stored;
   if (!g->begun) {
     *g = (ledger){.begun = 1, .lost = lost, .pending = t.dissipated_rate};
-    g->initial = t.stored + taken(g, of, &t, lost);
+    g->initial = t.stored + taken(g, of, &t, lost) - t.given_by_rest;
   }
   terms[LEDGER_KINETIC] = 0;
   terms[LEDGER_STORED] = t.stored;
   terms[LEDGER_EXTERNAL] = work;
+  terms[LEDGER_REST] = t.given_by_rest;
   terms[LEDGER_DISSIPATED_DAMPING] = t.dissipated_rate - g->pending;
   terms[LEDGER_DISSIPATED_DAMAGE] = taken(g, of, &t, lost);
   add_carried(g, terms);
@@ -144,14 +144,17 @@ bool ledger_sample(ledger *g, const ledger_laws *of, const body *state, const lo
   const double damping = t.dissipated_rate + t.dissipated + s.dissipated + look->dissipated;
   const double kinetic = t.kinetic + look->kinetic, stored = t.stored + look->stored,
                held = kinetic + stored;
+  const double given = t.given_by_rest + look->given;
   const double lost = t.internal + s.internal + look->internal - t.stored;
   if (!g->begun) {
     *g = (ledger){.begun = 1, .lost = lost, .pending = damping};
-    g->initial = held + taken(g, of, &t, lost); /* what breaks in the first state was held before */
+    /* what breaks in the first state was held before, what its rest state gives was not */
+    g->initial = held + taken(g, of, &t, lost) - given;
   }
   terms[LEDGER_KINETIC] = kinetic;
   terms[LEDGER_STORED] = stored;
   terms[LEDGER_EXTERNAL] = s.work + look->work + t.gravity + t.outer;
+  terms[LEDGER_REST] = given;
   terms[LEDGER_DISSIPATED_DAMPING] = damping - g->pending;
   terms[LEDGER_DISSIPATED_DAMAGE] = taken(g, of, &t, lost);
   add_carried(g, terms);

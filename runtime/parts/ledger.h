@@ -5,6 +5,7 @@
    - kinetic: the sum of half m v- v+.
    - external: the sum over the steps of force times (v- + v+)/2 dt; of step n half, with v-.
    - dissipated: by mass damping in the same way, by the law as its kernel counts it.
+   - rest: what rest states, and fields that change in time, give, as the kernel counts it.
 
    For linear springs they balance to rounding whatever the step (summation by parts of the leapfrog
    scheme).
@@ -25,12 +26,20 @@
    they work over the mean of v- and v+; what is missed is about c v^2 dt/4, v being how fast a
    damper c now moves.
 
+   A rest state r from which deformations are measured, and fields that the deck changes in time, are
+   booked in the same way: as a step ends they are what they are then, and stored energy has changed
+   by what no force has done,
+
+     given_n = W(u_n, r_n) - W(u_n, r_(n-1)) - (F(u_n, r_n) - F(u_n, r_(n-1))) du/2
+
+   of laws of bonds on strips, too (plan_given.h). It is -F dr up to third order, F being the mean
+   force of the step.
+
    Of a law that does not say what it stores, or of families what it takes, nothing can be balanced:
    dissipated_damage is then the work done against the forces of the bonds, -f (v- + v+)/2 dt for
    each step and half of it for step n, less the change of the stored energy. It holds all that the
-   law takes, its dampers too, and the error of the steps; the imbalance would be 0 by definition,
-   and is NaN. So it is where a field that the law reads changes in time: what is stored changes
-   with it, and what the field gives or takes is just what is missing in the balance. */
+   law takes, its dampers too, what changing rest states have not given, and the error of the steps;
+   the imbalance would be 0 by definition, and is NaN. */
 #ifndef PERILAT_RUNTIME_LEDGER_H
 #define PERILAT_RUNTIME_LEDGER_H
 
@@ -48,7 +57,8 @@
   X(DISSIPATED_DAMPING, "energy/dissipated_damping",                                               \
     "energy dissipated by mass damping and rate terms of the law")                                 \
   X(EXTERNAL, "energy/external", "work of loads and drives")                                       \
-  X(IMBALANCE, "energy/imbalance", "work of loads and drives less all other energies")
+  X(REST, "energy/rest", "work of rest states and fields that change")                             \
+  X(IMBALANCE, "energy/imbalance", "work of loads, drives and rest states less all other energies")
 
 typedef enum ledger_term {
 #define X(code, name, words) LEDGER_##code,
@@ -78,7 +88,6 @@ typedef struct ledger_laws {
   bool families;         /* some are laws of families */
   bool silent;           /* some say nothing of what they store */
   bool reads_rates;
-  bool given; /* fields that they read change in time, and give or take energy (not counted) */
 } ledger_laws;
 /* Why the imbalance says nothing; NULL where it does. */
 const char *ledger_why(const ledger_laws *of);

@@ -55,6 +55,14 @@ void run_body_go_to(run_body *b, double time) {
   }
 }
 
+void run_body_turn(run_body *b) {
+  for (int n = 0; n < b->law_count; n++) {
+    const run_law *l = &b->laws[n];
+    if (parameter_planes_turn(l->planes) && b->cells && l->state)
+      cells_give(l->state, l->planes->value);
+  }
+}
+
 static bool all_have_parameters(const run_body *b) {
   for (int n = 0; n < b->law_count; n++)
     if (!b->laws[n].parameters) return false;
@@ -180,7 +188,7 @@ static bool is_isotropic(const run_body *b, diagnostics *d) {
    `values` of these; so many looks at each. */
 static void take_stiffest(const run_body *b, int number, double *values) {
   const run_law *l = &b->laws[number];
-  const int fields = l->law->varying_count, looks = fields == 1 ? 17 : fields == 2 ? 9 : 3;
+  const int fields = l->planes->count, looks = fields == 1 ? 17 : fields == 2 ? 9 : 3;
   const size_t bytes = ((size_t)l->law->parameter_count + 1) * sizeof(double);
   double *now = must_alloc(bytes), most = -INFINITY;
   long cases = 1;
@@ -731,7 +739,6 @@ bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d) {
     b->laws[n].bonds = rows_bonds(b->laws[n].rows);
     ledger_add_law(&b->energies, b->laws[n].law, k->output.losses);
   }
-  b->energies.given = changing_planes(b) != NULL;
   mark_loaded(b);
   open_state(b, k, step);
   b->body = b->state->body;

@@ -93,6 +93,8 @@ static inline long run_body_particles(const run_body *b) {
 bool run_body_open(run_body *b, const deck *k, rows **built, diagnostics *d);
 /* What the laws are given in place and time, at that time (s). */
 void run_body_go_to(run_body *b, double time);
+/* A step ends: what they are given now was given a step ago. */
+void run_body_turn(run_body *b);
 /* The state at rest, with the step that the run takes. False with a diagnostic where it cannot
    begin so. */
 bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d);

@@ -280,6 +280,7 @@ static void book_losses(const sweep *law) {
   for (long q = 0; law->lost_state && q < law->lattice->size; q++) {
     law->dissipated_state[q] += law->lost_state[q];
     law->dissipated_rate[q] += law->lost_rate[q];
+    if (law->given_by_rest) law->given_by_rest[q] += law->given_now[q];
   }
 }
 

@@ -245,7 +245,7 @@ static double unbalance_of(const relaxation *r, int number) {
   for (int d = 0; d < r->bodies[number].body->dof; d++)
     add_component(r, &r->bodies[number], d, &sum);
   const double needed = sqrt(pl_fmax(sum.held, sum.applied));
-  state->largest = pl_fmax(state->largest, needed);
+  state->largest = pl_fmax(state->largest, needed > 0 ? needed : sqrt(sum.free));
   const double against = pl_fmax(needed, forgotten * state->largest);
   return sum.free == 0 ? 0 : sqrt(sum.free) / against;
 }

@@ -13,8 +13,9 @@
    An increment is done when the unbalanced force, the root of the sum of squares over all
    components that are not held, is at most `tolerance` times the same of the reactions, or of the
    forces and weights applied if that is larger. What once was needed does not sink below a
-   hundredth of its largest value, so that a broken body comes to rest, too. Moments count over a
-   spacing.
+   hundredth of its largest value, so that a broken body comes to rest, too. Where nothing is held
+   or applied, as of a free body that its rest state moves, that value is the largest unbalanced
+   force. Moments count over a spacing.
 
    Static runs (mesh_rest.h) have increments, too, of one step each, which solves K u = F. */
 #ifndef PERILAT_RUNTIME_RELAXATION_H

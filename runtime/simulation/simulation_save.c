@@ -28,6 +28,7 @@ static void add_fields(part_list *l, const sweep *w) {
   if (!w->dissipated_state) return;
   add_part(l, "dissipated_state", w->dissipated_state, site);
   add_part(l, "dissipated_rate", w->dissipated_rate, site);
+  if (w->given_by_rest) add_part(l, "given_by_rest", w->given_by_rest, site);
 }
 
 /* Of a mesh: the forces of the step before, and what has grown of its cracks. */
@@ -129,7 +130,7 @@ static part_list parts_of(const simulation *s, run_progress *head) {
   for (int k = 0; k < s->tie_count; k++) {
     tie_steps *t = &s->ties[k];
     add_part(&l, "work of a tie", &t->internal, sizeof t->internal);
-    if (t->halves) add_part(&l, "taken by a tie", half_bonds_booked(t->halves), sizeof(double));
+    if (t->halves) add_part(&l, "taken by a tie", half_bonds_booked(t->halves), 2 * sizeof(double));
   }
   for (int k = 0; k < s->contacts.count; k++)
     add_contact(&l, &s->contacts.items[k]);

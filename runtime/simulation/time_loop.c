@@ -199,6 +199,7 @@ static void after_moving(simulation *s) {
   for (int b = 0; b < s->body_count; b++) {
     sweep_turn(s->bodies[b].state);
     s->bodies[b].body->reached = s->bodies[b].body->time;
+    run_body_turn(&s->bodies[b]);
     load_steps_turn(s->bodies[b].loads, s->bodies[b].body, parts_done(s));
   }
   run_clock_go_on(&s->clock);
@@ -388,7 +389,16 @@ static void observe_all(simulation *s) {
     sweep_observe(s->bodies[b].state);
 }
 
+/* What laws were given a step ago is that of their states. */
+static void go_back(simulation *s) {
+  for (int b = 0; b < s->body_count; b++) {
+    run_body_go_to(&s->bodies[b], s->bodies[b].body->reached);
+    run_body_turn(&s->bodies[b]);
+  }
+}
+
 static void begin(simulation *s) {
+  if (s->clock.at.begun) go_back(s);
   set_time(s);
   follow_ties(s);
   for (int k = 0; k < s->link_count; k++)
