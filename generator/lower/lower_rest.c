@@ -37,3 +37,12 @@ void rest_take_off_law(ir *g, const law *l, lowered_law *of) {
   rest_take_off(g, of, of->fields, l->fields.count);
   rest_take_off(g, of, of->outputs, l->outputs.count);
 }
+
+bool rest_reads_states(ir *g, const law *l, const ir_node *rest, int rests) {
+  bool found = false;
+  for (int k = 0; k < l->fields.count && rests > 0 && !found; k++) {
+    const ir_node field = lower_field(g, l, k);
+    found = rewrite_depends(g, rest, rests, &field, 1);
+  }
+  return found;
+}

@@ -15,5 +15,7 @@ void rest_take_off_law(ir *g, const law *l, lowered_law *of);
 void rest_hold(ir *g, const law *l, const lowered_law *of, ir_node *node);
 ir_node rest_stand_in(ir *g, const law *l);
 ir_node rest_filled_in(ir *g, const law *l, ir_node rest, ir_node node);
+/* Whether the rest state [rests] follows states, and so changes with time. */
+bool rest_reads_states(ir *g, const law *l, const ir_node *rest, int rests);
 
 #endif

@@ -6,6 +6,7 @@
 #include "generator/ir/rewrite.h"
 #include "generator/lower/kinematics.h"
 #include "generator/lower/lower_inputs.h"
+#include "generator/lower/lower_rest.h"
 
 /* --- the same with something else ------------------------------------------------------------- */
 
@@ -88,10 +89,6 @@ ir_node plan_given_by_rest(const kernel_plan *plan, const rest_energy *of) {
 }
 
 bool plan_rest_changes(const kernel_plan *plan, const ir_node *rest, int rests) {
-  bool changes = plan->variation.before_count > 0;
-  for (int k = 0; k < plan->law->fields.count && !changes; k++) {
-    const ir_node field = lower_field(plan->graph, plan->law, k);
-    changes = rests > 0 && rewrite_depends(plan->graph, rest, rests, &field, 1);
-  }
-  return changes;
+  return plan->variation.before_count > 0 ||
+         rest_reads_states(plan->graph, plan->law, rest, rests);
 }

@@ -570,7 +570,8 @@ static void check_locked_energy(memory_bench *m) {
   enum { STEPS = 400 };
   bench *b = m->b;
   if (b->law_frozen.W == IR_NONE || b->law->nonconservative || b->law->tree->law == LAW_SLIP_BOND ||
-      rest_changes(b->graph, b->law, &b->law_frozen))
+      rest_reads_states(b->graph, b->law, &b->law_frozen.rest,
+                        b->law_frozen.rest != IR_NONE))
     return;
   drawn d = {.energy = probe_new(b, &b->law_frozen.W, 1)};
   put_virgins(m);
