@@ -549,8 +549,8 @@ typedef struct pl_law {
   int given_count;
   const int32_t *given; /* [given_count] their places in `parameters` */
 
-  /* The rest state, or fields, change what the law stores: ledgers tell how much (PL_GIVEN_BY_REST).
-   */
+  /* The rest state, or fields, change what the law stores: ledgers tell how much
+     (PL_GIVEN_BY_REST). */
   int works_at_rest;
 } pl_law;
 

@@ -1,16 +1,16 @@
 /* What a law is given as its rest state changes, or fields that a deck changes in time.
 
-   With W(u, r, d) stored at the deformation u, the rest state r and fields d, forces F = dW/du. In a
-   step r and d change while u goes its way du; the forces work over half of the way with the old
-   ones and over half with the new ones, so that up to du^3 what they do not account for is the
+   W(u, r, d) is stored at the deformation u, the rest state r and fields d; forces are F = dW/du.
+   In a step r and d change while u goes its way du; the forces work over half of the way with the
+   old ones and over half with the new ones, so that up to du^3 what they do not account for is the
    difference of W halfway:
 
      given = W(u, r', d') - W(u, r, d) - (F(u, r', d') - F(u, r, d)) du/2
 
    u being where the step has come to (ledger.h). States are booked in two parts: what they take is
-   at the rest state of the old ones (plan_losses.h), and what that gives as it follows them is here.
-   Where nothing but r moves it is -F dr, the work of the mean force over the change of the rest
-   state. */
+   at the rest state of the old ones (plan_losses.h), and what that gives as it follows them is
+   here. Where nothing but r moves it is -F dr, the work of the mean force over the change of the
+   rest state. */
 #ifndef PERILAT_GENERATOR_PLAN_GIVEN_H
 #define PERILAT_GENERATOR_PLAN_GIVEN_H
 

@@ -20,8 +20,8 @@ typedef struct law_energy {
   force_fields forces;
 } law_energy;
 
-/* W of a particle's halves of its bonds: what forces at zero rate do as the body moves; of bending in
-   space it is left out. */
+/* W of a particle's halves of its bonds: what forces at zero rate do as the body moves; of bending
+   in space it is left out. */
 ir_node plan_still_power(const kernel_plan *plan, const law_energy *of);
 
 /* Of lost[PL_LOSSES] of a particle (J) the first two, given the fields that the step ends with

@@ -596,8 +596,8 @@ static bool tell_no_energy(const law *l, diagnostics *d) {
   return false;
 }
 
-/* Of a rest strain the work along z counts in plane strain, too: what is stored is that of all three
-   directions. */
+/* Of a rest strain the work along z counts in plane strain, too: what is stored is that of all
+   three directions. */
 static bool works_along_z(const planner *p) {
   return has_rest(p) && p->plan->law->setting == SETTING_PLANE_STRAIN;
 }

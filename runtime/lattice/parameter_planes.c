@@ -608,8 +608,7 @@ static double *new_plane(parameter_planes *r, const value_places *p) {
   return must_align(PL_ALIGNMENT, bytes);
 }
 
-/* Without those that stand once more, as they were a step ago. */
-static int own_planes(const pl_law *law) {
+int parameter_planes_of(const pl_law *law) {
   int count = law->varying_count;
   while (count > 0 && plane_of(law, law->varying[count - 1]) < count - 1)
     count--;
@@ -619,7 +618,7 @@ static int own_planes(const pl_law *law) {
 static parameter_planes *planes_new(const value_places *p) {
   const size_t count = (size_t)p->law->varying_count + 1;
   parameter_planes *r = must_calloc(1, sizeof *r);
-  r->count = own_planes(p->law);
+  r->count = parameter_planes_of(p->law);
   r->all = p->law->varying_count;
   r->plane_size = (size_t)planes_of(p) * (size_t)p->rows->size;
   r->value = must_calloc(count, sizeof *r->value);

@@ -50,6 +50,9 @@ parameter_planes *parameter_planes_new(const deck *k, int lattice, const deck_ma
                                        const rows *w, const unsigned char *own, const pl_law *law,
                                        double *parameters, const regional_values *regional,
                                        int regional_count, diagnostics *d);
+/* How many of law->varying stand there for the first time: behind them are some as they were a step
+   ago. */
+int parameter_planes_of(const pl_law *law);
 /* The values of a time (s), a function of it alone. Nothing is allocated, and what stays is not
    touched. NULL is allowed. False where all stays. */
 bool parameter_planes_go_to(parameter_planes *p, double time);

@@ -26,9 +26,9 @@
    they work over the mean of v- and v+; what is missed is about c v^2 dt/4, v being how fast a
    damper c now moves.
 
-   A rest state r from which deformations are measured, and fields that the deck changes in time, are
-   booked in the same way: as a step ends they are what they are then, and stored energy has changed
-   by what no force has done,
+   A rest state r from which deformations are measured, and fields that the deck changes in time,
+   are booked in the same way: as a step ends they are what they are then, and stored energy has
+   changed by what no force has done,
 
      given_n = W(u_n, r_n) - W(u_n, r_(n-1)) - (F(u_n, r_n) - F(u_n, r_(n-1))) du/2
 

@@ -79,7 +79,7 @@ static double *parameters_of_bond(const bad_search *s, const rows_bond *b) {
   double *values = must_calloc((size_t)law->parameter_count + 1, sizeof *values);
   for (int p = 0; p < law->parameter_count; p++)
     values[p] = s->law->parameters[p];
-  for (int k = 0; k < law->varying_count; k++)
+  for (int k = 0; k < parameter_planes_of(law); k++)
     values[law->varying[k]] = s->state->parameter[k][b->slot];
   return values;
 }

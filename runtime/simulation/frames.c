@@ -631,7 +631,7 @@ static void add_of_law(frame_set *f, int n) {
   const bool of_cells = f->bodies[f->laws[n].from->lattice].cells != NULL;
   add_states(f, n, of_cells);
   add_outputs(f, n, of_cells);
-  for (int k = 0; k < law->varying_count; k++)
+  for (int k = 0; k < parameter_planes_of(law); k++)
     add_parameter(f, n, law->varying[k], values_of_parameter, k);
   for (int p = 0; p < law->parameter_count; p++)
     if (is_field(&f->laws[n], p) && !varies(law, p)) add_parameter(f, n, p, values_of_constant, p);

@@ -148,10 +148,11 @@ static void a_bar_gives_way_in_a_fire(void **state) {
   const double end = 1200 / (AREA * E_20 * HALF);
   assert_true(fabs(last_of(w, "fire.h5", "displacement") / end - 1) < 1e-9);
   assert_non_null(strstr(w->said, "T changes in time: 293 to 793 K"));
-  /* W = F^2 L/(2 A E) doubles as the load works on: half of that work is stored, half goes out */
+  /* W = F^2 L/(2 A E) doubles as the load works on: half of that work is stored, half goes out,
+     less what damping bears of the force as the bar moves, an 800th */
   const double stored = last_of(w, "fire.h5", "energy/stored");
   assert_true(fabs(last_of(w, "fire.h5", "energy/imbalance")) < 1e-6 * stored);
-  assert_true(fabs(last_of(w, "fire.h5", "energy/rest") / -(stored / 2) - 1) < 1e-3);
+  assert_true(fabs(last_of(w, "fire.h5", "energy/rest") / -(stored / 2) - 1) < 2e-3);
 }
 
 /* --- the same bits ---------------------------------------------------------------------------- */

@@ -142,7 +142,7 @@ static void a_free_body_gets_next_to_nothing(void **state) {
   }
 }
 
-/* Up and down in increments, at rest after each: what is given at last is what went into damping. */
+/* Up and down in increments, at rest after each: what is given at last went into damping. */
 static void a_closed_way_gives_nothing(void **state) {
   (void)state;
   const body_case *const all[] = {&by_fields[0], &of_points[0]};

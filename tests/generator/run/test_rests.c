@@ -153,8 +153,8 @@ static void a_body_let_go_keeps_its_energy(void **state) {
   }
 }
 
-/* By a state: the growth is whole after some hundred steps. What it does is no loss, and damping has
-   taken what it gave (test_rest_work.c). */
+/* By a state: the growth is whole after some hundred steps. What it does is no loss, and damping
+   has taken what it gave (test_rest_work.c). */
 static void growth_in_time_is_not_lost(void **state) {
   (void)state;
   deck_case c;

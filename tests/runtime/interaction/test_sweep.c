@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "runtime/interaction/pairwise.h"
+#include "runtime/parts/ledger.h"
 #include "runtime/simulation/bad_state.h"
 #include "tests/runtime/small_run.h"
 
@@ -185,8 +186,8 @@ static void threads_do_not_change_a_bit(void **state) {
     assert_int_equal(simulation_step_done(many.simulation), 40);
     same_arrays(simulation_state(one.simulation, 0), simulation_state(many.simulation, 0));
     const double *a, *b;
-    assert_int_equal(simulation_series_count(one.simulation), 6);
-    for (int t = 0; t < 6; t++) {
+    assert_int_equal(simulation_series_count(one.simulation), LEDGER_COUNT);
+    for (int t = 0; t < LEDGER_COUNT; t++) {
       simulation_series(one.simulation, t, NULL, &a);
       simulation_series(many.simulation, t, NULL, &b);
       assert_memory_equal(a, b, (size_t)simulation_history(one.simulation, NULL) * sizeof(double));

@@ -1,4 +1,4 @@
-#include "generator/plan/particle_parts.h"
+#include "generator/ir/particle_parts.h"
 
 #include <stdlib.h>
 #include <string.h>
