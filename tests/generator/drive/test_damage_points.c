@@ -1,7 +1,7 @@
 /* Laws of a continuum that soften and fail, at one point: directions of principal values in space
    and in the plane, points that fail, the work of fracture of the damage laws in models/ for cells
-   of three sizes, a crack at an angle against its closed form, and cells of sizes that a law does
-   not hold for. */
+   of three sizes, a crack at an angle against its closed form, cells of sizes that a law does
+   not hold for; and damages that flow, of bonds and families, too. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
@@ -187,12 +187,58 @@ static void cells_of_wrong_sizes_are_refused(void **state) {
   expect(w, "check deck.nml", 0, "");
 }
 
+/* --- damages that flow ------------------------------------------------------------------------ */
+
+#define STRENGTH "  parameter S = 1e-4 in (0, 1)\n  parameter rho = 2400 [kg/m^3] in (0, inf)\n"
+#define HELD                                                                                       \
+  " at_time = 1 formula = '1 - S/1e-3' tolerance = %s /\n&expect quantity = '%s' at_time = 2 "     \
+  "formula = '1 - S/1e-3' tolerance = %s /\n&expect quantity = '%s' at_time = 3 "                  \
+  "formula = '1 - S/2e-3' tolerance = %s /\n"
+
+/* A damage grows along a flow until (1 - D) e is the strength, and stays as it is let go: of a
+   bond, toward the neighbours of a particle, of a point. */
+static void a_damage_flows_back_to_a_strength(void **state) {
+  static const struct {
+    const char *law, *of, *moved, *damage, *tolerance;
+  } cases[] = {{"law central bond\n  parameter k = 50 [MN] in (0, inf)\n" STRENGTH
+                "  damage D on bond\n  e = positive_part(stretch)\n"
+                "  flow D along 1 returned when (1 - D)*e - S >= 0\n"
+                "  force N = k*(stretch - D*e)\n",
+                "&bond spacing = '10 mm' thickness = '10 mm'", "stretch", "D", "1e-9"},
+               {"law state\n  for plane_stress\n  parameter E = 30 [GPa] in (0, inf)\n" STRENGTH
+                "  damage D on bond\n  e[j] = positive_part(stretch[j])\n"
+                "  flow D[j] along 1 returned when (1 - D[j])*e[j] - S >= 0\n"
+                "  force state T[j] = 3*E/sum(s*V[j])*(stretch[j] - D[j]*e[j])\n",
+                "&particle lattice = 'hexagonal' spacing = '10 mm'", "strain_xx", "D_1", "1e-3"},
+               {"law continuum\n  for space\n  parameter E = 30 [GPa] in (0, inf)\n" STRENGTH
+                "  damage D on point\n  e = positive_part(principal(strain, 1))\n"
+                "  flow D along 1 returned when (1 - D)*e - S >= 0\n"
+                "  stress sigma = (1 - D)*hooke(strain, E, 0.2)\n",
+                "&point test = 'components'", "strain_xx", "D", "1e-9"}};
+  workplace *w = *state;
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    char text[2000];
+    const char *d = cases[k].damage, *near = cases[k].tolerance;
+    snprintf(text, sizeof text, "model flowing\n  %send model\n", cases[k].law);
+    write_text(w, "flowing.plm", text);
+    snprintf(text, sizeof text,
+             "&simulation steps = 60 /\n%s /\n&material model = 'flowing.plm' /\n"
+             "&path quantity = '%s' times = 0, 1, 2, 3 values = 0, 1e-3, 0, 2e-3 /\n"
+             "&expect quantity = '%s'" HELD,
+             cases[k].of, cases[k].moved, d, near, d, near, d, near);
+    write_text(w, "path.nml", text);
+    expect(w, "check flowing.plm", 0, "no errors, 0 warnings");
+    expect(w, "drive path.nml", 0, "3 of 3");
+    expect(w, "drive path.nml --compiled", 0, "3 of 3");
+  }
+}
+
 int main(void) {
 #define T(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
   const struct CMUnitTest tests[] = {
       T(directions_of_principal_values),    T(a_point_fails_for_good),
       T(tearing_takes_the_fracture_energy), T(a_crack_at_an_angle),
-      T(cells_of_wrong_sizes_are_refused),
+      T(cells_of_wrong_sizes_are_refused),  T(a_damage_flows_back_to_a_strength),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
