@@ -21,5 +21,7 @@ void plan_hoist(kernel_plan *p);
 ir_cost plan_cost(const kernel_plan *p, const segment *a, placement at_least);
 /* What a step costs for each bond: of a strip, or of either side of it. */
 void plan_count_cost(kernel_plan *p);
+/* Whether some loop is large (kernel_plan.large). */
+bool plan_is_large(const kernel_plan *p);
 
 #endif
