@@ -7,10 +7,10 @@
 
 static void write_prelude(emitter *e) {
   const bool of_points = e->plan->form == FORM_POINTS;
-  say(e, SAY_PRELUDE,
-      spell(e, plan_is_of_families(e->plan) ? SAY_FAMILY_OPTIONS
-               : of_points                  ? SAY_POINT_OPTIONS
-                                            : SAY_STRIP_OPTIONS));
+  const char *options = spell(e, plan_is_of_families(e->plan) ? SAY_FAMILY_OPTIONS
+                                 : of_points                  ? SAY_POINT_OPTIONS
+                                                              : SAY_STRIP_OPTIONS);
+  say(e, SAY_PRELUDE, e->plan->large ? spell(e, SAY_LARGE_OPTIONS, options) : options);
   c_text_add(e->out, "%s\n%s\n", prelude_kernel_h, prelude_elementary_h);
   if (of_points) c_text_add(e->out, "%s\n", prelude_rectangle_h);
   say(e, SAY_PRELUDE_END);

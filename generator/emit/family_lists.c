@@ -133,8 +133,10 @@ static bool stands_in_front(const emitter *e, const segment_root *r) {
 
 static void write_lines(emitter *e, bool along) {
   const list_form *f = e->form;
-  for (ir_node n = 0; n < e->node_count; n++)
+  for (int k = 0; k < e->node_count; k++) {
+    const ir_node n = expression_in_order(e, k);
     if ((f->alike && f->along[n]) == along) expression_line(e, n);
+  }
 }
 
 static void write_stores(emitter *e, const segment *a, bool front) {

@@ -355,7 +355,7 @@ stages *loop_cutting_plan(const emitter *e, loop_cutting cutting) {
   int lines = 0;
   for (ir_node n = 0; n < e->node_count; n++)
     lines += stages_is_line(e, n);
-  stages *best = search(&p, cutting, lines);
+  stages *best = e->plan->large ? NULL : search(&p, cutting, lines);
   if (!best) best = plan_whole(&p);
   free(p.finish);
   free(p.usual);

@@ -178,12 +178,14 @@ static void spread(const emitter *e, searches *s) {
 }
 
 static void write_lines(emitter *e, const searches *s) {
-  for (ir_node n = 0; n < e->node_count; n++)
+  for (int k = 0; k < e->node_count; k++) {
+    const ir_node n = expression_in_order(e, k);
     if (s->mask[n] && s->kept[n] >= 0)
       say(e, SAY_LINE, "    ", e->name[n], spell(e, SAY_SEARCH_KEPT, numeral(e, s->kept[n])),
           expression_line_end(e, n));
     else if (s->mask[n])
       expression_line(e, n);
+  }
 }
 
 /* What its steps take that does not change from step to step, and where it begins. */

@@ -27,7 +27,8 @@ static kernel_plan *finish(kernel_plan *plan, bool good, diagnostics *d) {
     plan_free(plan);
     return NULL;
   }
-  plan_seldom(plan);
+  plan->large = plan_is_large(plan);
+  if (!plan->large) plan_seldom(plan);
   plan_hoist(plan);
   plan_count_cost(plan);
   return plan;
@@ -81,7 +82,12 @@ kernel_plan *plan_kernel_of_families(const law *l, const law_variation *v, diagn
     if (!plan || (adds && (on_bonds || !few || !has_own_sums(plan)))) return plan;
     plan_free(plan);
   }
-  return plan_families(l, v, few ? FORM_UNROLLED : FORM_LOOPS, d);
+  if (few) {
+    kernel_plan *plan = plan_families(l, v, FORM_UNROLLED, d);
+    if (!plan || !plan->large) return plan;
+    plan_free(plan);
+  }
+  return plan_families(l, v, FORM_LOOPS, d);
 }
 
 static kernel_plan *plan_kernel_of_points(const law *l, const law_variation *v, diagnostics *d) {

@@ -53,6 +53,8 @@ typedef enum program_task {
    (ENDS_PROTECTED), because the force must use the damage that stays. */
 
 enum { PLAN_MOST_PASSES = 8 }; /* of a program */
+/* Operations of a loop, those of functions counted, above which it is large. */
+enum { PLAN_LARGE = 4000 };
 
 /* Whether loops over strips are cut into stages (stages.h). Results are the same to the bit. */
 typedef enum loop_cutting {
@@ -87,6 +89,9 @@ typedef struct kernel_plan {
                         uniforms[k] and nothing before it */
   int uniform_count;
   double flops_per_bond, divisions_per_bond; /* of `step`, without what is hoisted */
+  /* Some loop has so many operations, hundreds of cases for instance, that a C compiler takes more
+     than linear time on it: it is written and compiled so that time is linear, not the fastest. */
+  bool large;
   /* Of families: what is lost follows from fields of the particle's own: nothing is where none has
      changed. */
   bool loses_by_own_fields;

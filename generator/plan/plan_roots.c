@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "generator/ir/operation.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/lower.h"
 #include "generator/lower/lower_inputs.h"
@@ -128,4 +129,35 @@ void plan_count_cost(kernel_plan *p) {
       p->flops_per_bond += part * (cost.additions + cost.multiplications + cost.selects);
       p->divisions_per_bond += part * cost.divisions;
     }
+}
+
+/* --- how large it is -------------------------------------------------------------------------- */
+
+/* Operations of a loop, of which functions have many. */
+static double loop_size(const kernel_plan *p, const segment *a) {
+  unsigned char *needed = segment_needed(p->graph, a);
+  double size = 0;
+  for (ir_node n = 0; n < ir_count(p->graph); n++)
+    if (needed[n] && !ir_is_uniform(p->graph, n))
+      size += operations[ir_operation(p->graph, n)].price.operations;
+  free(needed);
+  const bool written_out = p->form == FORM_UNROLLED && a->kind != OVER_PARTICLES;
+  return written_out ? size * p->law->neighbours : size;
+}
+
+typedef struct sizing {
+  const kernel_plan *plan;
+  double largest;
+} sizing;
+
+static void find_largest(void *context, const segment *a) {
+  sizing *s = context;
+  const double size = loop_size(s->plan, a);
+  if (size > s->largest) s->largest = size;
+}
+
+bool plan_is_large(const kernel_plan *p) {
+  sizing s = {.plan = p};
+  plan_visit(p, find_largest, &s);
+  return s.largest > PLAN_LARGE;
 }

@@ -24,5 +24,7 @@ void plan_mark_of_time(const kernel_plan *p, unsigned char *mask);
 ir_cost plan_cost(const kernel_plan *p, const segment *a, placement at_least);
 /* What a step costs for each bond: of a strip, or of either side of it. */
 void plan_count_cost(kernel_plan *p);
+/* Whether some loop is large (kernel_plan.large). */
+bool plan_is_large(const kernel_plan *p);
 
 #endif

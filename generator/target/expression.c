@@ -134,6 +134,11 @@ static bool is_pass_own(const emitter *e, ir_node n) {
   return from == IR_FROM_SLOT || from == IR_FROM_PLANE;
 }
 
+/* A uniform of a large loop has no name: there are more of them than registers. */
+static bool reads_in_place(const emitter *e, ir_node n) {
+  return e->plan->large && expression_is_uniform(e, n);
+}
+
 /* The model's names first, so that they stay as they are; then those of the nameless. */
 static void choose_names(emitter *e) {
   for (ir_node n = 0; n < e->node_count; n++) {
@@ -147,9 +152,82 @@ static void choose_names(emitter *e) {
   for (int named = 1; named >= 0; named--)
     for (ir_node n = 0; n < e->node_count; n++)
       if (e->needed[n] && (ir_name(e->graph, n) != NULL) == named && !is_inline(e, n))
-        e->name[n] = is_pass_own(e, n) && c_names_reserve(&e->names, ir_name(e->graph, n))
+        e->name[n] = reads_in_place(e, n)
+                         ? spell(e, e->scope->uniform, numeral(e, e->uniform_of[n]))
+                     : is_pass_own(e, n) && c_names_reserve(&e->names, ir_name(e->graph, n))
                          ? ir_name(e->graph, n)
                          : c_names_make(&e->names, wished_name(e, n));
+}
+
+/* --- the order of lines ----------------------------------------------------------------------- */
+
+/* Values that wait at most while node n is computed, its operands in the order that needs the
+   fewest (Sethi and Ullman 1970, of trees; nodes with more users are counted for each). Sorts the
+   operands; of equals the last, behind which a chain of cases goes on, comes first. */
+static int waiting_values(const emitter *e, const int *waiting, ir_node n, ir_node operand[3]) {
+  const int count = operand_count(e, n);
+  int most = is_constant(e, n) ? 0 : 1;
+  for (int k = 0; k < count; k++) {
+    const ir_node o = ir_operand(e->graph, n, count - 1 - k);
+    int at = k;
+    for (; at > 0 && waiting[operand[at - 1]] < waiting[o]; at--)
+      operand[at] = operand[at - 1];
+    operand[at] = o;
+  }
+  for (int k = 0; k < count; k++)
+    if (waiting[operand[k]] + k > most) most = waiting[operand[k]] + k;
+  return most;
+}
+
+typedef struct ordering {
+  const emitter *e;
+  int *waiting;   /* [node_count] */
+  ir_node *open;  /* [node_count] nodes whose operands are placed, each below the next */
+  int *placed;    /* [node_count] operands that have been, and one more once the node is */
+  ir_node *order; /* [count] */
+  int count;
+} ordering;
+
+/* Node n behind all that it needs. */
+static void put_behind_operands(ordering *o, ir_node n) {
+  int depth = 0;
+  if (o->placed[n] == 0) o->open[depth++] = n;
+  while (depth > 0) {
+    const ir_node top = o->open[depth - 1];
+    const int count = operand_count(o->e, top);
+    ir_node operand[3];
+    waiting_values(o->e, o->waiting, top, operand);
+    const int next = o->placed[top]++;
+    if (next < count) {
+      if (o->placed[operand[next]] == 0) o->open[depth++] = operand[next];
+      continue;
+    }
+    o->order[o->count++] = top;
+    depth--;
+  }
+}
+
+/* Of a large loop: each value shortly before it is used. As the graph stands all lines of a chain
+   of cases would wait, more than there are registers, for the first to be chosen from. */
+static void choose_order(emitter *e) {
+  const size_t size = (size_t)e->node_count + 1;
+  ordering o = {.e = e,
+                .waiting = must_calloc(size, sizeof(int)),
+                .open = must_alloc(size * sizeof(ir_node)),
+                .placed = must_calloc(size, sizeof(int)),
+                .order = must_alloc(size * sizeof(ir_node))};
+  for (ir_node n = 0; n < e->node_count; n++) {
+    ir_node operand[3];
+    o.waiting[n] = waiting_values(e, o.waiting, n, operand);
+  }
+  for (ir_node n = e->node_count - 1; n >= 0; n--)
+    if (e->needed[n]) put_behind_operands(&o, n);
+  for (ir_node n = 0; n < e->node_count; n++)
+    put_behind_operands(&o, n);
+  free(o.waiting);
+  free(o.open);
+  free(o.placed);
+  e->order = o.order;
 }
 
 /* --- a function's nodes ----------------------------------------------------------------------- */
@@ -184,6 +262,8 @@ static void open_nodes(emitter *e, const scope *in, const ir_node *nodes, int co
   e->name = must_calloc(n, sizeof *e->name);
   find_needed(e, nodes, count);
   choose_names(e);
+  e->order = NULL;
+  if (e->plan->large) choose_order(e);
 }
 
 void expression_open(emitter *e, const scope *in, const ir_node *nodes, int count) {
@@ -207,6 +287,7 @@ void expression_close(emitter *e) {
   free(e->user);
   free(e->size);
   free(e->name);
+  free(e->order);
 }
 
 /* --- expressions ------------------------------------------------------------------------------ */
@@ -390,7 +471,8 @@ void expression_declare(emitter *e) {
   for (ir_node n = 0; n < e->node_count; n++) {
     if (!mask[n] || is_constant(e, n)) continue;
     if (expression_is_uniform(e, n)) {
-      if (e->name[n]) /* the condition of the larger of two has none: nothing reads it */
+      if (e->name[n] &&
+          !e->plan->large) /* the condition of the larger of two has none: nothing reads it */
         say(e, SAY_LINE, e->scope->before, e->name[n],
             spell(e, e->scope->uniform, numeral(e, e->uniform_of[n])), expression_line_end(e, n));
     } else if (expression_is_input(e, n))
@@ -416,6 +498,6 @@ void expression_line(emitter *e, ir_node n) {
 }
 
 void expression_lines(emitter *e) {
-  for (ir_node n = 0; n < e->node_count; n++)
-    expression_line(e, n);
+  for (int k = 0; k < e->node_count; k++)
+    expression_line(e, expression_in_order(e, k));
 }

@@ -61,6 +61,7 @@ struct emitter {
   ir_node *user;          /* [node_count] the last of them; IR_NONE: a root */
   int *size;              /* [node_count] operations written in place of the node */
   const char **name;      /* [node_count] NULL: written in place */
+  ir_node *order;         /* [node_count] in which lines stand; NULL: as in the graph */
 };
 
 /* Adds a word with its pieces to the text; the same as a text that lives as long as the emitter. */
@@ -114,8 +115,11 @@ const char *expression_line_end(const emitter *e, ir_node n);
 void expression_declare(emitter *e);
 /* The line of a value of time that is no input. */
 void expression_line_of_time(emitter *e, ir_node n, const char *indent);
-/* `const double x = ...;` for a node that has a name in the loop; for each of them, in the order of
-   the graph. */
+/* The node whose line is the k-th. */
+static inline ir_node expression_in_order(const emitter *e, int k) {
+  return e->order ? e->order[k] : k;
+}
+/* `const double x = ...;` for a node that has a name in the loop; for each of them, in order. */
 void expression_line(emitter *e, ir_node n);
 void expression_lines(emitter *e);
 
