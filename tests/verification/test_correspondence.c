@@ -181,6 +181,65 @@ static void turned_bodies_feel_nothing(void **state) {
   }
 }
 
+/* The law of which only the energy is given. */
+#define BY_ENERGY                                                                                  \
+  "&material lattice = 'l' model = '../tests/generator/families/gradients.plm' Y = '30 GPa' nu = " \
+  "0.2 /\n&field name = 'T' value = '300 [K] + 50 [K]*x/1 [m] - 20 [K]*y/1 [m]' /\n"
+
+/* Derived from the energy, the forces have the stress of the solid; V Y/10 of the square of the mean
+   stretch, m, adds m Y/5 mean(e X/L) to it. Gradients of what is linear are exact everywhere, so
+   that theirs are 0. */
+static void an_energy_alone_gives_the_same(void **state) {
+  (void)state;
+  static const char *const decks[] = {PLANE("'hexagonal' horizon = 2") BY_ENERGY,
+                                      PLANE("'blue_noise' seed = 4") BY_ENERGY};
+  double F[3][3] = {{1.1, 0.2, 0}, {-0.05, 0.9, 0}, {0, 0, 1}};
+  for (int n = 0; n < 2; n++) {
+    body_case c;
+    double P[3][3], found[3][3], volume = 0;
+    open_case(&c, decks[n]);
+    deform(&c, F);
+    find_forces(&c);
+    stress_of(F, 2, P);
+    stress_of_body(&c, found);
+    double more[2][2] = {{0}};
+    for (long q = 0; q < c.g->size; q++) {
+      double mean = 0, part[2][2] = {{0}};
+      int bonds = 0;
+      if (!c.g->present[q]) continue;
+      for (int k = 0; k < 2 * c.g->directions; k++) {
+        double X[3], x[2], length;
+        if (!rows_has_neighbour(c.g, q, k)) continue;
+        const double s = rows_chord(c.g, q, k, X);
+        for (int a = 0; a < 2; a++)
+          x[a] = F[a][0] * X[0] + F[a][1] * X[1];
+        length = hypot(x[0], x[1]);
+        mean += length / s - 1;
+        for (int a = 0; a < 4; a++)
+          part[a / 2][a % 2] += x[a / 2] / length * X[a % 2] / s;
+        bonds++;
+      }
+      for (int a = 0; a < 4; a++)
+        more[a / 2][a % 2] += rows_stressed_volume(c.g, q) * E / 5 * mean / bonds *
+                              part[a / 2][a % 2] / bonds;
+      volume += rows_stressed_volume(c.g, q);
+    }
+    for (int a = 0; a < 4; a++)
+      assert_true(fabs(P[a / 2][a % 2] + more[a / 2][a % 2] / volume - found[a / 2][a % 2]) <
+                  1e-12 * P[0][0]);
+    static const double expected[] = {50, -20, 0, 1}, size[] = {50, 50, 50 / 0.01, 1};
+    double *values = calloc((size_t)c.g->size, sizeof *values);
+    sweep_observe(c.w);
+    for (int k = 0; k < 4; k++) {
+      sweep_output(c.w, k, values);
+      for (long q = 0; q < c.g->size; q++)
+        if (c.g->present[q]) assert_true(fabs(values[q] - expected[k]) < 1e-10 * size[k]);
+    }
+    free(values);
+    close_case(&c);
+  }
+}
+
 /* --- what the gradient does not see ----------------------------------------------------------- */
 
 /* Rows of a hexagon that move by turns, here those along x: each particle has 4 neighbours of the
@@ -327,6 +386,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_uniform_deformation_has_the_stress_of_the_solid),
       cmocka_unit_test(turned_bodies_feel_nothing),
+      cmocka_unit_test(an_energy_alone_gives_the_same),
       cmocka_unit_test(rows_by_turns_cost_what_G_says),
       cmocka_unit_test(waves_are_those_of_the_page),
       cmocka_unit_test(free_bodies_keep_their_energy),
