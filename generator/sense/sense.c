@@ -3,6 +3,7 @@
 #include "dsl/semantics/law_reads.h"
 #include "generator/sense/sense_bench.h"
 #include "generator/sense/sense_bonds.h"
+#include "generator/sense/sense_modes.h"
 #include "generator/sense/sense_moduli.h"
 #include "generator/sense/sense_numbers.h"
 #include "generator/sense/sense_points.h"
@@ -28,6 +29,7 @@ static void check_sense(const law *l, const physics_options *o, diagnostics *d, 
     hush(&b, before);
     sense_check_text(&b);
     sense_check_moduli(&b);
+    sense_check_modes(&b);
     sense_check_numbers(&b);
     const bool in_time = law_reads_time(l); /* what needs an hour does not show in a step */
     if (is_of_bonds(l) && !in_time) sense_check_bonds(&b);
