@@ -63,6 +63,7 @@ X(CRACK_DIRECTION, "crack-direction", SEVERITY_WARNING)
 X(NEVER_TAKEN, "never-taken", SEVERITY_WARNING)
 X(ABSURD_VALUE, "absurd-value", SEVERITY_WARNING)
 X(NAMED_VALUE, "named-value", SEVERITY_WARNING)
+X(ZERO_ENERGY, "zero-energy", SEVERITY_WARNING)
 X(STRESS_STATE, "stress-state", SEVERITY_WARNING)
 /* ranges: what a value can be within the declared bounds */
 X(DIVISION_BY_ZERO, "division-by-zero", SEVERITY_WARNING)

@@ -206,13 +206,13 @@ enum { MOVES, FIXED };
   X(CORRESPONDENCE, "correspondence", 1, 2, correspondence, NO_VALUE,                              \
     "\\operatorname{correspondence}", "x[j] = norm(correspondence(30 [GPa]*gradient(u)))",         \
     "force state toward each neighbour whose work in `gradient(u)` is that of a stress")           \
-  X(TRANSPOSE, "transpose", 1, 1, transpose, NO_VALUE, "",                                          \
+  X(TRANSPOSE, "transpose", 1, 1, transpose, NO_VALUE, "",                                         \
     "x = norm(gradient(u) - transpose(gradient(u)))", "transpose of a tensor")                     \
   X(SYM, "sym", 1, 1, sym, NO_VALUE, "\\operatorname{sym}", "x = principal(sym(gradient(u)), 1)",  \
     "symmetric part (a + transpose(a))/2 of a tensor")                                             \
   X(DET, "det", 1, 1, det, NO_VALUE, "\\det", "x = det(tensor(1, 1, 1, 0) + fit(stretch))",        \
     "determinant of a tensor")                                                                     \
-  X(INVERSE, "inverse", 1, 1, inverse, NO_VALUE, "",                                            \
+  X(INVERSE, "inverse", 1, 1, inverse, NO_VALUE, "",                                               \
     "x = trace(inverse(tensor(1, 1, 1, 0) + fit(stretch)))", "inverse of a tensor")                \
   X(ROTATION, "rotation", 1, 1, rotation, NO_VALUE, "\\operatorname{rotation}",                    \
     "x = norm(rotation(tensor(1, 1, 1, 0) + gradient(u)))",                                        \

@@ -487,8 +487,8 @@ static bool has_good_weight(checker *ck, expr *e) {
 }
 
 static bool is_displacement(const expr *e) {
-  return e->kind == EXPR_NAME && !e->indexed && e->symbol &&
-         e->symbol->kind == SYMBOL_QUANTITY && e->symbol->index == QUANTITY_U;
+  return e->kind == EXPR_NAME && !e->indexed && e->symbol && e->symbol->kind == SYMBOL_QUANTITY &&
+         e->symbol->index == QUANTITY_U;
 }
 
 /* Of a number a vector, of a vector a tensor. */
@@ -525,8 +525,8 @@ static value correspondence(checker *ck, expr *e) {
              "neighbour");
     return BROKEN;
   }
-  if (!v.unknown && !expect(ck, operand(e, 0), v, dimension_of("Pa"), v.zero ? SHAPE_TENSOR : v.shape,
-                            "what `correspondence` takes"))
+  if (!v.unknown && !expect(ck, operand(e, 0), v, dimension_of("Pa"),
+                            v.zero ? SHAPE_TENSOR : v.shape, "what `correspondence` takes"))
     return BROKEN;
   v.place = ON_NEIGHBOUR;
   v.unknown = false;

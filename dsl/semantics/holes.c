@@ -71,8 +71,8 @@ static void want_factor(settling *t, const expr *product, const expr *known, exp
 
 /* Of a sum or of cases, as they are; of a tensor that need not be symmetric one part may be. */
 static void want_part(settling *t, const expr *whole, expr *part, const expr *other) {
-  const bool tells = whole->shape != SHAPE_GENERAL || (other && !other->open &&
-                                                       other->shape == SHAPE_TENSOR);
+  const bool tells =
+      whole->shape != SHAPE_GENERAL || (other && !other->open && other->shape == SHAPE_TENSOR);
   if (tells) want(t, part, whole->dim, whole->shape);
 }
 

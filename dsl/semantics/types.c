@@ -255,8 +255,9 @@ static value check_product(checker *ck, expr *e, value a, value b) {
                 b.shape == SHAPE_GENERAL ? arena_printf(ck->memory, "transpose(%s)", right) : right,
                 left);
     else if (a.shape == SHAPE_TENSOR && b.shape == SHAPE_TENSOR)
-      diag_hint(ck->d, "for the scalar product write `%s : %s`, for the symmetric one "
-                       "`product(%s, %s)`",
+      diag_hint(ck->d,
+                "for the scalar product write `%s : %s`, for the symmetric one "
+                "`product(%s, %s)`",
                 left, right, left, right);
     else if (a.shape == b.shape)
       diag_hint(ck->d, "for the scalar product write `%s : %s`", left, right);

@@ -326,8 +326,7 @@ const char *stmt_words(arena *memory, const stmt *s) {
 
 char tensor_axis(int component, int which) {
 #define X(code, first, second) {first, second},
-  static const char axes[GENERAL_COMPONENT_COUNT][2] = {TENSOR_COMPONENTS(X)
-                                                         TURNED_COMPONENTS(X)};
+  static const char axes[GENERAL_COMPONENT_COUNT][2] = {TENSOR_COMPONENTS(X) TURNED_COMPONENTS(X)};
 #undef X
   return axes[component][which];
 }

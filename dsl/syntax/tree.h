@@ -146,7 +146,7 @@ struct expr {
   bool primed;  /* NAME: ' follows the name (the neighbour's value toward me) */
 
   unary_op unary;
-  int component; /* UNARY of OP_COMPONENT: which of a general tensor's; of OP_AXIS of the vector's */
+  int component; /* UNARY: of OP_COMPONENT of a general tensor, of OP_AXIS of a vector */
   binary_op binary;
   expr *left, *right; /* BINARY; UNARY uses left */
 

@@ -26,8 +26,8 @@ void law_state_inputs(pl_input out[PL_STATE_INPUTS]) {
   }
 }
 
-/* Motion, class, and what a law has in other ways: PI, TWIST, RESOLVED, DIRECTION, U, and what is made
-   of the motion: SLIP, GAP, SLIP_RATE; and what a point has: STRAIN, STRAIN_RATE, CELL_SIZE,
+/* Motion, class, and what a law has in other ways: PI, TWIST, RESOLVED, DIRECTION, U, and what is
+   made of the motion: SLIP, GAP, SLIP_RATE; and what a point has: STRAIN, STRAIN_RATE, CELL_SIZE,
    and what a tip has (point_inputs.h). */
 #define X(code, value) +1
 _Static_assert(PL_STATE_INPUTS CLASS_QUANTITIES(X) + 19 == QUANTITY_COUNT,

@@ -252,7 +252,7 @@ static ir_node by_far_z(ir *g, ir_node n) {
 
 /* What stretches make of it acts along the present bond. */
 void lower_force_vector_of_energy(lowering *c, ir_node W, ir_node F[FORCE_AXES]) {
-  static ir_node (*const by[FORCE_AXES])(ir *g, ir_node n) = {by_far_x, by_far_y, by_far_z};
+  static ir_node (*const by[FORCE_AXES])(ir * g, ir_node n) = {by_far_x, by_far_y, by_far_z};
   ir *g = c->graph;
   ir_node from[FORCE_AXES], to[FORCE_AXES];
   for (int d = 0; d < FORCE_AXES; d++) {

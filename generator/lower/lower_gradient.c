@@ -61,8 +61,7 @@ static components inverse_shape(ir *g, const law *l, ir_node weight) {
     v.of[k] = zero;
   for (int r = 0; r < dimensions; r++)
     for (int c = r; c < dimensions; c++)
-      v.of[general_place(r, c)] =
-          ir_mul(g, general_cofactor(g, &K, r, c), per_determinant);
+      v.of[general_place(r, c)] = ir_mul(g, general_cofactor(g, &K, r, c), per_determinant);
   return v;
 }
 

@@ -1,6 +1,6 @@
 /* The non-local gradient of a family and the force state that is its counterpart (Silling, Epton,
-   Weckner, Xu, Askari 2007, shape tensor and correspondence model): with the reference bonds X_j, their weights
-   w_j (IR_NONE: 1), the volumes V_j and the shape tensor K = sum(w_j V_j X_j X_j),
+   Weckner, Xu, Askari 2007, shape tensor and correspondence model): with the reference bonds X_j,
+   their weights w_j (IR_NONE: 1), the volumes V_j and the shape tensor K = sum(w_j V_j X_j X_j),
 
        gradient(a)       = sum(w_j V_j (a_j - a) X_j) K^-1
        correspondence(P) = 2 V V_j w_j P K^-1 X_j             N

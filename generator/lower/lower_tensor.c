@@ -188,7 +188,8 @@ static components with_trace(ir *g, binary_op op, const components *a, const com
 components tensor_binary(lowering *c, const expr *e, components a, components b) {
   ir *g = c->graph;
   const bool tensors = a.count >= TENSOR_COUNT && b.count >= TENSOR_COUNT;
-  if (e->binary == OP_CONTRACT && (tensors || a.count == b.count)) return scalar(tensor_contract(g, a, b));
+  if (e->binary == OP_CONTRACT && (tensors || a.count == b.count))
+    return scalar(tensor_contract(g, a, b));
   bool scaled = a.count == 1 || b.count == 1;
   if (e->binary == OP_MUL && !scaled && a.count >= TENSOR_COUNT) return general_product(g, a, b);
   if (tensors && a.count != b.count) a = general_of(g, a), b = general_of(g, b);

@@ -68,8 +68,7 @@ void lower_name_node(ir *g, ir_node n, const char *name, span where) {
 }
 
 void lower_name_value(lowering *c, components value, const char *name, span where) {
-  static const char *const parts[] = {"xx", "yy", "zz", "xy", "yz",
-                                      "xz", "yx", "zy", "zx"};
+  static const char *const parts[] = {"xx", "yy", "zz", "xy", "yz", "xz", "yx", "zy", "zx"};
   static const char *const axes[] = {"x", "y", "z"};
   for (int k = 0; k < value.count; k++) {
     const char *part = value.count == 3 ? axes[k] : parts[k];

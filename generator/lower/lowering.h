@@ -12,9 +12,9 @@ enum { TENSOR_XX, TENSOR_YY, TENSOR_ZZ, TENSOR_XY, TENSOR_YZ, TENSOR_XZ, TENSOR_
 enum { GENERAL_COUNT = GENERAL_COMPONENT_COUNT };
 
 /* A value: one node for a number, a truth value or a bending quantity (which has one component in a
-   plane), three for a vector, six for a symmetric tensor (not engineering shear), nine for a general
-   one (lower_general.h). A tensor whose trace is known to be 0 is a deviator: its zz is -(xx + yy)
-   by construction. */
+   plane), three for a vector, six for a symmetric tensor (not engineering shear), nine for one that
+   need not be symmetric (lower_general.h). A tensor whose trace is known to be 0 is a deviator: its
+   zz is -(xx + yy) by construction. */
 typedef struct components {
   int count;
   ir_node of[GENERAL_COUNT];

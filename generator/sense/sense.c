@@ -2,6 +2,7 @@
 
 #include "generator/sense/sense_bench.h"
 #include "generator/sense/sense_bonds.h"
+#include "generator/sense/sense_modes.h"
 #include "generator/sense/sense_moduli.h"
 #include "generator/sense/sense_numbers.h"
 #include "generator/sense/sense_points.h"
@@ -30,6 +31,7 @@ static void check_sense(const law *l, const physics_options *o, diagnostics *d, 
   sense_check_text(&b);
   if (planned && obeys) {
     sense_check_moduli(&b);
+    sense_check_modes(&b);
     sense_check_numbers(&b);
     if (is_of_bonds(l)) sense_check_bonds(&b);
     if (l->tree->law == LAW_CONTINUUM) sense_check_points(&b);

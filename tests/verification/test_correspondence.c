@@ -1,6 +1,6 @@
 /* Laws by correspondence against the solid that they are made of: the stress of a uniform
-   deformation, rotations, balance inside, the motion that the gradient does not see, the energy of a
-   free body, E and nu of a bar. */
+   deformation, rotations, balance inside, the motion that the gradient does not see, waves, the
+   energy of a free body, E and nu of a bar. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -77,7 +77,8 @@ static void deform(body_case *c, double F[3][3]) {
 /* P = F S of S = hooke(e), e = (F^T F - 1)/2; in plane stress without the third direction. */
 static void stress_of(double F[3][3], int dimensions, double P[3][3]) {
   double e[3][3] = {{0}}, S[3][3], sum = 0;
-  const double lambda = dimensions == 2 ? E * NU / (1 - NU * NU) : E * NU / ((1 + NU) * (1 - 2 * NU));
+  const double lambda =
+      dimensions == 2 ? E * NU / (1 - NU * NU) : E * NU / ((1 + NU) * (1 - 2 * NU));
   for (int a = 0; a < dimensions; a++)
     for (int b = 0; b < dimensions; b++) {
       for (int k = 0; k < dimensions; k++)
@@ -181,6 +182,65 @@ static void turned_bodies_feel_nothing(void **state) {
   }
 }
 
+/* The law of which only the energy is given. */
+#define BY_ENERGY                                                                                  \
+  "&material lattice = 'l' model = '../tests/generator/families/gradients.plm' Y = '30 GPa' nu = " \
+  "0.2 /\n&field name = 'T' value = '300 [K] + 50 [K]*x/1 [m] - 20 [K]*y/1 [m]' /\n"
+
+/* Derived from the energy, the forces have the stress of the solid; V Y/10 of the square of the
+   mean stretch m adds m Y/5 mean(e X/L) to it, e the present directions. Gradients of what is
+   linear are exact everywhere, so that theirs are 0. */
+static void an_energy_alone_gives_the_same(void **state) {
+  (void)state;
+  static const char *const decks[] = {PLANE("'hexagonal' horizon = 2") BY_ENERGY,
+                                      PLANE("'blue_noise' seed = 4") BY_ENERGY};
+  double F[3][3] = {{1.1, 0.2, 0}, {-0.05, 0.9, 0}, {0, 0, 1}};
+  for (int n = 0; n < 2; n++) {
+    body_case c;
+    double P[3][3], found[3][3], volume = 0;
+    open_case(&c, decks[n]);
+    deform(&c, F);
+    find_forces(&c);
+    stress_of(F, 2, P);
+    stress_of_body(&c, found);
+    double more[2][2] = {{0}};
+    for (long q = 0; q < c.g->size; q++) {
+      double mean = 0, part[2][2] = {{0}};
+      int bonds = 0;
+      if (!c.g->present[q]) continue;
+      for (int k = 0; k < 2 * c.g->directions; k++) {
+        double X[3], x[2], length;
+        if (!rows_has_neighbour(c.g, q, k)) continue;
+        const double s = rows_chord(c.g, q, k, X);
+        for (int a = 0; a < 2; a++)
+          x[a] = F[a][0] * X[0] + F[a][1] * X[1];
+        length = hypot(x[0], x[1]);
+        mean += length / s - 1;
+        for (int a = 0; a < 4; a++)
+          part[a / 2][a % 2] += x[a / 2] / length * X[a % 2] / s;
+        bonds++;
+      }
+      for (int a = 0; a < 4; a++)
+        more[a / 2][a % 2] +=
+            rows_stressed_volume(c.g, q) * E / 5 * mean / bonds * part[a / 2][a % 2] / bonds;
+      volume += rows_stressed_volume(c.g, q);
+    }
+    for (int a = 0; a < 4; a++)
+      assert_true(fabs(P[a / 2][a % 2] + more[a / 2][a % 2] / volume - found[a / 2][a % 2]) <
+                  1e-12 * P[0][0]);
+    static const double expected[] = {50, -20, 0, 1}, size[] = {50, 50, 50 / 0.01, 1};
+    double *values = calloc((size_t)c.g->size, sizeof *values);
+    sweep_observe(c.w);
+    for (int k = 0; k < 4; k++) {
+      sweep_output(c.w, k, values);
+      for (long q = 0; q < c.g->size; q++)
+        if (c.g->present[q]) assert_true(fabs(values[q] - expected[k]) < 1e-10 * size[k]);
+    }
+    free(values);
+    close_case(&c);
+  }
+}
+
 /* --- what the gradient does not see ----------------------------------------------------------- */
 
 /* Rows of a hexagon that move by turns, here those along x: each particle has 4 neighbours of the
@@ -233,17 +293,16 @@ static void waves_are_those_of_the_page(void **state) {
     crystal waves_in = stencil_crystal(c.deck.law.law, c.deck.law.parameters, c.g);
     for (int q = 0; q < 4; q++) {
       const double a = 2 * acos(-1) / waves[q], g = 2 / (3 * s) * (sin(a) + sin(a / 2));
-      const double springs =
-          G[n] * E / (6 * rho * s * s) *
-          (4 * (1 - cos(a)) + 8 * (1 - cos(a / 2)) - 3 * s * s * g * g);
+      const double springs = G[n] * E / (6 * rho * s * s) *
+                             (4 * (1 - cos(a)) + 8 * (1 - cos(a / 2)) - 3 * s * s * g * g);
       const double exact = sqrt(E / (1 - NU * NU) / rho * g * g + springs),
                    found = waves_omega(&waves_in, (const double[3]){a / s, 0, 0});
       print_message("G %g, wave of %2.0f spacings: %+.2f %%\n", G[n], waves[q],
                     100 * (exact / (a / s) / sqrt(E / (1 - NU * NU) / rho) - 1));
       assert_true(fabs(found / exact - 1) < 1e-6);
     }
-    const double by_turns = waves_omega(&waves_in, (const double[3]){0, 2 * acos(-1) / sqrt(3) / s, 0}),
-                 theory = sqrt(8 * G[n] / 3 * E / rho) / s;
+    const double end[3] = {0, 2 * acos(-1) / sqrt(3) / s, 0};
+    const double by_turns = waves_omega(&waves_in, end), theory = sqrt(8 * G[n] / 3 * E / rho) / s;
     assert_true(fabs(by_turns - theory) < 1e-3 * sqrt(E / rho) / s);
     crystal_free(&waves_in);
     close_case(&c);
@@ -254,11 +313,11 @@ static void waves_are_those_of_the_page(void **state) {
 
 static const char *const ringing =
     "&simulation end_time = '0.2 ms' step = '%g us' /\n"
-    "&lattice name = 'l' kind = '%s' spacing = '10 mm' thickness = '10 mm' horizon = 1.5 /\n" OF("")
+    "&lattice name = 'l' kind = '%s' spacing = '10 mm' thickness = '10 mm' horizon = 1.5 /\n"
     "&body lattice = 'l' shape = 'rectangle' corner = 0, 0 size = '200 mm', '100 mm' /\n"
     "&region name = 'all' shape = 'rectangle' corner = -1, -1 size = 3, 3 /\n"
     "&initial_displacement region = 'all' component = 'x' "
-    "value = '4 [mm]*cos(180 [deg]*x/0.2 [m])' /\n&output sample = '20 us' /\n";
+    "value = '4 [mm]*cos(180 [deg]*x/0.2 [m])' /\n&output sample = '20 us' /\n" OF("");
 
 /* Of the largest energy. A plate of large strains, 6 %, that rings. */
 static double imbalance(const char *kind, double step) {
@@ -290,7 +349,7 @@ static void free_bodies_keep_their_energy(void **state) {
 static const char *const bar =
     "&simulation end_time = 1 /\n&relaxation increments = 1 tolerance = 1e-7 /\n"
     "&lattice name = 'l' kind = 'hexagonal' spacing = '%g mm' thickness = '10 mm' rotation = 15 /\n"
-    OF("nu = 0.3") "&body lattice = 'l' shape = 'rectangle' corner = 0, -0.05 size = 0.3, 0.1 /\n"
+    "&body lattice = 'l' shape = 'rectangle' corner = 0, -0.05 size = 0.3, 0.1 /\n"
     "&region name = 'left' shape = 'rectangle' corner = -1, -1 size = 1.03, 2 /\n"
     "&region name = 'right' shape = 'rectangle' corner = 0.27, -1 size = 1, 2 /\n"
     "&region name = 'middle' shape = 'rectangle' corner = 0.1, -0.03 size = 0.1, 0.06 /\n"
@@ -299,7 +358,7 @@ static const char *const bar =
     "&drive region = 'right' component = 'x' displacement = '3 um' /\n"
     "&monitor name = 'N' kind = 'force' at = 0.15, 0 normal = 1, 0 component = 'x' /\n"
     "&monitor name = 'e_x' kind = 'strain' region = 'middle' component = 'xx' /\n"
-    "&monitor name = 'e_y' kind = 'strain' region = 'middle' component = 'yy' /\n";
+    "&monitor name = 'e_y' kind = 'strain' region = 'middle' component = 'yy' /\n" OF("nu = 0.3");
 
 /* The edges of the turned lattice are ragged, and families there are cut: what E lacks falls with
    the spacing. */
@@ -327,6 +386,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_uniform_deformation_has_the_stress_of_the_solid),
       cmocka_unit_test(turned_bodies_feel_nothing),
+      cmocka_unit_test(an_energy_alone_gives_the_same),
       cmocka_unit_test(rows_by_turns_cost_what_G_says),
       cmocka_unit_test(waves_are_those_of_the_page),
       cmocka_unit_test(free_bodies_keep_their_energy),

@@ -1,5 +1,5 @@
-/* Vectors and tensors that need not be symmetric in laws: their products, sums, choices and derivatives against values by hand, of numbers
-   and of parameters; what parameters they are. */
+/* Vectors and tensors that need not be symmetric in laws: their products, sums, choices and
+   derivatives against values by hand, of numbers and of parameters; what parameters vectors are. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -161,8 +161,8 @@ static void general_tensors_have_their_values(void **state) {
     snprintf(lines, sizeof lines, "%s%s", given, cases[k].lines);
     read_law(&r, lines, cases[k].output);
     const double value = value_of(&r);
-    if (!(fabs(value - cases[k].value) <= 1e-8 * (strncmp(cases[k].output, "1e7", 3) == 0) +
-                                              1e-13 * fmax(1, fabs(cases[k].value))))
+    if (!(fabs(value - cases[k].value) <=
+          1e-8 * (strncmp(cases[k].output, "1e7", 3) == 0) + 1e-13 * fmax(1, fabs(cases[k].value))))
       fail_msg("%s, %s: %.17g, not %.17g", cases[k].lines, cases[k].output, value, cases[k].value);
     forget(&r);
   }
