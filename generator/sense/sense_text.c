@@ -86,11 +86,12 @@ static bool is_bounded_in_degrees(const sense_bench *b, const symbol *angle) {
   return most > FULL_TURN && most <= 400;
 }
 
-/* 30, 22.5: angles in degrees are such numbers. */
+/* 30, 22.5: angles in degrees are such numbers, if 3.14 did not turn them. */
 static bool is_round(double angle) {
+  const double within = 1e-3 * fabs(angle);
   const double whole = fabs(angle - nearbyint(angle)),
                parts = fabs(angle / 7.5 - nearbyint(angle / 7.5));
-  return whole <= 1e-9 * fabs(angle) || parts <= 1e-9 * fabs(angle);
+  return whole <= within || 7.5 * parts <= within;
 }
 
 /* The parameter of an angle, declared with its unit, that is turned into radians once more. */
