@@ -105,6 +105,20 @@ static void a_step_may_be_written_out(void **state) {
                           "  force N = k*stretch + k*(stretch - previous(v))/(1 + dt/tau)\n" END);
 }
 
+/* What acts in motion alone, and a vector whose third component stays 0. */
+static void states_may_act_by_rates(void **state) {
+  (void)state;
+  nothing_is_said_of(BOND "  parameter T_0 = 24 [h] in (0, inf)\n"
+                          "  state age on bond = 0 [s]\n  state pull on bond = 0 [N]\n"
+                          "  age = previous(age) + dt\n"
+                          "  rate pull = k*sqrt((T_0 + age)/(96 [h] + T_0 + age))*stretch_rate\n"
+                          "  force N = pull\n" END);
+  nothing_is_said_of(BOND "  parameter tau = 2 [s] in (0, inf)\n"
+                          "  state v on bond = vector 0\n"
+                          "  rate v = (stretch*direction - v)/tau\n"
+                          "  force N = k*stretch + k*(stretch - dot(v, direction))\n" END);
+}
+
 /* --- angles ----------------------------------------------------------------------------------- */
 
 static void angles_with_their_unit_are_none_in_degrees(void **state) {
@@ -195,6 +209,7 @@ int main(void) {
       cmocka_unit_test(states_may_act_by_the_rest_alone),
       cmocka_unit_test(stiffness_by_the_step_is_told),
       cmocka_unit_test(a_step_may_be_written_out),
+      cmocka_unit_test(states_may_act_by_rates),
       cmocka_unit_test(angles_with_their_unit_are_none_in_degrees),
       cmocka_unit_test(the_text_is_read_beside_errors),
       cmocka_unit_test(a_cable_is_no_solid),
