@@ -351,6 +351,7 @@ static char *found_at(const family_bench *b, double size) {
   fprintf(out, "%ld particles of a %s lattice, s = %.6g m", b->whole->inside_count, b->lattice_name,
           b->lattice->spacing);
   if (size > 0) fprintf(out, ", strained by %.3g", size);
+  if (law_reads(b->law, QUANTITY_DT)) fprintf(out, ", dt = %.4g s", b->whole->advance);
   for (int k = 0; k < b->law->parameters.count; k++) {
     const symbol *s = b->law->parameters.items[k];
     char si[64];

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "dsl/semantics/law_reads.h"
 #include "generator/check/physics_parameters.h"
 #include "generator/lower/law_inputs.h"
 
@@ -45,6 +46,10 @@ static void add_motion(const bench *b, const double *column, FILE *out, const ch
       add_value(out, separator, builtin_quantities[law_motion[k]].name,
                 column[b->parameter_count + (int)law_motion[k]],
                 builtin_quantities[law_motion[k]].unit);
+  const double dt = column[b->parameter_count + (int)QUANTITY_DT];
+  if (read[QUANTITY_DT] && (dt > 0 || law_reads(b->law, QUANTITY_DT)))
+    add_value(out, separator, builtin_quantities[QUANTITY_DT].name, dt,
+              builtin_quantities[QUANTITY_DT].unit);
   for (int k = 0; k < b->field_count; k++) {
     char si[64];
     dim_unit(b->law->fields.items[k]->dim, si, sizeof si);
@@ -54,6 +59,7 @@ static void add_motion(const bench *b, const double *column, FILE *out, const ch
   free(read);
 }
 
+/* Those that are not the defaults; what is 0 by default may be the cause. */
 static void add_parameters(const bench *b, const double *column, FILE *out,
                            const char **separator) {
   unsigned char *read = inputs_read(b, IR_FROM_PARAMETER, b->parameter_count);
@@ -61,7 +67,7 @@ static void add_parameters(const bench *b, const double *column, FILE *out,
     const symbol *s = b->law->parameters.items[k];
     char si[64];
     dim_unit(s->dim, si, sizeof si);
-    if (read[k] && !(s->has_default && column[k] == s->initial))
+    if (read[k] && !(s->has_default && column[k] == s->initial && s->initial != 0))
       add_value(out, separator, s->name, column[k], si);
   }
   free(read);

@@ -11,13 +11,13 @@
 #include "generator/facts/law_facts.h"
 #include "generator/facts/law_facts_json.h"
 #include "generator/facts/law_facts_text.h"
+#include "generator/facts/law_judged.h"
 #include "generator/interpreter/interpreted.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/material_law.h"
 #include "generator/kernel/settings.h"
 #include "generator/plan/plan.h"
 #include "generator/run/law_verdict.h"
-#include "generator/sense/sense.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/stability.h"
 #include "runtime/deck/deck_value.h"
@@ -178,14 +178,20 @@ static bool imply(law_facts *f) {
 
 /* --- all of it -------------------------------------------------------------------------------- */
 
-/* The verdict of a deck with these values on this lattice; where a value is missing, that of
-   `perilat check`. */
-static bool obeys(law_facts *f) {
+static bool asks_for_lattice(const info_law_options *o) {
+  return o->lattice || o->horizon || o->shells || o->spacing || o->thickness || o->area;
+}
+
+/* What `perilat check` says; where values or a lattice are asked for, and no value is missing, the
+   verdict of a deck with these. */
+static bool obeys(law_facts *f, const info_law_options *o) {
   diagnostics found;
   diag_begin(&found, &f->model.sources);
-  const bool good = f->missing ? law_is_sound(f->model.law, NULL, &found, NULL)
-                               : run_law_obeys(&f->model, &f->lattice, f->values,
-                                               f->material.item.where, &found, &f->said);
+  const bool of_deck =
+      !f->missing && (f->model.values.assignment_count > 0 || asks_for_lattice(o));
+  const bool good = of_deck ? run_law_obeys(&f->model, &f->lattice, f->values,
+                                            f->material.item.where, &found, &f->said)
+                            : law_obeys(f->model.law, NULL, &found, NULL);
   tell(f, &found);
   diag_clear(&found);
   return good;
@@ -200,7 +206,7 @@ static bool learn(law_facts *f, const info_law_options *o) {
 int info_law(const info_law_options *o) {
   law_facts f = {.memory = arena_new(), .report = o->report};
   diag_begin(&f.said, &f.sources);
-  const bool known = learn(&f, o), good = known && obeys(&f);
+  const bool known = learn(&f, o), good = known && obeys(&f, o);
   tell(&f, &f.said);
   if (o->report) diag_json_end(o->report, good);
   if (known && o->report)

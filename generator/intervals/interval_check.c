@@ -140,18 +140,38 @@ static void check_damages(analysis *a, context *c, const ir_node *margins) {
   }
 }
 
+/* What the compiler computes to solve rates, not the text: it keeps away from zeros by itself. */
+static void mark_solved(analysis *a) {
+  const lowered_law *s = &a->bench->law_step;
+  const law *l = a->law;
+  unsigned char *written = arena_alloc(a->memory, (size_t)a->nodes);
+  a->solved = arena_alloc(a->memory, (size_t)a->nodes);
+  for (int k = 0; k < l->fields.count; k++) {
+    if (law_rate_field(l, k) < 0) continue;
+    ir_mark(a->graph, &s->fields[k], 1, a->solved);
+    ir_mark(a->graph, &s->fields[law_rate_field(l, k)], 1, a->solved);
+    ir_mark(a->graph, &s->text.rules[k], 1, written);
+  }
+  for (int k = 0; k < s->text.place_count; k++)
+    written[s->text.places[k].node] = 1;
+  for (int n = 0; n < a->nodes; n++)
+    a->solved[n] = a->solved[n] && !written[n];
+}
+
 static void look_at_law(analysis *a) {
   const bench *b = a->bench;
   const law *l = a->law;
   const ir_node *margins = damage_margins(a);
   a->nodes = ir_count(b->graph);
+  mark_solved(a);
   a->most_contexts = (int)pl_fmin(MOST_CONTEXTS, (double)(1 + MOST_MEMORY / (4 * (long)a->nodes)));
   a->tried = arena_alloc(a->memory, (size_t)a->nodes);
   learn_fields(a);
   context *whole = whole_law(a);
   const lowered_law *s = &b->law_step;
   for (int k = 0; k < l->fields.count; k++)
-    look_at(a, whole, law_rate_field(l, k) >= 0 ? s->text.rules[k] : s->fields[k]);
+    if (!l->fields.items[k]->rate_of) /* the rule of the state, at another value of it */
+      look_at(a, whole, law_rate_field(l, k) >= 0 ? s->text.rules[k] : s->fields[k]);
   const ir_node results[] = {s->N, s->M_i[0], s->M_j[0], s->W};
   for (size_t k = 0; k < sizeof results / sizeof *results; k++)
     look_at(a, whole, results[k]);

@@ -40,6 +40,7 @@ typedef struct analysis {
   ir_node *lower, *upper; /* [parameters] */
   range *fields;          /* [fields] what a bond can reach from the initial values */
   unsigned char *tried;   /* [nodes] searches for a state, in different branches */
+  unsigned char *solved;  /* [nodes] what the text does not hold */
   bool quiet;
 } analysis;
 

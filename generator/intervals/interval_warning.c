@@ -38,7 +38,7 @@ void interval_warn(analysis *a, context *c, ir_node n, ir_node operand, interval
   interval_condition conditions[32];
   diag_code code = wish == WISH_ZERO ? DIAG_DIVISION_BY_ZERO : DIAG_DOMAIN;
   span where = place_of(a, n);
-  if (a->quiet || a->tried[n] == MOST_TRIES || a->searches == MOST_SEARCHES ||
+  if (a->quiet || a->solved[n] || a->tried[n] == MOST_TRIES || a->searches == MOST_SEARCHES ||
       interval_said_before(a, code, where))
     return;
   a->tried[n]++;

@@ -320,6 +320,27 @@ static void say_effect(memory_bench *m, int k, const effect *e) {
   }
 }
 
+/* Half of the lanes on their way. */
+static void set_going(memory_bench *m) {
+  for (int lane = 1; lane < BENCH_LANES; lane += 2)
+    bench_quantity(m->b, m->states, QUANTITY_STRETCH_RATE)[lane] = draw_size(&m->b->seed, -3, 5);
+}
+
+/* A tensor or vector is one state: what one of its components does, all do. */
+static void share_effects(const law *l, effect *seen) {
+  for (int p = 0; p < l->fields.count; p++)
+    for (int q = 0; q < p; q++) {
+      const symbol *one = l->fields.items[p], *other = l->fields.items[q];
+      if (!one->component_of || one->component_of != other->component_of || one->rate_of ||
+          other->rate_of)
+        continue;
+      seen[p].moves = seen[q].moves = seen[p].moves || seen[q].moves;
+      seen[p].on_forces = seen[q].on_forces = seen[p].on_forces || seen[q].on_forces;
+      seen[p].on_others = seen[q].on_others = seen[p].on_others || seen[q].on_others;
+      seen[p].on_step = seen[q].on_step = seen[p].on_step || seen[q].on_step;
+    }
+}
+
 static void check_effects(memory_bench *m) {
   enum {
     ROUNDS = 24,
@@ -332,10 +353,12 @@ static void check_effects(memory_bench *m) {
     for (int round = 0; round < ROUNDS && !(seen[k].on_forces || (round && bench_tired(m->b)));
          round++) {
       take_from_pool(m, round * BENCH_LANES / 2, round % 2 == 0);
+      set_going(m);
       look_for_effect(m, k, &seen[k]);
     }
   for (int which = 0; which < (m->b->micropolar ? PURE_COUNT : 1); which++)
     look_in_pure_motion(m, which, seen);
+  share_effects(m->b->law, seen);
   for (int k = 0; k < m->b->field_count; k++)
     say_effect(m, k, &seen[k]);
   free(seen);
@@ -563,9 +586,22 @@ static void draw_by(memory_bench *m, drawn *d, double from, double to) {
   }
 }
 
+static void draw_out_and_back(memory_bench *m, drawn *d, int steps) {
+  bench *b = m->b;
+  *d = (drawn){.energy = probe_new(b, &b->law_frozen.W, 1)};
+  put_virgins(m);
+  look_at_energy(m, d, d->stored);
+  draw_by(m, d, 0, 0); /* how quickly states begin to change */
+  for (int step = 1; step <= steps; step++)
+    draw_by(m, d, (step - 1.0) / steps, (double)step / steps);
+  for (int step = steps; step > 0; step--)
+    draw_by(m, d, (double)step / steps, (step - 1.0) / steps);
+  probe_free(&d->energy);
+}
+
 /* Drawn out and back by amplitudes of many sizes, a bond loses: work less what the law's energy
-   grows by. A step that loses less than nothing by more than steps are coarse says that the energy
-   lacks something. A rest state that moves does work of its own. */
+   grows by. Steps that lose less than nothing say that the energy lacks something. A rest state
+   that moves does work of its own. */
 static void check_locked_energy(memory_bench *m) {
   enum { STEPS = 400 };
   bench *b = m->b;
@@ -573,18 +609,15 @@ static void check_locked_energy(memory_bench *m) {
       rest_reads_states(b->graph, b->law, &b->law_frozen.rest,
                         b->law_frozen.rest != IR_NONE))
     return;
-  drawn d = {.energy = probe_new(b, &b->law_frozen.W, 1)};
-  put_virgins(m);
-  look_at_energy(m, &d, d.stored);
-  draw_by(m, &d, 0, 0); /* how quickly states begin to change */
-  for (int step = 1; step <= STEPS; step++)
-    draw_by(m, &d, (step - 1.0) / STEPS, (double)step / STEPS);
-  for (int step = STEPS; step > 0; step--)
-    draw_by(m, &d, (double)step / STEPS, (step - 1.0) / STEPS);
-  probe_free(&d.energy);
-  bool said = false;
+  drawn d, finer;
+  bool gains = false, said = false;
+  draw_out_and_back(m, &d, STEPS);
+  for (int lane = 0; lane < BENCH_LANES; lane++)
+    gains = gains || sense_gains(&d.lost[lane]);
+  if (!gains) return;
+  draw_out_and_back(m, &finer, 4 * STEPS);
   for (int lane = 0; lane < BENCH_LANES && !said; lane++)
-    said = sense_say_losses(m->of, &d.lost[lane], "drawn out",
+    said = sense_say_losses(m->of, &d.lost[lane], &finer.lost[lane], "drawn out",
                             b->reads_time
                                 ? "add the springs beside the dashpots, as `E_1/2*v**2`"
                                 : "add what the states lock in, as `H/2*x**2` of a linear hardening");

@@ -8,6 +8,7 @@
 #include "generator/lower/lower_inputs.h"
 
 static const double COARSE = 0.01; /* of the work of all steps */
+static const double SETTLED = 0.1; /* of a gain, with other steps */
 
 /* --- in words --------------------------------------------------------------------------------- */
 
@@ -37,8 +38,19 @@ void sense_say_never_moves(sense_bench *b, const symbol *field) {
             kind_of(s), s->name, body_of(b));
 }
 
+static bool is_called_unused(const sense_bench *b, const symbol *s) {
+  for (int k = 0; k < b->said->count; k++) {
+    const diagnostic *d = &b->said->items[k];
+    if (d->code == DIAG_UNUSED && d->where.file == s->where.file &&
+        d->where.begin == s->where.begin)
+      return true;
+  }
+  return false;
+}
+
 void sense_say_without_effect(sense_bench *b, const symbol *field, const char *mend) {
   const symbol *s = whole(field);
+  if (is_called_unused(b, s)) return;
   sense_say(b, DIAG_ELASTIC, s->rule ? s->rule->where : s->where, mend,
             "the %s `%s` never changes what this law answers: without it the %s does the same",
             kind_of(s), s->name, body_of(b));
@@ -109,11 +121,17 @@ void sense_lose(sense_losses *l, double work, double lost) {
   if (lost < 0) l->gained -= lost;
 }
 
-bool sense_say_losses(sense_bench *b, const sense_losses *l, const char *way, const char *mend) {
-  if (!isfinite(l->work) || !(l->gained > COARSE * l->work)) return false;
+bool sense_gains(const sense_losses *l) {
+  return isfinite(l->work) && l->gained > COARSE * l->work;
+}
+
+bool sense_say_losses(sense_bench *b, const sense_losses *l, const sense_losses *finer,
+                      const char *way, const char *mend) {
+  const double share = l->gained / l->work, other = finer->gained / finer->work;
+  if (!sense_gains(l) || !(fabs(other - share) <= SETTLED * share)) return false;
   sense_say(b, DIAG_LOCKED_ENERGY, b->law->results[RESULT_W]->rule->where, mend,
             "%s and back, a %s gives back %.3g of the work more than its energy `W` had left: `W` "
             "lacks what the states store",
-            way, body_of(b), l->gained / l->work);
+            way, body_of(b), share);
   return true;
 }

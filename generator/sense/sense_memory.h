@@ -36,8 +36,11 @@ typedef struct sense_losses {
 
 /* A step's work, and what it lost: its work less what the energy grew by. */
 void sense_lose(sense_losses *l, double work, double lost);
-/* Whether more came out than steps are coarse; then it is said. `way`: "drawn out"; `mend` is an
-   example. */
-bool sense_say_losses(sense_bench *b, const sense_losses *l, const char *way, const char *mend);
+/* Whether more came out than steps are coarse. */
+bool sense_gains(const sense_losses *l);
+/* Says so where steps four times as fine found the same: a law may overtake the strain in a step.
+   `way`: "drawn out"; `mend` is an example. */
+bool sense_say_losses(sense_bench *b, const sense_losses *l, const sense_losses *finer,
+                      const char *way, const char *mend);
 
 #endif

@@ -8,7 +8,7 @@
 #include "dsl/semantics/law_reads.h"
 #include "generator/check/physics_point_bench.h"
 #include "generator/lower/lower_family.h"
-#include "runtime/analysis/bond_probe.h"
+#include "generator/sense/sense_response.h"
 #include "runtime/analysis/implied.h"
 
 static const double TOLERANCE = 1e-2;
@@ -88,15 +88,10 @@ static bool is_in_proportion(const sense_bench *b, const symbol *E, double befor
 
 /* Whether a virgin bond is as stiff in compression as in tension: a cable is not. */
 static bool is_alike_both_ways(const sense_bench *b) {
-  const double small = 1e-9;
-  if (b->law->tree->law == LAW_STATE || !b->hexagon) return true;
-  const pl_bond_class bond = rows_bond_class(b->lattice, 0);
-  bond_probe *p = bond_probe_new(b->kernel, b->parameters, &bond);
-  double out[PL_STATE_RESULTS], in[PL_STATE_RESULTS];
-  bond_probe_forces(p, (bond_motion){.stretch = small}, out);
-  bond_probe_forces(p, (bond_motion){.stretch = -small}, in);
-  bond_probe_free(p);
-  return fabs(out[0] + in[0]) <= 1e-3 * fabs(out[0]);
+  static response out, in;
+  if (b->law->tree->law == LAW_STATE) return true;
+  return response_of(b, b->parameters, 1, &out) && response_of(b, b->parameters, -1, &in) &&
+         fabs(out.stiffness - in.stiffness) <= 1e-3 * out.stiffness;
 }
 
 /* --- saying it -------------------------------------------------------------------------------- */

@@ -13,8 +13,10 @@
 
 /* Lead and rubber lie inside, diamond too: 18 km/s. */
 static const double SLOWEST = 10, FASTEST = 20e3; /* m/s */
-/* The strongest fibres have 0.05, a soft clay 1e-3, thin ice 1e-4, wet sand 1e-6 */
-static const double STRONGEST = 0.06, WEAKEST = 1e-7;     /* of Young's modulus */
+/* The strongest fibres have 0.05, a soft clay 1e-3, thin ice 1e-4, wet sand 1e-6. What is soft, as
+   rubber and gels, is stretched to several times its length. */
+static const double STRONGEST = 0.06, WEAKEST = 1e-7; /* of Young's modulus */
+static const double STIFF = 1e9; /* Pa: polyethylene; below it STRONGEST says nothing */
 static const double LONGEST = 50;                         /* m: E G/f**2; concrete has up to 1 */
 static const double LEAST_TOUGH = 1e3, MOST_TOUGH = 1e10; /* Pa m^(1/2): snow, the toughest steel */
 static const double LIGHT = 100, HEAVY = 3e4;             /* kg/m^3: cork, beyond osmium */
@@ -237,19 +239,21 @@ static void find_strengths(const sense_bench *b, double E, bool *found) {
 static void check_strengths(sense_bench *b) {
   const symbol *E = sense_parameter(b->law, "E", "Pa");
   if (!E || sense_value(b, E) < WITHOUT_UNITS) return;
+  const double modulus = sense_value(b, E);
   const int count = b->law->parameters.count;
   bool *found = must_calloc((size_t)count + 1, sizeof *found);
-  find_strengths(b, sense_value(b, E), found);
+  find_strengths(b, modulus, found);
   for (int k = 0; k < count; k++) {
     const symbol *s = b->law->parameters.items[k];
-    const double over = fabs(sense_value(b, s)) / sense_value(b, E);
-    if (found[k] && (over > STRONGEST || over < WEAKEST)) say_strength(b, s, over);
+    const double over = fabs(sense_value(b, s)) / modulus;
+    const bool too_strong = over > STRONGEST && modulus >= STIFF;
+    if (found[k] && (too_strong || over < WEAKEST)) say_strength(b, s, over);
   }
   for (int k = 0; k < count && !b->said_of[DIAG_ABSURD_VALUE]; k++) {
     const symbol *s = b->law->parameters.items[k];
     const bool energy = dim_equal(s->dim, dimension_of("N/m")) && sense_value(b, s) > 0;
     if (found[k]) check_named_strength(b, s);
-    if (energy) check_length(b, s, found, sense_value(b, E));
+    if (energy) check_length(b, s, found, modulus);
     if (energy && !b->said_of[DIAG_ABSURD_VALUE]) check_named_energy(b, s);
   }
   free(found);

@@ -220,45 +220,61 @@ static void check_lateness(sense_bench *b, point_bench *p) {
 
 /* --- energies --------------------------------------------------------------------------------- */
 
-/* Sheared and back: what the steps lose, by the law's own energy. */
-static sense_losses sheared(point_bench *p, double amplitude) {
-  enum { STEPS = 200 };
+/* J/m^3, with the fields at hand. */
+static double stored(point_bench *p, const double *strain) {
+  point_bench_strain(p, strain, NULL);
+  point_bench_run(p, p->kernel->point_observe, TIME_STEP);
+  return p->observed[0][0];
+}
+
+/* Sheared and back, in a time (s; 0 of laws that read none): what the steps lose, by the law's own
+   energy. */
+static sense_losses sheared(point_bench *p, double amplitude, double time, int steps) {
   const int shear = p->strains == 3 ? 2 : 3;
-  double strain[POINT_MOST] = {0}, before = 0;
+  double strain[POINT_MOST] = {0}, before = 0, kept, stress[POINT_MOST];
   sense_losses losses = {0, 0};
   point_bench_virgin(p);
-  for (int step = 1; step <= 2 * STEPS; step++) {
-    const int part = step <= STEPS ? step : 2 * STEPS - step;
-    const double next = amplitude * part / STEPS;
-    const double change = next - strain[shear];
+  point_bench_stress(p, strain, stress);
+  if (p->reads_time) point_bench_keep(p); /* how quickly states begin to change */
+  kept = stored(p, strain);
+  for (int step = 1; step <= 2 * steps; step++) {
+    const int part = step <= steps ? step : 2 * steps - step;
+    const double next = amplitude * part / steps;
+    double change[POINT_MOST] = {0}, mean[POINT_MOST] = {0}, size = 0;
+    change[shear] = next - strain[shear];
     strain[shear] = next;
-    point_bench_strain(p, strain, NULL);
-    memset(p->lost, 0, sizeof p->lost);
-    point_bench_run(p, p->kernel->point_ledger, TIME_STEP);
-    double lost = 0;
-    for (int k = 0; k < PL_LOSSES; k++)
-      lost += p->lost[k][0];
-    sense_lose(&losses, (p->stress[shear][0] + before) * change, lost);
-    before = p->stress[shear][0];
+    p->advance = time / steps;
+    point_bench_stress(p, strain, stress);
+    p->advance = 0;
     point_bench_keep(p);
+    mean[shear] = 0.5 * (stress[shear] + before);
+    before = stress[shear];
+    const double work = point_bench_work(p, mean, change, &size), left = stored(p, strain);
+    sense_lose(&losses, work, work - (left - kept));
+    kept = left;
   }
   return losses;
 }
 
-/* By amplitudes of many sizes. */
+/* By amplitudes of many sizes, in many times. */
 static void check_locked_energy(sense_bench *b, point_bench *p) {
-  enum { SIZES = 12 };
+  enum { SIZES = 12, STEPS = 200 };
   if (!b->law->results[RESULT_W] || !b->law->results[RESULT_SIGMA] || b->law->nonconservative)
     return;
   bool said = false;
   for (int size = 0; size < SIZES && !said; size++) {
     const double amplitude = pl_pow(10, -4 + 3.7 * size / (SIZES - 1));
-    const sense_losses losses = sheared(p, amplitude);
+    const double time = p->reads_time ? pl_pow(10, -6 + 15.0 * (size * 5 % SIZES) / (SIZES - 1)) : 0;
+    const sense_losses losses = sheared(p, amplitude, time, STEPS);
+    if (!sense_gains(&losses)) continue;
+    const sense_losses finer = sheared(p, amplitude, time, 4 * STEPS);
     char way[64];
     snprintf(way, sizeof way, "sheared by %.3g", amplitude);
     said = sense_say_losses(
-        b, &losses, way,
-        "add what the states lock in, as `H/3*(eps_p:eps_p)` of a linear kinematic hardening");
+        b, &losses, &finer, way,
+        p->reads_time
+            ? "add the springs beside the dashpots, as `mu_1*(e_v:e_v)`"
+            : "add what the states lock in, as `H/3*(eps_p:eps_p)` of a linear kinematic hardening");
   }
 }
 
@@ -273,7 +289,8 @@ void sense_check_points(sense_bench *b) {
     if (!p->reads_time) check_effects(b, p); /* what needs an hour does not show in a step */
     if (!p->reads_time) check_weakening(b);
     if (!p->kernel->reads_rates) check_lateness(b, p);
-    if (!p->reads_time && !b->said_of[DIAG_ONE_STEP_LATE]) check_locked_energy(b, p);
+    if (!p->kernel->reads_rates && b->law->fields.count > 0 && !b->said_of[DIAG_ONE_STEP_LATE])
+      check_locked_energy(b, p);
   }
   point_bench_close(p);
   free(p);

@@ -86,11 +86,12 @@ static bool is_bounded_in_degrees(const sense_bench *b, const symbol *angle) {
   return most > FULL_TURN && most <= 400;
 }
 
-/* 30, 22.5: angles in degrees are such numbers. */
+/* 30, 22.5: angles in degrees are such numbers, if 3.14 did not turn them. */
 static bool is_round(double angle) {
+  const double within = 1e-3 * fabs(angle);
   const double whole = fabs(angle - nearbyint(angle)),
                parts = fabs(angle / 7.5 - nearbyint(angle / 7.5));
-  return whole <= 1e-9 * fabs(angle) || parts <= 1e-9 * fabs(angle);
+  return whole <= within || 7.5 * parts <= within;
 }
 
 /* The parameter of an angle, declared with its unit, that is turned into radians once more. */
@@ -200,7 +201,7 @@ static void check_sum(sense_bench *b, const expr *call) {
             seen.own->name, call->name);
 }
 
-/* --- flows whose new value the force does not know -------------------------------------------- */
+/* --- flows and rates whose new value the force does not know ----------------------------------- */
 
 typedef struct reading {
   bool old, new;
@@ -227,20 +228,21 @@ static void find_readings(const expr *e, const symbol *state, reading *found, in
   }
 }
 
-/* Of laws of families, whose forces may read damages of the last step, but not what a flow has just
-   changed. */
+/* Of laws of families, whose forces may read damages of the last step, but not what a flow or a rate
+   has just changed. */
 static void check_force_state(sense_bench *b) {
   const stmt *force = law_force_state(b->law);
   if (b->law->options.count > 0) return; /* which may choose just that */
   for (int k = 0; force && k < b->law->fields.count; k++) {
     const symbol *s = b->law->fields.items[k];
     reading found = {false, false};
-    if (!s->rule || s->rule->kind != STMT_FLOW) continue;
+    if (!s->rule || (s->rule->kind != STMT_FLOW && s->rule->kind != STMT_RATE)) continue;
     find_readings(force->value, s, &found, 0);
     if (found.old && !found.new)
-      sense_say(b, DIAG_ONE_STEP_LATE, force->where, "write it below the flow, without `previous`",
-                "the force state is made of `%s` as it was before its flow: it is a step late",
-                s->name);
+      sense_say(b, DIAG_ONE_STEP_LATE, force->where,
+                "write it below the rule of the state, without `previous`",
+                "the force state is made of `%s` as it was before its %s: it is a step late",
+                s->name, s->rule->kind == STMT_RATE ? "rate" : "flow");
   }
 }
 

@@ -52,6 +52,42 @@ static void a_law_runs_in_the_setting_it_is_meant_for(void **state) {
          "On a cubic lattice of 6 neighbours, s = 10 mm, space:");
 }
 
+static const char ageing_law[] = "model ageing\n  law central bond\n"
+                                 "  parameter k   = 10 [MN]        in (0, inf)\n"
+                                 "  parameter T_0 = 24 [h]         in (0, inf)\n"
+                                 "  parameter rho = 2323 [kg/m^3]  in (0, inf)\n"
+                                 "  state age on bond = 0 [s]\n  age = previous(age) + dt\n"
+                                 "  force N = k*(1 + age/T_0)*stretch\nend model\n";
+
+/* The same cycle, with the same gain. */
+static void info_says_of_a_law_what_check_says(void **state) {
+  workplace *w = *state;
+  char gain[256];
+  write_text(w, "ageing.plm", ageing_law);
+  expect(w, "check ageing.plm", 1, "[dissipation]");
+  snprintf(gain, sizeof gain, "%.120s", strstr(w->said, "a closed cycle gives"));
+  expect(w, "info ageing.plm", 1, gain);
+  expect(w, "info ageing.plm --set T_0='24 h'", 1, "[dissipation]");
+}
+
+static void what_is_accepted_in_vain_is_shown(void **state) {
+  workplace *w = *state;
+  static const char *const forces[] = {"k*stretch", "k*(stretch - 1e-4)"};
+  static const char *const shown[] = {"`accept rest-force`: its check finds nothing here",
+                                      "0 warnings, 1 finding accepted"};
+  for (int k = 0; k < 2; k++) {
+    char text[512];
+    snprintf(text, sizeof text,
+             "model spring\n  law central bond\n  parameter k = 10 [MN] in (0, inf)\n"
+             "  parameter rho = 2323 [kg/m^3] in (0, inf)\n  force N = %s\n"
+             "  accept rest-force \"prestressed\"\nend model\n",
+             forces[k]);
+    write_text(w, "accepting.plm", text);
+    expect(w, "check accepting.plm", 0, shown[k]);
+    assert_null(strstr(w->said, shown[1 - k]));
+  }
+}
+
 /* Nikravesh 2017: the hexagon has E and nu exactly, fcc with second neighbours, too. */
 static void laws_of_families_are_put_on_lattices(void **state) {
   workplace *w = *state;
@@ -385,6 +421,10 @@ int main(void) {
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(what_a_law_implies_says_what_it_is_measured_on,
                                       set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(info_says_of_a_law_what_check_says, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(what_is_accepted_in_vain_is_shown, set_up_workplace,
+                                      tear_down_workplace),
       cmocka_unit_test_setup_teardown(laws_of_families_are_put_on_lattices, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(decks_of_families_are_checked, set_up_workplace,

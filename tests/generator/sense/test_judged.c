@@ -105,11 +105,118 @@ static void a_step_may_be_written_out(void **state) {
                           "  force N = k*stretch + k*(stretch - previous(v))/(1 + dt/tau)\n" END);
 }
 
+/* What acts in motion alone, and a vector whose third component stays 0. */
+static void states_may_act_by_rates(void **state) {
+  (void)state;
+  nothing_is_said_of(BOND "  parameter T_0 = 24 [h] in (0, inf)\n"
+                          "  state age on bond = 0 [s]\n  state pull on bond = 0 [N]\n"
+                          "  age = previous(age) + dt\n"
+                          "  rate pull = k*sqrt((T_0 + age)/(96 [h] + T_0 + age))*stretch_rate\n"
+                          "  force N = pull\n" END);
+  nothing_is_said_of(BOND "  parameter tau = 2 [s] in (0, inf)\n"
+                          "  state v on bond = vector 0\n"
+                          "  rate v = (stretch*direction - v)/tau\n"
+                          "  force N = k*stretch + k*(stretch - dot(v, direction))\n" END);
+}
+
+/* --- angles ----------------------------------------------------------------------------------- */
+
+static void angles_with_their_unit_are_none_in_degrees(void **state) {
+  (void)state;
+  nothing_is_said_of(BOND "  parameter phi = 30 [deg] in (0, 400 [deg])\n"
+                          "  parameter m_0 = 7 in (0, 10)\n"
+                          "  force N = k*(1 + 0.1*sin(phi)**2)*(1 + 0.1*sin(m_0*1.5)**2)*stretch\n" END);
+  is_said_once(BOND "  parameter phi = 30 [deg] in (0, 90 [deg])\n"
+                    "  force N = k*cos(phi*pi/180)*stretch\n" END,
+               "degrees", "`phi` is in radians already");
+}
+
+/* sin(30) is negative, and so is the stiffness: the cause is said, too. */
+static void the_text_is_read_beside_errors(void **state) {
+  (void)state;
+  static const char text[] = BOND "  force N = k*stretch*sin(30)\n" END;
+  is_said_once(text, "stiffness", "negative");
+  is_said_once(text, "degrees", "`30`");
+}
+
+/* --- materials -------------------------------------------------------------------------------- */
+
+static void a_cable_is_no_solid(void **state) {
+  (void)state;
+  nothing_is_said_of("model m\n  law central bond\n  parameter E = 200 [GPa] in (0, inf)\n"
+                     "  parameter rho = 7850 [kg/m^3] in (0, inf)\n"
+                     "  force N = E*area*max(stretch, 0)\n" END);
+}
+
+#define GEL(E, F)                                                                                  \
+  "model m\n  law central bond\n  parameter E = " E " in (0, inf) \"Young's modulus\"\n"           \
+  "  parameter f_t = " F " in (0, inf)\n  parameter S_u = 2 in (0, inf)\n"                         \
+  "  parameter rho = 1000 [kg/m^3] in (0, inf)\n"                                                  \
+  "  damage d = | 0 when stretch < f_t/E\n"                                                        \
+  "             | 1 - (f_t/E)/stretch*(S_u - stretch)/(S_u - f_t/E) when stretch < S_u\n"          \
+  "             | 1 otherwise\n"                                                                   \
+  "  force N = (1 - d)*sqrt(3)/2*E*s*t*stretch\n" END
+
+static void what_is_soft_may_be_strong(void **state) {
+  (void)state;
+  nothing_is_said_of(GEL("1 [MPa]", "0.2 [MPa]"));
+  is_said_once(GEL("30 [GPa]", "6 [GPa]"), "absurd-value", "0.2 of `E`");
+}
+
+/* --- zeros ------------------------------------------------------------------------------------ */
+
+/* Of a rate that is solved by Newton's method; only what is written can divide by zero. */
+static void what_solves_a_rate_divides_by_no_zero(void **state) {
+  (void)state;
+  nothing_is_said_of(BOND "  parameter e_0 = 1e-5 [1/h] in (0, inf)\n"
+                          "  parameter N_0 = 1 [kN] in (0, inf)\n"
+                          "  parameter m_N = 4.5 in [1, 10]\n  state e_c on bond = 0\n"
+                          "  pull = k*(stretch - e_c)\n"
+                          "  rate e_c = e_0*(abs(pull)/N_0)**m_N*sign(pull)\n"
+                          "  force N = k*(stretch - e_c)\n"
+                          "  energy W = k*s/2*(stretch - e_c)**2\n" END);
+}
+
+static const char *note_of(const judged *j, const char *code) {
+  for (int k = 0; k < j->said.count; k++)
+    if (strcmp(diag_name(j->said.items[k].code), code) == 0) return j->said.items[k].note;
+  return NULL;
+}
+
+/* Once, with the default that is the cause. */
+static void a_time_of_zero_is_told(void **state) {
+  (void)state;
+  static const char text[] = BOND "  parameter tau = 0 [s] in [0, inf)\n  state v on bond = 0\n"
+                                 "  rate v = (stretch - v)/tau\n"
+                                 "  force N = k*stretch + k*(stretch - v)\n" END;
+  is_said_once(text, "division-by-zero", "divides by zero");
+  judged *j = judge(text);
+  assert_non_null(strstr(note_of(j, "division-by-zero"), "tau = 0 s"));
+  judged_free(j);
+}
+
+static void a_step_of_zero_is_told(void **state) {
+  (void)state;
+  judged *j = judge(BOND "  parameter tau = 1 [s] in (0, inf)\n  state v on bond = 0\n"
+                         "  v = previous(v) + (stretch - previous(v))*dt/tau\n"
+                         "  force N = k*(stretch - v) + k*tau/dt*v\n" END);
+  assert_non_null(strstr(note_of(j, "division-by-zero"), "dt = 0 s"));
+  judged_free(j);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(states_may_act_by_the_rest_alone),
       cmocka_unit_test(stiffness_by_the_step_is_told),
       cmocka_unit_test(a_step_may_be_written_out),
+      cmocka_unit_test(states_may_act_by_rates),
+      cmocka_unit_test(angles_with_their_unit_are_none_in_degrees),
+      cmocka_unit_test(the_text_is_read_beside_errors),
+      cmocka_unit_test(a_cable_is_no_solid),
+      cmocka_unit_test(what_is_soft_may_be_strong),
+      cmocka_unit_test(what_solves_a_rate_divides_by_no_zero),
+      cmocka_unit_test(a_time_of_zero_is_told),
+      cmocka_unit_test(a_step_of_zero_is_told),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
