@@ -540,10 +540,18 @@ static void resolve_fields(lowering *c, lowered_law *out) {
 /* By a state above, say. */
 static void refuse_moving_rest(lowering *c, const lowered_law *out) {
   if (out->rest == IR_NONE) return;
-  ir_node moving[] = {lower_quantity(c->graph, QUANTITY_STRETCH),
-                      lower_quantity(c->graph, QUANTITY_STRETCH_RATE),
-                      lower_quantity(c->graph, QUANTITY_LENGTH)};
-  if (rewrite_depends(c->graph, &out->rest, 1, moving, 3))
+  static const builtin_quantity motions[] = {QUANTITY_STRETCH, QUANTITY_STRETCH_RATE,
+                                             QUANTITY_LENGTH, QUANTITY_TWIST};
+  enum { MOTIONS = sizeof motions / sizeof *motions };
+  ir_node moving[MOTIONS + 2 * BENDING_AXES];
+  int count = 0;
+  for (int k = 0; k < MOTIONS; k++)
+    moving[count++] = lower_quantity(c->graph, motions[k]);
+  for (int k = 0; k < lower_bending_axes(c->law); k++) {
+    moving[count++] = lower_bending(c->graph, c->law, QUANTITY_THETA_I, k);
+    moving[count++] = lower_bending(c->graph, c->law, QUANTITY_THETA_J, k);
+  }
+  if (rewrite_depends(c->graph, &out->rest, 1, moving, count))
     lower_fail(c, c->law->rest->where, "the rest stretch may not follow the bond's own motion");
 }
 
