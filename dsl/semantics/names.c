@@ -210,6 +210,8 @@ static void report_unknown(checker *ck, const expr *e) {
     diag_hint(ck->d, "write its arguments: `%s(...)`", name);
   else if (ck->alone)
     diag_hint(ck->d, "a formula knows %s", ck->alone);
+  else if (strcmp(name, "rest_" LAW_RESTING) == 0 || strcmp(name, "total_" LAW_RESTING) == 0)
+    diag_hint(ck->d, "a line `rest " LAW_RESTING " = ...` declares it");
   else
     names_suggest(ck, SPACE_QUANTITIES, name);
 }

@@ -330,11 +330,12 @@ static ir_node end_moment(lowering *c, law_result which, ir_node W, builtin_quan
   return lower_fail(c, c->law->tree->name_where, "the law gives no end moments");
 }
 
+/* A bond whose law says nothing of twisting does not resist it. */
 static ir_node twisting_moment(lowering *c, ir_node W) {
   const ir_node given = result_node(c, RESULT_T);
   if (given != IR_NONE) return given;
   return W != IR_NONE ? ir_derivative(c->graph, W, lower_quantity(c->graph, QUANTITY_TWIST))
-                      : IR_NONE;
+                      : ir_constant(c->graph, 0);
 }
 
 static void lower_moments(lowering *c, lowered_law *out) {
