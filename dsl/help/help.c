@@ -23,8 +23,16 @@ static void print_page(const help_page *p, FILE *out) {
   }
 }
 
+/* What a word of the language declares stands on its page. */
+static const struct {
+  const char *name, *page;
+} declared[] = {{"rest_stretch", "rest"}, {"total_stretch", "rest"}};
+enum { DECLARED = sizeof declared / sizeof *declared };
+
 static int show_pages(const char *topic, FILE *out) {
   int shown = 0;
+  for (int i = 0; i < DECLARED; i++)
+    if (strcmp(declared[i].name, topic) == 0) topic = declared[i].page;
   for (int i = 0; i < help_page_count; i++) {
     if (strcmp(help_pages[i].name, topic) != 0) continue;
     if (shown++) fputc('\n', out);
@@ -88,13 +96,15 @@ int help_show(const char *topic, FILE *out) {
 }
 
 int help_topic_count(void) {
-  return help_page_count + (int)QUANTITY_COUNT + (int)FUNCTION_COUNT + 1;
+  return help_page_count + DECLARED + (int)QUANTITY_COUNT + (int)FUNCTION_COUNT + 1;
 }
 
 void help_topics(const char **names) {
   int n = 0;
   for (int i = 0; i < help_page_count; i++)
     names[n++] = help_pages[i].name;
+  for (int i = 0; i < DECLARED; i++)
+    names[n++] = declared[i].name;
   for (int q = 0; q < QUANTITY_COUNT; q++)
     names[n++] = builtin_quantities[q].name;
   for (int f = 0; f < FUNCTION_COUNT; f++)

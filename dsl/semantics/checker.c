@@ -18,6 +18,7 @@ placement natural_place(const checker *ck) {
 const char *law_word(const checker *ck) {
   if (ck->tree->law == LAW_CONTINUUM) return "continuum";
   if (ck->tree->law == LAW_CRACK) return "crack";
+  if (ck->tree->law == LAW_SLIP_BOND) return "slip";
   return is_single(ck) ? "bond" : "state";
 }
 

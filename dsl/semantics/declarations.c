@@ -26,16 +26,39 @@ static bool refuse_reserved(checker *ck, const char *name, span where) {
   return true;
 }
 
+/* A line `rest stretch` declares two names, `rest_stretch` and `total_stretch`. */
+static bool is_of_rest(const stmt *s) {
+  return s && (s->rest_of || s->total);
+}
+
 static void report_duplicate(checker *ck, const char *name, span where, const entry *first) {
   complain(ck, DIAG_DUPLICATE_NAME, where, "`%s` is declared twice", name);
   diag_note(ck->d, first->symbol.where, "first declared here");
+}
+
+/* Of two lines one is `rest stretch`. */
+static void report_rest_name(checker *ck, const stmt *s, const entry *first) {
+  const bool twice = is_of_rest(first->symbol.declared) && is_of_rest(s);
+  const char *of = strchr(s->name, '_') + 1;
+  complain(ck, DIAG_DUPLICATE_NAME, s->name_where,
+           twice           ? "there is a line `rest %s` already"
+           : is_of_rest(s) ? "`rest %s` declares `%s`, which is declared already"
+                           : "a line `rest %s` has declared `%s`",
+           of, s->name);
+  if (!twice)
+    diag_hint(ck->d, "choose another name for yours: `rest %s` declares `rest_%s` and `total_%s`",
+              of, of, of);
+  diag_note(ck->d, first->symbol.where, "declared here");
 }
 
 static entry *declare(checker *ck, symbol_kind kind, stmt *s) {
   if (!s->name || refuse_reserved(ck, s->name, s->name_where)) return NULL;
   const entry *first = names_find(ck, SPACE_QUANTITIES, s->name);
   if (first) {
-    report_duplicate(ck, s->name, s->name_where, first);
+    if (is_of_rest(s) || is_of_rest(first->symbol.declared))
+      report_rest_name(ck, s, first);
+    else
+      report_duplicate(ck, s->name, s->name_where, first);
     return NULL;
   }
   entry *e = names_add(ck, SPACE_QUANTITIES, s->name,
@@ -316,7 +339,8 @@ static void declare_definition(checker *ck, stmt *s) {
   if (e) {
     e->symbol.rule = s;
     if (s->rest_of) ck->law->rest = &e->symbol, ck->rest_at = ck->now;
-  } else if (found && found->symbol.kind == SYMBOL_DEFINED) {
+  } else if (found && found->symbol.kind == SYMBOL_DEFINED && !is_of_rest(s) &&
+             !is_of_rest(found->symbol.declared)) {
     diag_hint(ck->d, "a name has one rule: join them with cases, | value when guard");
   }
 }

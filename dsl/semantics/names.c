@@ -189,6 +189,15 @@ static void report_other_kind(checker *ck, const expr *e, const builtin_quantity
     diag_hint(ck->d, "a law that begins with `law %s` has it", law_that_has(q->kinds));
 }
 
+/* A name that a line `rest ...` would declare. */
+static bool is_named_by_rest(const checker *ck, const char *name) {
+  const char *resting = law_resting(ck->tree->law);
+  const char *of = strncmp(name, "rest_", 5) == 0    ? name + 5
+                   : strncmp(name, "total_", 6) == 0 ? name + 6
+                                                     : "";
+  return resting && strcmp(of, resting) == 0;
+}
+
 static void report_unknown(checker *ck, const expr *e) {
   const char *name = e->name;
   const int quantity = ck->alone ? -1 : builtin_quantity_find(name);
@@ -210,6 +219,8 @@ static void report_unknown(checker *ck, const expr *e) {
     diag_hint(ck->d, "write its arguments: `%s(...)`", name);
   else if (ck->alone)
     diag_hint(ck->d, "a formula knows %s", ck->alone);
+  else if (is_named_by_rest(ck, name))
+    diag_hint(ck->d, "a line `rest %s = ...` declares it", law_resting(ck->tree->law));
   else
     names_suggest(ck, SPACE_QUANTITIES, name);
 }

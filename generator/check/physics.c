@@ -1,6 +1,7 @@
 #include "generator/check/physics.h"
 
 #include <assert.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,11 +12,13 @@
 #include "generator/check/physics_family_paths.h"
 #include "generator/check/physics_healing.h"
 #include "generator/check/physics_hold.h"
+#include "generator/check/physics_parameters.h"
 #include "generator/check/physics_paths.h"
 #include "generator/check/physics_points.h"
 #include "generator/check/physics_states.h"
 #include "generator/check/physics_tangent.h"
 #include "generator/check/physics_tips.h"
+#include "generator/lower/rest_ends.h"
 #include "runtime/base/clock.h"
 
 /* --- the checks ------------------------------------------------------------------------------- */
@@ -68,6 +71,65 @@ static void check_lines(physics *p) {
   diag_hint(p->said, "look at the order of the lines, and at the limits in their conditions");
 }
 
+/* A bond that stands askew, between unlike particles unless they are a deck's. */
+static pl_bond_class any_bond(const rows *lattice, bool alike) {
+  static const double askew[2][3] = {{0.8, 0.6, 0}, {0.48, 0.6, 0.64}};
+  pl_bond_class c = rows_bond_class(lattice, 0);
+  for (int d = 0; d < 3; d++)
+    c.chord[d] = c.s * askew[lattice->dimensions == 3][d];
+  if (!alike) c.mass_j *= 1.5;
+  return c;
+}
+
+/* "`rest stretch` is ...", where it is no number or not the same from both ends; said by `say`. */
+typedef void rest_speaker(void *of, diag_code code, span where, const char *text);
+
+static void check_rest_stretch(const law *l, const physics_options *o, const double *parameters,
+                               const rows *lattice, rest_speaker *say, void *of, diagnostics *d) {
+  const pl_bond_class bond = any_bond(lattice, o->lattice != NULL);
+  rest_ends r;
+  char text[200];
+  if (!rest_ends_find(l, parameters, &bond, &r, d)) return;
+  if (!r.finite) {
+    say(of, DIAG_REST_FORCE, l->rest->where,
+        "the rest stretch of a virgin bond is not a finite number");
+    return;
+  }
+  if (!rest_ends_differ(&r)) return;
+  snprintf(text, sizeof text,
+           "the two ends of a bond find different rest stretches: one %.6g, the other %.6g",
+           r.both[0], r.both[1]);
+  say(of, DIAG_EXCHANGE, l->rest->where, text);
+  diag_hint(d,
+            l->tree->law == LAW_STATE
+                ? "of a value x of the particle write (x + x[j])/2; of `direction` only what does "
+                  "not change with its sign"
+                : "only what does not change with the sign of `direction` is the same from both "
+                  "ends");
+}
+
+static void say_of_bond(void *of, diag_code code, span where, const char *text) {
+  physics_say(of, code, where, NULL, "%s", text);
+}
+
+static void rest_stretch_of_bonds(physics *p) {
+  const bench *b = &p->b;
+  double *parameters = must_calloc((size_t)b->parameter_count + 1, sizeof *parameters);
+  physics_draw_parameters(b->law, NULL, parameters);
+  check_rest_stretch(b->law, b->options,
+                     b->options->parameters ? b->options->parameters : parameters, b->lattices[0],
+                     say_of_bond, p, p->said);
+  free(parameters);
+}
+
+static void say_of_family(void *of, diag_code code, span where, const char *text) {
+  family_bench_say(of, code, where, 0, "%s", text);
+}
+
+static void rest_stretch_of_families(family_bench *b) {
+  check_rest_stretch(b->law, b->options, b->parameters, b->lattice, say_of_family, b, b->said);
+}
+
 /* A check: what it may say, for which laws it is, and what a law has failed already when it is
    left out, because it would say the same again. Codes stand up to the first 0, which is none of
    mechanics. */
@@ -82,6 +144,9 @@ typedef struct physics_row {
 
 /* In their order: a scan and histories leave states to the checks that follow. */
 static const physics_row checks[] = {
+    {.says = {DIAG_REST_FORCE, DIAG_EXCHANGE},
+     .of_bonds = rest_stretch_of_bonds,
+     .of_families = rest_stretch_of_families},
     {.says = {DIAG_REST_FORCE},
      .of_bonds = physics_check_rest,
      .of_families = family_check_rest,

@@ -73,10 +73,15 @@ void family_check_rest(family_bench *b) {
     family_bench_move(b, u, NULL);
     family_bench_forces(b, b->whole, force);
     const double found = largest(force, b->values);
+    const bool said = b->failed[DIAG_REST_FORCE];
     if (!(found <= REST_TOLERANCE * scale))
       family_bench_say(b, DIAG_REST_FORCE, family_bench_force(b), 0,
                        "a particle of the virgin body at rest feels a force of %.6g N%s", found,
                        round % 2 ? " once the body is turned" : "");
+    if (!said && b->failed[DIAG_REST_FORCE] && b->law->tree->law == LAW_STATE && round % 2 == 0)
+      diag_hint(b->said,
+                "what bonds have grown by goes into `rest stretch[j] = ...`, and a prestress "
+                "that is meant is told by `accept rest-force \"why\"`");
   }
   free(u);
   free(force);

@@ -60,6 +60,7 @@ static void draw_values(const law *l, uint64_t *seed, double *values) {
   memcpy(start, values, (size_t)n * sizeof *start);
   for (int p = 0; p < n; p++) {
     const law_limits in = law_parameter_limits(l, p, values);
+    if (symbol_is_field(l->parameters.items[p])) continue; /* a temperature has its usual value */
     values[p] = vary(seed, start[p], in.lower, in.upper);
   }
   /* Open ends and relations between parameters: back toward the defaults until all hold. */

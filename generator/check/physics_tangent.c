@@ -57,8 +57,11 @@ void physics_check_rest(physics *p) {
       else
         physics_say(p, DIAG_REST_FORCE, physics_fault(p, k, column), column,
                     "`%s` of a virgin bond at rest is not a finite number", physics_force_names[k]);
-      diag_hint(p->said,
-                "at stretch = 0 and without rotations every force is 0; 0/0 is not a number");
+      diag_hint(
+          p->said,
+          "at stretch = 0 and without rotations every force is 0, and 0/0 is not a number; what "
+          "a bond has grown by goes into `rest stretch = ...`, and a prestress that is meant is "
+          "told by `accept rest-force \"why\"`");
     }
   bench_states_free(b, states);
   free(column);

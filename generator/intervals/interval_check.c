@@ -172,7 +172,7 @@ static void look_at_law(analysis *a) {
   for (int k = 0; k < l->fields.count; k++)
     if (!l->fields.items[k]->rate_of) /* the rule of the state, at another value of it */
       look_at(a, whole, law_rate_field(l, k) >= 0 ? s->text.rules[k] : s->fields[k]);
-  const ir_node results[] = {s->N, s->M_i[0], s->M_j[0], s->W};
+  const ir_node results[] = {s->rest, s->N, s->M_i[0], s->M_j[0], s->T, s->W};
   for (size_t k = 0; k < sizeof results / sizeof *results; k++)
     look_at(a, whole, results[k]);
   for (int k = 0; k < l->outputs.count; k++)

@@ -331,11 +331,12 @@ static ir_node end_moment(lowering *c, law_result which, ir_node W, builtin_quan
   return lower_fail(c, c->law->tree->name_where, "the law gives no end moments");
 }
 
+/* A bond whose law says nothing of twisting does not resist it. */
 static ir_node twisting_moment(lowering *c, ir_node W) {
   const ir_node given = result_node(c, RESULT_T);
   if (given != IR_NONE) return given;
   return W != IR_NONE ? ir_derivative(c->graph, W, lower_quantity(c->graph, QUANTITY_TWIST))
-                      : IR_NONE;
+                      : ir_constant(c->graph, 0);
 }
 
 static void lower_moments(lowering *c, lowered_law *out) {
@@ -580,10 +581,18 @@ static void resolve_fields(lowering *c, lowered_law *out) {
 /* By a state above, say. */
 static void refuse_moving_rest(lowering *c, const lowered_law *out) {
   ir *g = c->graph;
-  ir_node of_bond[] = {lower_quantity(g, QUANTITY_STRETCH),
-                       lower_quantity(g, QUANTITY_STRETCH_RATE),
-                       lower_quantity(g, QUANTITY_LENGTH)};
-  if (out->rest != IR_NONE && rewrite_depends(g, &out->rest, 1, of_bond, 3))
+  static const builtin_quantity motions[] = {QUANTITY_STRETCH, QUANTITY_STRETCH_RATE,
+                                             QUANTITY_LENGTH, QUANTITY_TWIST};
+  enum { MOTIONS = sizeof motions / sizeof *motions };
+  ir_node moving[MOTIONS + 2 * BENDING_AXES];
+  int count = 0;
+  for (int k = 0; k < MOTIONS; k++)
+    moving[count++] = lower_quantity(g, motions[k]);
+  for (int k = 0; k < lower_bending_axes(c->law); k++) {
+    moving[count++] = lower_bending(g, c->law, QUANTITY_THETA_I, k);
+    moving[count++] = lower_bending(g, c->law, QUANTITY_THETA_J, k);
+  }
+  if (out->rest != IR_NONE && rewrite_depends(g, &out->rest, 1, moving, count))
     lower_fail(c, c->law->rest->where, "the rest stretch may not follow the bond's own motion");
   if (out->rest_strain[0] == IR_NONE) return;
   ir_node of_point[2 * POINT_STRAINS];

@@ -51,6 +51,11 @@ static void conclude_increments(const run *r) {
          "reactions or loads\n",
          increments, simulation_step_done(r->simulation) / increments,
          largest_of(r, "relaxation_steps"), largest_of(r, "relaxation_unbalance"));
+  const long within = simulation_increments_within(r->simulation);
+  if (within > 0)
+    printf("             in %ld of them hardly anything acted on the body: compared with 1e-5 of "
+           "the forces between its particles\n",
+           within);
   if (unbalanced > 0)
     printf("             %ld of them without balance after %ld steps\n", unbalanced,
            (long)r->deck->relaxation.most_steps);

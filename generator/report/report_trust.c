@@ -140,21 +140,24 @@ static double part_damped(const run *r) {
 /* What the relaxation took from a body whose law remembers: its states on the way are those of a
    body that moves. */
 static void warn_of_damping(const run *r) {
-  const double part = part_damped(r), external = last_value(r, "energy/external"),
+  const double work = fabs(last_value(r, "energy/external")),
+               largest = simulation_largest_energy(r->simulation);
+  const bool by_itself = unless_nothing(work, largest) == 0; /* nothing loads it: it grows */
+  const double part = part_damped(r), whole = by_itself ? largest : work,
                damping = last_value(r, "energy/dissipated_damping"),
-               damage = unless_nothing(last_value(r, "energy/dissipated_damage"), external);
-  if (r->deck->relaxation.increments == 0 || !(damping > part * fabs(external)) || damage == 0)
-    return;
+               damage = unless_nothing(last_value(r, "energy/dissipated_damage"), whole);
+  if (r->deck->relaxation.increments == 0 || !(damping > part * whole) || damage == 0) return;
   fprintf(
       stderr,
-      "perilat: warning: the relaxation damped %.3g J, %.2g %% of the work of loads and drives: "
-      "the body moved\n"
+      "perilat: warning: the relaxation damped %.3g J, %.2g %% of %s: the body moved\n"
       "  within increments, and what broke or yielded then may depend on how many there are, the "
       "load that it bears, too;\n"
       "  take more increments: run it again with `relaxation.increments=%d` and compare. What "
       "stays the same was set free by the body "
       "itself, as it broke\n",
-      damping, 100 * damping / fabs(external), 2 * r->deck->relaxation.increments);
+      damping, 100 * damping / whole,
+      by_itself ? "the largest energy" : "the work of loads and drives",
+      2 * r->deck->relaxation.increments);
 }
 
 /* "particle 12 of plate at (3, 4) mm" */

@@ -246,6 +246,41 @@ static void check_force_state(sense_bench *b) {
   }
 }
 
+/* A state of the last step that an expression reads because its rule stands below; not
+   `previous(x)`, which is meant. */
+static const symbol *state_below(const expr *e, int depth) {
+  enum { DEEPEST = 64 };
+  const symbol *found = NULL;
+  if (!e || depth > DEEPEST) return NULL;
+  if (e->kind == EXPR_CALL && !e->symbol && e->builtin == FUNCTION_PREVIOUS) return NULL;
+  if (e->kind == EXPR_NAME && e->symbol && e->reads_old) return e->symbol;
+  if (e->kind == EXPR_NAME && e->symbol && e->symbol->kind == SYMBOL_DEFINED && e->symbol->rule)
+    found = state_below(e->symbol->rule->value, depth + 1);
+  if (!found) found = state_below(e->left, depth + 1);
+  if (!found) found = state_below(e->right, depth + 1);
+  for (int k = 0; k < e->argument_count && !found; k++)
+    found = state_below(e->arguments[k].value, depth + 1);
+  for (int k = 0; k < e->case_count && !found; k++) {
+    found = state_below(e->cases[k].guard, depth + 1);
+    if (!found) found = state_below(e->cases[k].value, depth + 1);
+  }
+  return found;
+}
+
+static void check_rest(sense_bench *b) {
+  const symbol *late = b->law->rest ? state_below(b->law->rest->rule->value, 0) : NULL;
+  char mend[400];
+  if (!late) return;
+  snprintf(mend, sizeof mend,
+           "write the rule of `%.60s` above this line; where it reads `stretch`, leave `rest "
+           "stretch` out and write `stretch - %.60s` in the force, below the rule",
+           late->name, late->name);
+  sense_say(b, DIAG_ONE_STEP_LATE, b->law->rest->rule->where, mend,
+            "the rest stretch is made of `%s` as it was before its rule: the force is a step late, "
+            "off by as much as `%s` changes in a step",
+            late->name, late->name);
+}
+
 /* --- the walk --------------------------------------------------------------------------------- */
 
 static void look_at_call(sense_bench *b, const expr *e) {
@@ -285,4 +320,5 @@ void sense_check_text(sense_bench *b) {
     look_at(b, s->when);
   }
   check_force_state(b);
+  check_rest(b);
 }

@@ -13,7 +13,8 @@ enum { INCREMENT_STEPS, INCREMENT_UNBALANCE, INCREMENT_SERIES };
 static const char *const increment_names[] = {"relaxation_steps", "relaxation_unbalance"};
 static const char *const increment_words[] = {
     "steps of the increment",
-    "unbalanced force at the end of the increment over reactions or loads"};
+    "unbalanced force at the end of the increment over reactions or loads, or 1e-5 of the forces "
+    "between particles"};
 
 static const char step_name[] = "time_step", step_words[] = "time step, which may shrink";
 

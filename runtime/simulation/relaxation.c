@@ -11,6 +11,8 @@
 enum { LOOK_EVERY = 25 };                /* steps */
 static const double forgotten = 0.01;    /* part of the largest force that still counts */
 static const double while_loading = 0.1; /* part of the damping */
+static const double slight = 1e-5;       /* loads beside the forces between particles */
+static const double rounding = 1e-15;    /* strain */
 
 typedef struct extent { /* m */
   double lower[3], upper[3], spacing;
@@ -239,15 +241,38 @@ static void add_component(const relaxation *r, const run_body *of, int d, square
     sum->free += square_of(r->total[w->lattice->particle_site[p]] / arm);
 }
 
+/* N/m: of a bond of a chain with the largest frequency of the body. */
+static double bond_stiffness(const run_body *of) {
+  return 0.25 * of->body->mass[0] * square_of(of->limit.omega_max);
+}
+
+/* N: the root of the sum of squares of forces between particles. Bonds of stiffness k under forces
+   N store the sum of N^2/(2 k). 0 where it is not known what they store. */
+static double inner_force(const run_body *of, double stiffness) {
+  const double stored = body_sum(of->body).stored;
+  return stored > 0 ? sqrt(2 * stored * stiffness) : 0;
+}
+
+/* N: what rounding leaves of them. */
+static double rounding_force(const run_body *of, double stiffness) {
+  const double count = (double)of->body->dof * (double)of->lattice_rows->particle_count;
+  return rounding * stiffness * of->lattice_rows->spacing * sqrt(count);
+}
+
 static double unbalance_of(const relaxation *r, int number) {
   squares sum = {0, 0, 0};
+  const run_body *of = &r->bodies[number];
   relaxed_state *state = &r->looked_at[number].state;
-  for (int d = 0; d < r->bodies[number].body->dof; d++)
-    add_component(r, &r->bodies[number], d, &sum);
+  const double stiffness = bond_stiffness(of);
+  for (int d = 0; d < of->body->dof; d++)
+    add_component(r, of, d, &sum);
   const double needed = sqrt(pl_fmax(sum.held, sum.applied));
-  state->largest = pl_fmax(state->largest, needed > 0 ? needed : sqrt(sum.free));
-  const double against = pl_fmax(needed, forgotten * state->largest);
-  return sum.free == 0 ? 0 : sqrt(sum.free) / against;
+  state->largest = pl_fmax(state->largest, needed);
+  state->inner = pl_fmax(state->inner, inner_force(of, stiffness));
+  const double outer = pl_fmax(needed, forgotten * state->largest), within = slight * state->inner,
+               left = sqrt(sum.free);
+  state->within = within > outer;
+  return left <= rounding_force(of, stiffness) ? 0 : left / pl_fmax(outer, within);
 }
 
 /* NaN is no balance. The forces of a link are looked at where they act. */
@@ -261,6 +286,13 @@ static double largest_unbalance(const relaxation *r) {
   return most;
 }
 
+/* No body has loads or reactions to speak of. */
+static bool is_within(const relaxation *r) {
+  for (int b = 0; b < r->body_count; b++)
+    if (!run_body_is_link(&r->bodies[b]) && !r->looked_at[b].state.within) return false;
+  return true;
+}
+
 bool relaxation_look(relaxation *r, int64_t step) {
   const int64_t steps = step - first_step(r);
   adapt(r);
@@ -271,6 +303,7 @@ bool relaxation_look(relaxation *r, int64_t step) {
   if (!balanced && steps < r->deck->most_steps) return false;
   r->state.done++;
   r->state.unbalanced += !balanced;
+  r->state.within += is_within(r);
   r->state.steps = steps;
   return true;
 }

@@ -17,6 +17,11 @@
    or applied, as of a free body that its rest state moves, that value is the largest unbalanced
    force. Moments count over a spacing.
 
+   A body that shrinks or swells by itself (`rest stretch`) needs no forces. Where loads and
+   reactions are less than 1e-5 of the largest forces between particles so far, that part of these is
+   what the unbalance is compared with: the slenderest bodies that are loaded bear more. A body is
+   at rest, too, when rounding alone is left, a strain of 1e-15.
+
    Static runs (mesh_rest.h) have increments, too, of one step each, which solves K u = F. */
 #ifndef PERILAT_RUNTIME_RELAXATION_H
 #define PERILAT_RUNTIME_RELAXATION_H
@@ -26,13 +31,16 @@
 typedef struct relaxation_state { /* what a later step depends on */
   int64_t done;                   /* increments */
   int64_t unbalanced;             /* of these: ended after `most_steps` */
+  int64_t within;                 /* of these: compared with forces between particles */
   int64_t steps;                  /* of the last that was done */
   double unbalance;               /* as it was looked at last, of the body with the largest */
 } relaxation_state;
 
 typedef struct relaxed_state { /* of a body, likewise */
   double rate;                 /* 1/s: mass damping, critical for the motion looked at last */
-  double largest;              /* N: the largest force that its unbalance was compared with */
+  double largest;              /* N: the largest reaction or load so far */
+  double inner;                /* N: the same of the forces between particles */
+  int64_t within;              /* these were what its unbalance was compared with */
 } relaxed_state;
 
 typedef struct relaxed_body { /* a body at the last look */

@@ -446,6 +446,10 @@ uint64_t simulation_started_from(const simulation *s) {
 double simulation_progress(const simulation *s) {
   return (double)run_clock_position(&s->clock) / (double)run_clock_end(&s->clock);
 }
+long simulation_increments_within(const simulation *s) {
+  return s->relaxation ? (long)s->relaxation->state.within : 0;
+}
+
 long simulation_increments(const simulation *s, long *unbalanced) {
   *unbalanced = s->relaxation ? (long)s->relaxation->state.unbalanced : 0;
   return s->relaxation ? (long)s->relaxation->state.done : 0;

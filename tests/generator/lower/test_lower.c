@@ -252,6 +252,33 @@ static void what_is_not_compiled_yet_is_said(void **state) {
   close_law(t);
 }
 
+/* Not even by a state whose rule stands above, or where only the energy is given. */
+static void a_rest_stretch_that_moves_with_the_bond_is_refused(void **state) {
+  (void)state;
+  static const struct {
+    const char *kind, *rest;
+  } laws[] = {{"micropolar bond", "norm(theta_i)*norm(theta_j)"},
+              {"micropolar bond\n  for space", "norm(theta_i)"},
+              {"micropolar bond\n  for space", "1e-3*twist**2"},
+              {"central bond", "1e-3*(length/s - 1)"},
+              {"central bond", "stretch_rate*1 [s]"},
+              {"central bond", "x"}};
+  for (size_t k = 0; k < sizeof laws / sizeof *laws; k++) {
+    char text[600];
+    const bool state_above = strcmp(laws[k].rest, "x") == 0;
+    snprintf(text, sizeof text,
+             "model m\n  law %s\n  parameter k = 50 [MN] in (0, inf)\n%s"
+             "  rest stretch = %s\n  energy W = s*k*stretch**2/2\nend model\n",
+             laws[k].kind, state_above ? "  state x on bond = 0\n  x = length/s - 1\n" : "",
+             laws[k].rest);
+    tested_law *t = open_law(text);
+    assert_non_null(t->law);
+    if (t->plan) fail_msg("`%s` is not refused", laws[k].rest);
+    assert_non_null(strstr(t->said.items[t->said.count - 1].message, "own motion"));
+    close_law(t);
+  }
+}
+
 /* What cannot be compiled is never taken for a bound of 0. */
 static void a_bound_that_cannot_be_compiled_is_said(void **state) {
   (void)state;
@@ -480,6 +507,7 @@ int main(void) {
       cmocka_unit_test(a_returned_flow_ends_on_the_limit),
       cmocka_unit_test(the_direction_is_a_unit_vector),
       cmocka_unit_test(what_is_not_compiled_yet_is_said),
+      cmocka_unit_test(a_rest_stretch_that_moves_with_the_bond_is_refused),
       cmocka_unit_test(a_bound_that_cannot_be_compiled_is_said),
       cmocka_unit_test(repeated_calls_are_expanded_once),
       cmocka_unit_test(stored_energy_of_each_kind),

@@ -181,7 +181,7 @@ static void open_heated(deck_case *c, const char *temperature, double spacing_mm
            "&material lattice = 'l' model = 'thermal_bond' /\n"
            "&field lattice = 'l' name = 'T' value = '%s' /\n"
            "&body lattice = 'l' shape = 'rectangle' corner = 0, 0 size = '201 mm', '60 mm' /\n"
-           "&relaxation increments = 1 tolerance = 1e-9 /\n%s",
+           "%s",
            spacing_mm, temperature, more);
   deck_case_open(c, text);
 }
@@ -202,7 +202,7 @@ static void a_gradient_across_bends_a_bar(void **state) {
   (void)state;
   const double g = 1000; /* K/m */
   deck_case c;
-  open_heated(&c, "293 [K] + 1000 [K]*y/1 [m]", 10, "");
+  open_heated(&c, "293 [K] + 1000 [K]*y/1 [m]", 10, RELAXED);
   assert_int_equal(deck_case_go(&c), STEP_END);
   const double first = deck_case_series(&c, "energy/stored")[0],
                last = deck_case_last(&c, "energy/stored"),
@@ -220,6 +220,7 @@ static void a_gradient_across_bends_a_bar(void **state) {
 static void a_gradient_along_presses_as_its_mean(void **state) {
   (void)state;
 #define HELD                                                                                       \
+  RELAXED                                                                                          \
   "&region name = 'left' shape = 'rectangle' corner = -1, -1 size = '1.006 m', 2 /\n"              \
   "&region name = 'right' shape = 'rectangle' corner = '194 mm', -1 size = 1, 2 /\n"               \
   "&support region = 'left' fix = 'x' /\n&support region = 'right' fix = 'x' /\n"                  \
@@ -236,6 +237,36 @@ static void a_gradient_along_presses_as_its_mean(void **state) {
   print_message("%.6g N by the gradient, %.6g N by its mean; a bar %.6g N\n", load[1], load[0],
                 bar);
   assert_true(fabs(load[1] / load[0] - 1) < 1e-2 && fabs(load[0]) > 0.9 * bar);
+}
+
+/* Nothing loads or holds a free body: it is in balance when little is left of the forces that its
+   particles exert on each other, or, where it grows without stress, did. Rows that grow by the
+   square of the height press each other; more steps change nothing. */
+static void a_free_body_comes_to_balance(void **state) {
+  (void)state;
+  static const char *const warm[] = {"393 [K]", "293 [K] + 100 [K]*(y/60 [mm])**2*t/100 [us]"};
+  for (int k = 0; k < 2; k++) {
+    double stored[2];
+    for (int fine = 0; fine < 2; fine++) {
+      deck_case c;
+      long unbalanced;
+      open_heated(&c, warm[k], 10,
+                  fine ? "&relaxation increments = 2 tolerance = 1e-9 /\n"
+                       : "&relaxation increments = 2 /\n");
+      assert_int_equal(deck_case_go(&c), STEP_END);
+      assert_int_equal(simulation_increments(c.simulation, &unbalanced), 2);
+      assert_int_equal(simulation_increments_within(c.simulation), 2);
+      assert_int_equal(unbalanced, 0);
+      stored[fine] = deck_case_last(&c, "energy/stored");
+      print_message("%s: %.10g J stored, at most %.0f steps\n", warm[k], stored[fine],
+                    deck_case_largest(&c, "relaxation_steps"));
+      assert_true(deck_case_largest(&c, "relaxation_steps") < (fine ? 10000 : 3000));
+      deck_case_close(&c);
+    }
+    const double held = 0.5 * 2 * 30e9 * 1.2e-3 * 1.2e-3 * 0.2 * 0.06 * 0.01; /* J, at 393 K */
+    assert_true(fabs(stored[0] - stored[1]) < 1e-9 * held);
+    assert_true(k == 0 ? stored[0] < 1e-9 * held : stored[0] > 1e-3 * held);
+  }
 }
 
 /* A point's strain of 1e-5 (T - T_0) is not quite 0 where T is interpolated to T_0: what the first
@@ -271,6 +302,7 @@ int main(void) {
       cmocka_unit_test(growth_in_time_is_not_lost),
       cmocka_unit_test(a_gradient_across_bends_a_bar),
       cmocka_unit_test(a_gradient_along_presses_as_its_mean),
+      cmocka_unit_test(a_free_body_comes_to_balance),
       cmocka_unit_test(rounding_is_no_energy_from_nothing),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
