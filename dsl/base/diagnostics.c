@@ -123,6 +123,10 @@ void diag_hint(diagnostics *d, const char *format, ...) {
   va_end(values);
 }
 
+bool diag_hinted(const diagnostics *d) {
+  return d->count > 0 && d->items[d->count - 1].hint;
+}
+
 void diag_suggest(diagnostics *d, const char *name, const char *const *candidates, int count) {
   const char *nearest = nearest_name(name, candidates, count);
   if (nearest) diag_hint(d, "did you mean `%s`?", nearest);

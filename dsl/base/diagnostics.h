@@ -52,6 +52,8 @@ bool diag_report_once(diagnostics *d, bool said[DIAG_COUNT], diag_code code, spa
 void diag_note(diagnostics *d, span where, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 void diag_hint(diagnostics *d, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Whether the last one has a hint. */
+bool diag_hinted(const diagnostics *d);
 /* Adds the hint "did you mean `x`?" when one of the candidates is close enough to `name`. */
 void diag_suggest(diagnostics *d, const char *name, const char *const *candidates, int count);
 

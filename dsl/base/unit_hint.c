@@ -48,8 +48,37 @@ static bool is_root(const char *text, size_t length) {
   return digits || (length >= sizeof word - 1 && memcmp(text, word, sizeof word - 1) == 0);
 }
 
+/* What is no unit here, and what to write. */
+static const struct {
+  const char *words, *hint;
+} others[] = {
+    {"d day days", "a day is 24 h: give the time in `h`"},
+    {"a y yr year years", "a year is 8766 h: give the time in `h`"},
+    {"hr hrs hour hours", "write `h`"},
+    {"sec secs second seconds", "write `s`"},
+    {"minute minutes", "write `min`"},
+    {"C degC \xC2\xB0" "C celsius Celsius",
+     "temperatures are in `K`: 20 degrees Celsius are 293.15 K, and a difference of 1 degree is 1 K"},
+    {"kelvin Kelvin degK", "write `K`"},
+};
+
+static const char *hint_of_other(const char *text, size_t length) {
+  for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+    for (const char *at = others[k].words; *at;) {
+      const size_t size = strcspn(at, " ");
+      if (size == length && memcmp(at, text, length) == 0) return others[k].hint;
+      at += size + (at[size] == ' ');
+    }
+  return NULL;
+}
+
 bool unit_hint(diagnostics *d, const char *text, size_t length) {
   if (length == 0 || length > LONGEST) return false;
+  const char *other = hint_of_other(text, length);
+  if (other) {
+    diag_hint(d, "%s", other);
+    return true;
+  }
   if (is_root(text, length)) {
     diag_hint(d,
               "a root of a unit is written `sqrt(m)`, or as an exponent in parentheses: `m^(1/2)`");

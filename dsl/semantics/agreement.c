@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "dsl/semantics/builtins.h"
+
 const value BROKEN = {.broken = true};
 
 value scalar_of(dimension dim, placement where) {
@@ -63,13 +65,36 @@ const char *quoted(checker *ck, const expr *e, const char *otherwise) {
   return text ? arena_printf(ck->memory, "`%s`", text) : otherwise;
 }
 
+/* In x/50 of a formula the 50 lacks the unit of x; where there is such a quotient. */
+static const expr *bare_divisor(const expr *e) {
+  if (!e) return NULL;
+  if (e->kind == EXPR_BINARY && e->binary == OP_DIV && is_bare_number(e->right) &&
+      !dim_is_none(e->left->dim))
+    return e;
+  const expr *found = bare_divisor(e->left);
+  if (!found) found = bare_divisor(e->right);
+  for (int k = 0; !found && k < e->argument_count; k++)
+    found = bare_divisor(e->arguments[k].value);
+  return found;
+}
+
+static void hint_divisor(checker *ck, const expr *quotient) {
+  char text[128];
+  dim_unit(quotient->left->dim, text, sizeof text);
+  diag_hint(ck->d, "give `%g` its unit, such as `%g [%s]`", quotient->right->number,
+            quotient->right->number, strcmp(text, "m") == 0 ? "mm" : text);
+}
+
 static void hint_unit(checker *ck, const expr *a, const expr *b, value va, value vb) {
   char text[128];
   const expr *bare = is_bare_number(a) ? a : is_bare_number(b) ? b : NULL;
   if (!bare) return;
   dim_unit(bare == a ? vb.dim : va.dim, text, sizeof(text));
   const expr *other = bare == a ? b : a;
-  if (ck->alone && other != bare) /* x/200, where x/200 [mm] is meant */
+  const expr *quotient = ck->alone && other != bare ? bare_divisor(other) : NULL;
+  if (quotient)
+    hint_divisor(ck, quotient);
+  else if (ck->alone && other != bare) /* x/200, where x/200 [mm] is meant */
     diag_hint(ck->d, "give the number its unit: `%g [%s]`, or divide %s by `1 [%s]`", bare->number,
               text, quoted(ck, other, "the other one"), text);
   else
@@ -130,6 +155,63 @@ static bool may_be_general(const checker *ck, value v) {
   return v.shape == SHAPE_TENSOR && ck->tree->law == LAW_STATE;
 }
 
+/* --- the forgotten time ----------------------------------------------------------------------- */
+
+/* state v = 0
+   rate v = stretch - v
+
+   What begins at a bare 0 has the unit that its rate gives it: v is a time, and its uses are called
+   wrong where the rate is. */
+
+typedef bool is_meant(const symbol *s);
+
+static bool is_told_by_rate(const symbol *s) {
+  return s->kind == SYMBOL_STATE && entry_of(s)->infer && s->rule && s->rule->kind == STMT_RATE;
+}
+
+static bool is_thickness(const symbol *s) {
+  return s->kind == SYMBOL_QUANTITY && s->index == QUANTITY_T;
+}
+
+/* The first name of that kind in `e`, or NULL. */
+static const symbol *first_of(const expr *e, is_meant *meant, int *looks) {
+  enum { MOST_LOOKS = 1000 };
+  if (!e || ++*looks > MOST_LOOKS) return NULL;
+  if (e->kind == EXPR_NAME && e->symbol && meant(e->symbol)) return e->symbol;
+  const symbol *found = first_of(e->left, meant, looks);
+  if (!found) found = first_of(e->right, meant, looks);
+  for (int k = 0; !found && k < e->argument_count; k++)
+    found = first_of(e->arguments[k].value, meant, looks);
+  for (int k = 0; !found && k < e->case_count; k++)
+    found = first_of(e->cases[k].value, meant, looks);
+  return found;
+}
+
+/* Where `e` has a time too much, and a state of that kind in it, its rate is named, once. */
+static bool blame_rate(checker *ck, const expr *e, dimension has, dimension needs) {
+  const dimension second = dimension_of("s");
+  if (!dim_equal(dim_div(has, needs), second)) return false;
+  const symbol *s = first_of(e, is_told_by_rate, &(int){0});
+  if (!s || entry_of(s)->blamed) return s != NULL;
+  const dimension told = entry_of(s)->type.dim;
+  entry_of(s)->blamed = true;
+  complain(ck, DIAG_UNITS, s->rule->value->where, "by its rate `%s` is %s, but it is used as %s",
+           s->name, describe(ck, told), describe(ck, dim_div(told, second)));
+  diag_hint(ck->d, "a rate is per second: divide by a time");
+  diag_note(ck->d, e->where, "it is used here");
+  return true;
+}
+
+/* exp(-t/tau), where t is meant as the time. */
+static bool hint_thickness(checker *ck, const expr *e, dimension has, dimension needs) {
+  const dimension speed = dimension_of("m/s");
+  if (!dim_equal(dim_div(has, needs), speed) && !dim_equal(dim_div(needs, has), speed)) return false;
+  if (!first_of(e, is_thickness, &(int){0})) return false;
+  diag_hint(ck->d, "`t` is the thickness; the time that a step takes is `dt`, and a state may add it "
+                   "up: `age = previous(age) + dt`");
+  return true;
+}
+
 value agree(checker *ck, span where, expr *a, value va, expr *b, value vb, const char *deed) {
   if (va.broken || vb.broken) return BROKEN;
   if (va.zero || va.unknown) {
@@ -156,10 +238,13 @@ value agree(checker *ck, span where, expr *a, value va, expr *b, value vb, const
     return BROKEN;
   }
   if (va.shape != SHAPE_LOGICAL && !dim_equal(va.dim, vb.dim)) {
-    if (blame(ck, a, va.dim, vb.dim) || blame(ck, b, vb.dim, va.dim)) return BROKEN;
+    if (blame(ck, a, va.dim, vb.dim) || blame(ck, b, vb.dim, va.dim) ||
+        blame_rate(ck, a, va.dim, vb.dim) || blame_rate(ck, b, vb.dim, va.dim))
+      return BROKEN;
     complain(ck, DIAG_UNITS, where, "%s is %s but %s is %s, so they cannot be %s", first,
              describe(ck, va.dim), second, describe(ck, vb.dim), deed);
-    hint_unit(ck, a, b, va, vb);
+    if (!hint_thickness(ck, a, va.dim, vb.dim) && !hint_thickness(ck, b, vb.dim, va.dim))
+      hint_unit(ck, a, b, va, vb);
     return BROKEN;
   }
   va.deviator &= vb.deviator;
@@ -181,13 +266,18 @@ bool expect(checker *ck, expr *e, value v, dimension dim, shape s, const char *w
                 v.shape == SHAPE_VECTOR ? ", a component, such as `v[x]`, or `dot(v, w)`" : "");
     if (s == SHAPE_TENSOR && v.shape == SHAPE_GENERAL)
       diag_hint(ck->d, "take its symmetric part: `sym(...)`");
+    if (s == SHAPE_VECTOR && v.shape == SHAPE_SCALAR)
+      diag_hint(ck->d, "give it its components, `(a, b, c)`, or a direction: `...*(1, 0, 0)`");
     return false;
   }
   if (dim_equal(v.dim, dim)) return true;
-  if (blame(ck, e, v.dim, dim)) return false;
+  if (blame(ck, e, v.dim, dim) || blame_rate(ck, e, v.dim, dim)) return false;
   complain(ck, DIAG_UNITS, e->where, "%s must be %s, but this is %s", what, describe(ck, dim),
            describe(ck, v.dim));
-  if (is_bare_number(e)) hint_unit(ck, e, e, (value){.dim = dim}, (value){.dim = dim});
+  if (is_bare_number(e))
+    hint_unit(ck, e, e, (value){.dim = dim}, (value){.dim = dim});
+  else
+    hint_thickness(ck, e, v.dim, dim);
   return false;
 }
 

@@ -101,6 +101,12 @@ static entry *declare_in_deck(checker *ck, const stmt *s, symbol what) {
              s->name, vector_axis(first->symbol.component), first->symbol.component_of->name);
     diag_note(ck->d, first->symbol.where, "`%s` is declared here",
               first->symbol.component_of->name);
+  } else if (first && what.component_of) {
+    complain(ck, DIAG_DUPLICATE_NAME, s->name_where,
+             "the component %c of the vector `%s` is `%s` in decks, and so is another parameter",
+             vector_axis(what.component), what.component_of->name, s->name);
+    diag_note(ck->d, first->symbol.where, "`%s` is declared here", first->symbol.name);
+    diag_hint(ck->d, "choose another name for one of them");
   } else if (first) {
     complain(ck, DIAG_DUPLICATE_NAME, s->name_where, "`%s` and `%s` differ only in case", s->name,
              first->symbol.name);
@@ -153,6 +159,9 @@ static void declare_parameter(checker *ck, stmt *s) {
   entry *e = declare(ck, SYMBOL_PARAMETER, s);
   if (!e) return;
   if (expr_is_vector(s->value)) {
+    if (strcmp(s->name, "rho") == 0)
+      complain(ck, DIAG_SHAPE, s->value->where,
+               "`rho` is the mass density of the particles: a number, not a vector");
     declare_in_deck(ck, s, (symbol){.name = s->name, .where = s->name_where});
     declare_components(ck, s, e);
     return;
@@ -662,9 +671,26 @@ static void declare_one(checker *ck, stmt *s) {
   }
 }
 
+/* In decks and results fibre_x is the component of the vector `fibre`; a name for a value of the
+   step, as in `fibre_x = fibre[x]`, is seen by neither. */
+static void refuse_names_of_components(checker *ck) {
+  for (int k = 0; k < ck->law->parameters.count; k++) {
+    const symbol *part = ck->law->parameters.items[k];
+    const entry *other =
+        part->component_of ? names_find(ck, SPACE_QUANTITIES, part->name) : NULL;
+    if (!other || other->symbol.kind == SYMBOL_DEFINED || other->symbol.kind == SYMBOL_PARAMETER)
+      continue; /* another parameter of that name has been refused */
+    complain(ck, DIAG_DUPLICATE_NAME, other->symbol.where,
+             "`%s` is what the component %c of the vector `%s` is called in decks", part->name,
+             vector_axis(part->component), part->component_of->name);
+    diag_note(ck->d, part->where, "`%s` is declared here", part->component_of->name);
+  }
+}
+
 void declare_names(checker *ck) {
   for (int i = 0; i < ck->statement_count; i++) {
     ck->now = i;
     declare_one(ck, ck->statements[i]);
   }
+  refuse_names_of_components(ck);
 }

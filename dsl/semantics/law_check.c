@@ -466,6 +466,7 @@ static void infer_states(checker *ck) {
     entry_of(ck->law->parameters.items[i])->blamed = false; /* in silence */
   for (int i = 0; i < ck->law->fields.count; i++) {
     entry *e = entry_of(ck->law->fields.items[i]);
+    e->blamed = false;
     if (e->known) continue;
     e->type = scalar_of(DIMENSIONLESS, e->symbol.place);
     e->type.shape = declared_shape(e->symbol.declared);

@@ -155,8 +155,9 @@ void check_field(checker *ck, stmt *s) {
   entry *e = entry_of(s->symbol);
   check_parameter(ck, s);
   if (s->value) check_field_unit(ck, s, &e->type);
-  if (refuse_field(ck, s)) e->type = BROKEN;
-  e->type.place = e->symbol.place = field_place(ck, s);
+  const bool refused = refuse_field(ck, s);
+  if (refused) e->type = BROKEN;
+  e->type.place = e->symbol.place = refused ? ON_BODY : field_place(ck, s);
 }
 
 /* A bare 0 leaves unit and shape to the rule. */

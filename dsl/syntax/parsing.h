@@ -48,6 +48,8 @@ typedef struct lexing {
   char *doc; /* those of the present statement */
 } lexing;
 
+#define HINT_PLACES "write `on bond`, `on particle`, `on neighbour`, `on point` or `on tip`"
+
 /* A text and the ones that include it. */
 typedef struct include_chain {
   const struct include_chain *outer;

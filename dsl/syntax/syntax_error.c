@@ -164,7 +164,7 @@ static bool name_missing(parsing *p, const trouble *t) {
   int before = p->lex.before_last;
   if (before == T_ON) {
     say(p, p->lex.before_where, "the place after `on` is missing");
-    hint(p, "write `on bond`, `on particle` or `on neighbour`");
+    hint(p, HINT_PLACES);
     return true;
   }
   if (before != p->lex.first || !is_word_of_language(before)) return false;
@@ -180,8 +180,9 @@ static bool name_missing(parsing *p, const trouble *t) {
 
 static bool index_wrong(parsing *p, const trouble *t) {
   if (p->lex.before_last != '[' || !t->expected[T_NAME] || value_expected(t)) return false;
-  say(p, t->where, "square brackets hold `j`, the neighbour, or two axes of a tensor");
-  hint(p, "write x[j] or sigma[x,y]; units stand after numbers only");
+  say(p, t->where,
+      "square brackets hold `j`, the neighbour, two axes of a tensor or one of a vector");
+  hint(p, "write x[j], sigma[x,y] or v[x]; units stand after numbers only");
   return true;
 }
 
@@ -277,11 +278,25 @@ static bool equal_for_equality(parsing *p, const trouble *t) {
   return true;
 }
 
+/* Whether two commas stand before this one in the same brackets. */
+static bool is_third_comma(const lexing *l, uint32_t at) {
+  int commas = 0, depth = 0;
+  while (at-- > 0 && l->text[at] != '\n' && depth >= 0) {
+    depth += (l->text[at] == ')') - (l->text[at] == '(');
+    commas += depth == 0 && l->text[at] == ',';
+  }
+  return depth < 0 && commas == 2;
+}
+
 static bool decimal_comma(parsing *p, const trouble *t) {
   const lexing *l = &p->lex;
   if (t->token != ',' || l->before_last != T_NUMBER || l->before_where.end != t->where.begin ||
       !isdigit((unsigned char)l->text[t->where.end]))
     return false;
+  if (is_third_comma(l, t->where.begin)) {
+    say(p, t->where, "a vector has two or three components");
+    return true;
+  }
   uint32_t end = t->where.end;
   while (isdigit((unsigned char)l->text[end]))
     end++;

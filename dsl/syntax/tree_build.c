@@ -277,7 +277,7 @@ void build_placement(parsing *p, stmt *s, word on) {
   if (s->place != ON_NOTHING || !first_complaint(p)) return;
   diag_report(p->messages, DIAG_SYNTAX, on.where, "a %s cannot live on `%s`",
               stmt_kind_name(s->kind), on.text);
-  diag_hint(p->messages, "write `on bond`, `on particle`, `on neighbour`, `on point` or `on tip`");
+  diag_hint(p->messages, HINT_PLACES);
 }
 
 void build_tensor_state(parsing *p, stmt *s, word tensor) {

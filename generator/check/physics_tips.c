@@ -70,7 +70,7 @@ static void say(tip_bench *b, diag_code code, law_result which, int lane, const 
   va_end(values);
   if (!first) return;
   diag_note(b->said, (span){0, 0, UINT16_MAX},
-            "found at K_I = %.4g, K_II = %.4g Pa*m^(1/2), speed_now = %.4g m/s, rayleigh_speed = "
+            "found at K_I = %.4g, K_II = %.4g Pa*sqrt(m), speed_now = %.4g m/s, rayleigh_speed = "
             "%.4g m/s",
             b->in[PL_TIP_K_I][lane] + 0.0, b->in[PL_TIP_K_II][lane] + 0.0,
             b->in[PL_TIP_SPEED][lane], b->in[PL_TIP_RAYLEIGH_SPEED][lane]);

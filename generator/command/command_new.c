@@ -29,6 +29,7 @@ typedef struct new_kind {
 static const new_kind kinds[] = {
     {"central", template_central, template_drive, template_deck, "--x opening --y load"},
     {"micropolar", template_micropolar, template_drive, template_deck, "--x opening --y load"},
+    {"state", template_state, template_state_drive, template_deck, "--x opening --y load"},
     {"continuum", template_continuum, template_continuum_drive, template_continuum_deck,
      "--x displacement --y load"},
     {"crack", template_crack, NULL, template_crack_deck, "--map displacement"}};
@@ -143,7 +144,7 @@ static int make_new(const char *name, const new_kind *kind) {
 static const new_kind *find_kind(const char *kind) {
   for (int k = 0; k < KIND_COUNT; k++)
     if (!strcmp(kind, kinds[k].kind)) return &kinds[k];
-  say_error("--kind takes central, micropolar, continuum or crack, not `%s`", kind);
+  say_error("--kind takes central, micropolar, state, continuum or crack, not `%s`", kind);
   return NULL;
 }
 

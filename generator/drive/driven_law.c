@@ -178,6 +178,38 @@ static bool set_field(driven_law *r, const deck_assignment *a) {
   return true;
 }
 
+static bool is_assigned(const deck_material *m, const char *name) {
+  for (int k = 0; k < m->assignment_count; k++)
+    if (strcasecmp(m->assignments[k].name, name) == 0) return true;
+  return false;
+}
+
+/* What a path gives needs no default: the material has the path's first value. */
+static void take_first_values(driven_law *r) {
+  deck_material *m = &r->model.values;
+  const size_t count = (size_t)(m->assignment_count + r->in->given_count);
+  deck_assignment *all = arena_alloc(r->memory, (count + 1) * sizeof *all);
+  if (m->assignment_count)
+    memcpy(all, m->assignments, (size_t)m->assignment_count * sizeof *all);
+  m->assignments = all;
+  for (int k = 0; k < r->in->given_count; k++) {
+    const drive_given *g = &r->in->given[k];
+    for (int p = 0; p < r->law->parameter_count; p++) {
+      const pl_parameter *field = &r->law->parameters[p];
+      if (field->has_default || !material_is_given(r->law, p) ||
+          strcasecmp(field->name, g->name) != 0 || is_assigned(m, g->name))
+        continue;
+      all[m->assignment_count++] = (deck_assignment){.name = g->name,
+                                                     .value = g->f.values[0],
+                                                     .has_unit = g->has_unit,
+                                                     .dim = g->dim,
+                                                     .name_where = g->name_where,
+                                                     .value_where = g->where,
+                                                     .of_field = true};
+    }
+  }
+}
+
 /* Parameters, and where state and damage begin. */
 static bool set_values(driven_law *r) {
   const pl_law *kernel = r->law;
@@ -185,6 +217,7 @@ static bool set_values(driven_law *r) {
   r->initial = arena_alloc(r->memory, ((size_t)kernel->field_count + 1) * sizeof(double));
   for (int f = 0; f < kernel->field_count; f++)
     r->initial[f] = kernel->fields[f].initial;
+  take_first_values(r);
   bool good = material_parameters(&r->model.values, kernel, r->parameters, r->said);
   good = good && driven_fields_suit(r->in, kernel, r->parameters, r->said);
   for (int k = 0; k < r->in->initial.assignment_count; k++)

@@ -496,7 +496,7 @@ static void lower_results(lowering *c, lowered_law *out) {
       out->outputs[k] =
           lower_fail(c, outputs->items[k]->where,
                      "an output is a number: give the parts of a tensor or vector that matter, "
-                     "such as `principal(sigma, 1)`");
+                     "such as `principal(sigma, 1)` or `v[x]`");
   }
 }
 

@@ -333,7 +333,10 @@ static components lower_previous(lowering *c, const expr *e) {
 static ir_node lower_slope(lowering *c, const expr *e, ir_node f, ir_node x) {
   if (ir_operation(c->graph, x) != IR_INPUT)
     return lower_fail(c, e->arguments[1].value->where,
-                      "nothing can be differentiated by this in a plane");
+                      e->arguments[1].value->shape == SHAPE_VECTOR
+                          ? "what is differentiated by is a parameter, a quantity of the motion, a "
+                            "state or a damage; this vector is none"
+                          : "nothing can be differentiated by this in a plane");
   if (lower_is_state_law(c) && !ir_is_uniform(c->graph, f) && !ir_is_uniform(c->graph, x))
     return lower_fail(c, e->where,
                       "in a law of families only a parameter that is the same everywhere can be "

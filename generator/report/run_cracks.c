@@ -28,9 +28,9 @@ static void conclude_tip(const run *r, const tips *t, int tip) {
   char name[NAME_TEXT], begun[MOMENT_TEXT], when[MOMENT_TEXT];
   printf("  crack      %s: ", tip_folder(t, tip, name, sizeof name));
   if (!p->grown && !p->done) {
-    print_quantity("at the last look K_I = ", p->K[0] + 0.0, "Pa*m^(1/2)");
+    print_quantity("at the last look K_I = ", p->K[0] + 0.0, "Pa*sqrt(m)");
     const bool rounding = fabs(p->K[1]) < 1e-9 * fabs(p->K[0]);
-    print_quantity(", K_II = ", rounding ? 0 : p->K[1], "Pa*m^(1/2)\n");
+    print_quantity(", K_II = ", rounding ? 0 : p->K[1], "Pa*sqrt(m)\n");
     return;
   }
   if (p->grown) printf("grew from %s on; ", moment(r, p->begun_time, begun));
@@ -45,7 +45,7 @@ static void conclude_overlap(const run *r, const tips *t, int tip) {
   const tip_state *p = &t->items[tip].now;
   char name[NAME_TEXT], first[MOMENT_TEXT], when[MOMENT_TEXT];
   if (!tip_overlaps(p)) return;
-  printf("  overlap    %s: its faces overlap (K_I < 0), first at %s; K_I at least %.4g MPa*m^(1/2)",
+  printf("  overlap    %s: its faces overlap (K_I < 0), first at %s; K_I at least %.4g MPa*sqrt(m)",
          tip_folder(t, tip, name, sizeof name), moment(r, p->first_time, first), 1e-6 * p->least);
   if (t->items[tip].toughness > 0) printf(", %.3g of K_Ic", p->least / t->items[tip].toughness);
   printf(", at %s\n", moment(r, p->least_time, when));

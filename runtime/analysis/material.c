@@ -7,6 +7,7 @@
 #include <strings.h>
 
 #include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
 #include "dsl/base/units.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/lattice/place_table.h"
@@ -223,6 +224,20 @@ static void replace_placed(const deck_material *m, const pl_law *law, double *va
   free(open);
 }
 
+/* Whether a limit is one of angles: a half or a quarter of a turn, also as 3.14. */
+static bool is_of_angles(double limit) {
+  const double quarters = fabs(limit) / PL_HALF_PI_HI;
+  return quarters > 0.5 && quarters < 4.5 && fabs(quarters - round(quarters)) < 0.01 * quarters;
+}
+
+/* `phi = 30` where '30 deg' is meant. */
+static void hint_degrees(double v, double lower, double upper, diagnostics *d) {
+  const double radians = v * PL_HALF_PI_HI / 90;
+  const bool fits = radians >= lower && radians <= upper;
+  if (fits && (is_of_angles(lower) || is_of_angles(upper)))
+    diag_hint(d, "angles are in radians: `'%g deg'`", v);
+}
+
 static bool check_bounds(const deck_material *m, const pl_law *law, const double *values,
                          const span *where, const bool *given, diagnostics *d) {
   const size_t n = (size_t)law->parameter_count + 1;
@@ -245,6 +260,7 @@ static bool check_bounds(const deck_material *m, const pl_law *law, const double
                 law->parameters[p].name, v, pure ? "" : " ", pure ? "" : u, low_open[p] ? '(' : '[',
                 low, high, high_open[p] ? ')' : ']', law->name);
     const deck_placed *by = placed_of(m, &law->parameters[p]);
+    if (given[p] && pure && !by) hint_degrees(v, lower[p], upper[p], d);
     if (by)
       diag_hint(d, by->path ? "this is the mean of the file's values"
                             : "this is the formula's value in the middle of the bodies");

@@ -4,9 +4,9 @@
 #define PERILAT_RUNTIME_TIP_VALUES_H
 
 #define TIP_VALUES(X)                                                                              \
-  X(K_I, "Pa*m^(1/2)", "stress intensity factor of mode I")                                        \
-  X(K_II, "Pa*m^(1/2)", "stress intensity factor of mode II")                                      \
-  X(K_eq, "Pa*m^(1/2)", "stress intensity of the largest hoop stress")                             \
+  X(K_I, "Pa*sqrt(m)", "stress intensity factor of mode I")                                        \
+  X(K_II, "Pa*sqrt(m)", "stress intensity factor of mode II")                                      \
+  X(K_eq, "Pa*sqrt(m)", "stress intensity of the largest hoop stress")                             \
   X(kink, "1", "direction of the largest hoop stress, from the crack's own")                       \
   X(energy_release, "N/m", "energy release rate")                                                  \
   X(angle, "1", "direction of the last leg, from x")                                               \

@@ -382,7 +382,13 @@ static bool read_formula(arena *memory, const namelist_value *v, const char *key
                          const formula_scope *scope, deck_assignment *a, diagnostics *d) {
   static const double anywhere[FORMULA_VARIABLES];
   const formula *f = deck_formula_read(memory, v, key, scope, NULL, d);
-  if (!f) return false;
+  if (!f) {
+    const diagnostic *said = &d->items[d->count - 1];
+    if (said->code == DIAG_UNKNOWN_NAME && strstr(said->message, "`t`"))
+      diag_hint(d, "what changes in time is a field: declare `field %s ...` in the law, and give it "
+                   "by `&field name = '%s' value = ... /`", key, key);
+    return false;
+  }
   a->has_unit = !formula_is_zero(f);
   a->dim = formula_dimension(f);
   a->value = formula_value(f, anywhere);

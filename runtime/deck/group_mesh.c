@@ -546,7 +546,7 @@ static void check_crack(deck_reader *r, const namelist_group *from, void *into) 
   }
   if (item->grows && !item->model) {
     diag_report(r->d, DIAG_MISSING_KEY, from->where, "a crack that grows needs a `model`");
-    diag_hint(r->d, "such as model = 'lefm'  K_Ic = '0.8 MPa*m^(1/2)'");
+    diag_hint(r->d, "such as model = 'lefm'  K_Ic = '0.8 MPa*sqrt(m)'");
   } else if (!item->model && item->material.assignment_count > 0) {
     diag_report(r->d, DIAG_UNKNOWN_KEY, item->material.assignments[0].name_where,
                 "`&crack` has no key `%s`", item->material.assignments[0].name);

@@ -240,6 +240,7 @@ static void new_files_work_at_once(void **state) {
   } kinds[] = {{"fresh", "", "5 of 5 expectations hold", "--x opening --y load"},
                {"Law_2", " --kind=micropolar", "5 of 5 expectations hold", "--x opening --y load"},
                {"third", " --kind central", "5 of 5 expectations hold", "--x opening --y load"},
+               {"gel", " --kind state", "6 of 6 expectations hold", "--x opening --y load"},
                {"solid", " --kind continuum", "6 of 6 expectations hold", "--map mises"},
                {"tears", " --kind crack", NULL, "--map displacement"}};
   for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
@@ -295,7 +296,7 @@ static void new_refuses(void **state) {
   expect(w, "new mplm_bilinear", 0, "warning: there is a law `mplm_bilinear` already");
   expect(w, "new", 1, "needs a name");
   expect(w, "new a b", 1, "takes one name");
-  expect(w, "new a --kind state", 1, "--kind takes central, micropolar, continuum or crack");
+  expect(w, "new a --kind family", 1, "--kind takes central, micropolar, state, continuum or");
   expect(w, "new a --kin central", 1, "did you mean `--kind`?");
   for (int k = 0; k < 3;
        k++) { /* one file of the three is in the way: it stays, and nothing else appears */

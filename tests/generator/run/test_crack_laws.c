@@ -77,7 +77,7 @@ static void monitors_watch_tips(void **state) {
       result_read_series(f, "c/K_I", &count[1], unit_text, sizeof unit_text, error, sizeof error);
   assert_non_null(seen);
   assert_non_null(kept);
-  assert_string_equal(unit_text, "Pa*m^(1/2)");
+  assert_string_equal(unit_text, "Pa*sqrt(m)");
   assert_true(count[0] > 1 && count[0] == count[1] && kept[count[1] - 1] != 0);
   assert_memory_equal(seen, kept, (size_t)count[0] * sizeof *seen);
   free(seen);
