@@ -552,6 +552,8 @@ typedef struct pl_law {
   /* The rest state, or fields, change what the law stores: ledgers tell how much
      (PL_GIVEN_BY_REST). */
   int works_at_rest;
+  /* Of laws of a continuum: linear but for a stress without strain, as of a rest strain. */
+  int affine;
 } pl_law;
 
 /* The one symbol that a compiled kernel exports. */

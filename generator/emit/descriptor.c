@@ -184,7 +184,8 @@ void descriptor_entry(const kernel_plan *p, c_text *out) {
       RECTANGLE_PROGRAMS(X)
     }
 #undef X
-    c_text_add(out, "    .linear = %d,\n    .reads_size = %d,\n", p->linear, p->reads_size);
+    c_text_add(out, "    .linear = %d,\n    .reads_size = %d,\n    .affine = %d,\n", p->linear,
+               p->reads_size, p->affine);
     write_sizes(out, p->law->sized);
   } else if (p->form == FORM_TIPS) {
 #define X(task, member) c_text_add(out, "    .%s = %s,\n", #member, #member);

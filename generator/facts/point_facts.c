@@ -37,7 +37,7 @@ static void find_facts(point_bench *b, point_facts *f) {
   point_bench_virgin(b);
   point_bench_strain(b, rest, NULL);
   point_bench_run(b, b->kernel->point_tangent, 1e-6);
-  f->linear = b->plan->linear;
+  f->linear = b->plan->linear && !b->law->rest;
   f->isotropic = is_isotropic(b);
   f->has_mass = b->law->rho != NULL;
   if (!f->isotropic) return;

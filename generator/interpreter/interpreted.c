@@ -232,6 +232,7 @@ static void describe_points(interpreted *p) {
 #undef X
   p->law.linear = p->plan->linear;
   p->law.reads_size = p->plan->reads_size;
+  p->law.affine = p->plan->affine;
   if (!p->plan->law->sized) return;
   p->law.size_bounds = run_size_bounds;
   p->law.size_reason = p->plan->law->sized->text;

@@ -96,10 +96,10 @@ typedef struct kernel_plan {
      changed. */
   bool loses_by_own_fields;
   program_links links;
-  bool reads_shape;                                            /* inverse shape matrices */
-  bool reads_share;                                            /* shares of particles */
-  bool reads_mass;                                             /* and masses */
-  bool stores, reads_rates, reads_size, linear, works_at_rest; /* pl_law */
+  bool reads_shape;                                                    /* inverse shape matrices */
+  bool reads_share;                                                    /* shares of particles */
+  bool reads_mass;                                                     /* and masses */
+  bool stores, reads_rates, reads_size, linear, affine, works_at_rest; /* pl_law */
   arena *memory;
 } kernel_plan;
 

@@ -536,9 +536,9 @@ static bool is_given(const planner *p) {
   return false;
 }
 
-/* Neither strain, fields, rates nor the size of a cell are in the tangent, and without strain there
-   is no stress. */
-static bool is_linear(planner *p) {
+/* Neither strain, fields, rates nor the size of a cell are in the tangent, and rates are not in the
+   stress. */
+static bool is_affine(planner *p) {
   ir *g = p->graph;
   const int fields = p->plan->law->fields.count;
   if (fields > 0) return false;
@@ -555,12 +555,20 @@ static bool is_linear(planner *p) {
   moving[count++] = point_input_node(g, POINT_CELL_SIZE);
   if (rewrite_depends(g, p->tangent, p->strains * p->strains, moving, count)) return false;
   for (int k = 0; k < p->strains; k++) {
-    ir_node rest = p->step.sigma[point_component(p->plan->dimensions, k)];
-    if (rewrite_depends(g, &rest, 1, p->rate, p->strains)) return false;
-    rewrite_zero(g, &rest, 1, p->strain, p->strains, &rest);
-    if (!ir_is_number(g, rest, 0)) return false;
+    const ir_node stress = p->step.sigma[point_component(p->plan->dimensions, k)];
+    if (rewrite_depends(g, &stress, 1, p->rate, p->strains)) return false;
   }
   return true;
+}
+
+static bool has_stress_without_strain(planner *p) {
+  bool has = false;
+  for (int k = 0; k < p->strains; k++) {
+    ir_node rest = p->step.sigma[point_component(p->plan->dimensions, k)];
+    rewrite_zero(p->graph, &rest, 1, p->strain, p->strains, &rest);
+    has = has || !ir_is_number(p->graph, rest, 0);
+  }
+  return has;
 }
 
 static bool reads_rates(planner *p) {
@@ -653,7 +661,8 @@ bool plan_points(kernel_plan *plan, diagnostics *d) {
   fail_points(&p);
   seen_points seen = {stored_energy(&p), rate_power(&p), still_power(&p), stress};
   measure_from_rest(&p, &seen);
-  plan->linear = is_linear(&p);
+  plan->affine = is_affine(&p);
+  plan->linear = plan->affine && !has_stress_without_strain(&p);
   plan->reads_rates = reads_rates(&p);
   plan->reads_size = law_reads(plan->law, QUANTITY_CELL_SIZE);
   improve(&p, &seen);

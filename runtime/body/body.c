@@ -201,6 +201,7 @@ body_totals body_sum(const body *w) {
   body_totals t = {.internal = sum_of(w->row_internal, n), .dissipated = sum_of(w->row_mass, n)};
   if (w->weight) t.gravity = sum_of(w->row_gravity, n);
   t.outer = w->outer_work;
+  t.given_by_rest = w->given_before;
   for (int row = 0; row < n; row++) {
     const body_row *r = &w->observed[row];
     t.kinetic += r->kinetic;

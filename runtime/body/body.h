@@ -93,7 +93,10 @@ typedef struct body {
   /* [size] m/s: of particles that are given away the velocity after the coming step, as the state
      was observed; NULL without */
   double *ahead[3];
-  double outer_work;  /* J: that it has done since the start */
+  double outer_work; /* J: that it has done since the start */
+  /* J: of static runs: what rest states have given since the start, less what is observed of it */
+  double given_before;
+  double rounding;    /* J: of static runs: energies of that size are */
   body_row *observed; /* [row_count] */
   /* [row_count] site from which on a row has not moved, a velocity there was bad; 0: it has */
   long *row_stuck;

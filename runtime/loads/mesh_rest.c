@@ -8,8 +8,9 @@
 #include "dsl/base/elementary.h"
 #include "runtime/continuum/static_solution.h"
 
-/* A reaction of that part of the largest force is rounding. */
-static const double NO_REACTION = 1e-6;
+/* A reaction of that part of the largest force is rounding; an energy of that part of what the
+   displacements of an increment store is, too. */
+static const double NO_REACTION = 1e-6, NO_ENERGY = 1e-12;
 
 struct mesh_rest {
   const cells *c;
@@ -20,7 +21,36 @@ struct mesh_rest {
   double *force[2], *u[2], *reaction[2];
   /* at the last increment: places, forces, reactions, weight */
   double *place[2], *pushed, *reacted, gravity[2];
+  /* where points push */
+  bool is_pushed;
+  node_stencil stencil; /* of all laws; or */
+  node_matrix matrix;
+  load_clock clock;
+  double *left[2]; /* [nodes] N: out of balance at the last increment */
+  double given[2]; /* J: what is to be given at the places observed, in an increment */
+  mesh_rest_account sum;
 };
+
+static void open_stiffness(mesh_rest *r) {
+  const cells *c = r->c;
+  r->is_pushed = !cells_all_linear(c);
+  if (!r->is_pushed) return;
+  if (c->mesh.lists) {
+    node_matrix_open(&r->matrix, &c->mesh, &c->points, c->stiffness, c->where.of_cell);
+    node_matrix_resist_hourglass(&r->matrix, &c->mesh, c->stiffness, c->where.of_cell);
+  } else {
+    node_stencil_open(&r->stencil, &c->mesh, &c->points, c->stiffness, c->where.of_cell);
+    node_stencil_resist_hourglass(&r->stencil);
+  }
+}
+
+static void close_stiffness(mesh_rest *r) {
+  if (!r->is_pushed) return;
+  if (r->c->mesh.lists)
+    node_matrix_close(&r->matrix);
+  else
+    node_stencil_close(&r->stencil);
+}
 
 mesh_rest *mesh_rest_new(const cells *c, loads *l, body *w) {
   const size_t nodes = (size_t)mesh_node_count(&c->mesh);
@@ -33,7 +63,9 @@ mesh_rest *mesh_rest_new(const cells *c, loads *l, body *w) {
     r->u[d] = must_calloc(nodes, sizeof(double));
     r->reaction[d] = must_calloc(nodes, sizeof(double));
     r->place[d] = must_calloc(nodes, sizeof(double));
+    r->left[d] = must_calloc(nodes, sizeof(double));
   }
+  open_stiffness(r);
   r->pushed = must_calloc((size_t)l->force_count + 1, sizeof(double));
   r->reacted = must_calloc((size_t)l->constraint_count + 1, sizeof(double));
   return r;
@@ -47,7 +79,9 @@ void mesh_rest_free(mesh_rest *r) {
     free(r->u[d]);
     free(r->reaction[d]);
     free(r->place[d]);
+    free(r->left[d]);
   }
+  close_stiffness(r);
   free(r->held);
   free(r->factored);
   free(r->pushed);
@@ -79,8 +113,10 @@ static bool has_factors(mesh_rest *r, static_result *found) {
   const size_t size = 2 * (size_t)node_count(r);
   if (r->factors && memcmp(r->held, r->factored, size) == 0) return true;
   static_factors_free(r->factors);
-  r->factors = r->c->has_matrix ? static_factors_of_matrix(&r->c->matrix, r->held, found)
-                                : static_factors_new(&r->c->stencil, r->held, found);
+  const node_matrix *matrix = r->is_pushed ? &r->matrix : &r->c->matrix;
+  const node_stencil *stencil = r->is_pushed ? &r->stencil : &r->c->stencil;
+  r->factors = r->c->mesh.lists ? static_factors_of_matrix(matrix, r->held, found)
+                                : static_factors_new(stencil, r->held, found);
   memcpy(r->factored, r->held, size);
   return r->factors != NULL;
 }
@@ -103,8 +139,30 @@ static void prescribe(mesh_rest *r, long step) {
     constraint *c = &r->l->constraints[i];
     if (!c->active) continue;
     c->held = c->anchor + load_steps_motion(r->l, r->w, c, step);
-    r->u[c->component][node_of(r, c->site)] = c->held;
+    r->u[c->component][node_of(r, c->site)] =
+        c->held - (r->is_pushed ? r->w->displacement[c->component][c->site] : 0);
   }
+}
+
+/* Of the state observed last: what the points push by, and what is left out of balance by it. */
+static void push_by_points(const mesh_rest *r, double *const force[2]) {
+  for (int d = 0; d < 2 && r->is_pushed; d++)
+    for (int n = 0; n < node_count(r); n++)
+      force[d][n] += r->w->force[d][cells_site(r->c, n)];
+}
+
+static void find_left(mesh_rest *r) {
+  for (int d = 0; d < 2 && r->is_pushed; d++)
+    for (int n = 0; n < node_count(r); n++) {
+      const long site = cells_site(r->c, n);
+      const bool weighs = r->w->weight && !r->c->mesh.gone[n];
+      r->left[d][n] = weighs ? r->w->gravity[d] * body_mass(r->w, d, site) : 0;
+    }
+  for (long i = 0; i < r->l->force_count && r->is_pushed; i++) {
+    const applied *f = &r->l->forces[i];
+    r->left[f->component][node_of(r, f->site)] += f->now;
+  }
+  push_by_points(r, r->left);
 }
 
 static void push(mesh_rest *r, long step) {
@@ -122,26 +180,65 @@ static void push(mesh_rest *r, long step) {
   }
 }
 
-double mesh_rest_solve(mesh_rest *r, load_clock clock) {
-  const long end = (long)(clock.first + clock.ramp);
-  static_result found = {.solved = false};
+bool mesh_rest_is_pushed(const mesh_rest *r) {
+  return r->is_pushed;
+}
+
+void mesh_rest_begin(mesh_rest *r, load_clock clock) {
   keep(r);
+  find_left(r);
   load_steps_increment(r->l, r->w, clock);
+  r->clock = clock;
+}
+
+double mesh_rest_solve(mesh_rest *r) {
+  const long end = (long)(r->clock.first + r->clock.ramp);
+  static_result found = {.solved = false};
   find_held(r);
   if (!has_factors(r, &found)) return NAN; /* mesh_rest_check has told */
   prescribe(r, end);
   push(r, end);
+  push_by_points(r, r->force);
   found = static_factors_solve(r->factors, (const double *const *)r->force, r->u, r->reaction);
   for (int d = 0; d < 2; d++)
-    for (int n = 0; n < node_count(r); n++)
-      r->w->displacement[d][cells_site(r->c, n)] = r->u[d][n];
+    for (int n = 0; n < node_count(r); n++) {
+      double *at = &r->w->displacement[d][cells_site(r->c, n)];
+      *at = r->is_pushed ? *at + r->u[d][n] : r->u[d][n];
+    }
+  if (r->is_pushed) r->sum.turned = pl_fmax(r->sum.turned, found.energy);
   return found.residual;
+}
+
+void mesh_rest_see_given(mesh_rest *r, bool last) {
+  const double now = body_sum(r->w).given_by_rest - r->w->given_before;
+  r->given[last] = now;
+  if (!last) return;
+  const double mean = 0.5 * (r->given[0] + r->given[1]);
+  if (fabs(mean) > NO_ENERGY * r->sum.turned) r->sum.given += mean;
+  r->w->given_before = r->sum.given - now;
+  r->w->rounding = NO_ENERGY * r->sum.turned;
+}
+
+mesh_rest_account *mesh_rest_sum(mesh_rest *r) {
+  return &r->sum;
+}
+
+/* What was out of balance. */
+static void let_go(const mesh_rest *r) {
+  const body *w = r->w;
+  double work = 0;
+  for (int d = 0; d < 2 && r->is_pushed; d++)
+    for (int n = 0; n < node_count(r); n++)
+      if (!r->held[2 * n + d])
+        work += 0.5 * r->left[d][n] * (w->displacement[d][cells_site(r->c, n)] - r->place[d][n]);
+  if (fabs(work) > NO_ENERGY * r->sum.turned) w->row_mass[0] += work;
 }
 
 /* Loads go evenly from increment to increment, and so do places and reactions of a linear law: the
    mean force works over the whole way. */
 void mesh_rest_work(mesh_rest *r) {
   const body *w = r->w;
+  let_go(r);
   for (long i = 0; i < r->l->force_count; i++) {
     applied *f = &r->l->forces[i];
     const double way =
@@ -269,7 +366,8 @@ bool mesh_rest_check(mesh_rest *r, const char *name, span where, int increments,
     r->l->clock = clock;
     good = is_stiff(r, name, where, d);
     if (!good || !pins) continue;
-    mesh_rest_solve(r, clock);
+    mesh_rest_begin(r, clock);
+    mesh_rest_solve(r);
     good = pins_bear_nothing(r, where, d);
   }
   put_back(r, &kept);

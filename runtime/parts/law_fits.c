@@ -166,7 +166,7 @@ static bool mesh_can_have(const pl_law *law, const deck_material *of, span where
   const char *why = NULL;
   bool stamped = false;
   if (!law->linear && !cracks_fit(law, k, m, d)) return false;
-  if (!law->linear && k->relaxation.solved) {
+  if (!law->linear && !(PL_HAS(law, affine) && law->affine) && k->relaxation.solved) {
     diag_report(d, DIAG_NOT_SUPPORTED, where,
                 "the law `%s` is not linear: `&static` solves equations of linear laws alone",
                 law->name);

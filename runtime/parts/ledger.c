@@ -159,6 +159,7 @@ bool ledger_sample(ledger *g, const ledger_laws *of, const body *state, const lo
   terms[LEDGER_DISSIPATED_DAMAGE] = taken(g, of, &t, lost);
   add_carried(g, terms);
   terms[LEDGER_IMBALANCE] = imbalance(g, of, terms);
+  if (fabs(terms[LEDGER_IMBALANCE]) < state->rounding) terms[LEDGER_IMBALANCE] = 0;
   g->largest = pl_fmax(pl_fmax(g->largest, fabs(kinetic)),
                        pl_fmax(fabs(stored), fabs(terms[LEDGER_EXTERNAL])));
   return is_sound(g, of, state, &t, look, omega);

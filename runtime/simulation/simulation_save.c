@@ -68,6 +68,7 @@ static void add_state(part_list *l, const run_body *of) {
     add_part(l, "gravity_work", w->body->gravity_work, sizeof w->body->gravity_work);
   }
   if (w->body->row_outer) add_part(l, "work of outer forces", &w->body->outer_work, sizeof(double));
+  if (of->rest) add_part(l, "given by rest", mesh_rest_sum(of->rest), sizeof(mesh_rest_account));
   add_part(l, "dissipated_mass", w->body->row_mass, row);
   add_part(l, "internal", w->body->row_internal, row);
   add_part(l, "decay", &w->body->decay, sizeof(double));

@@ -440,19 +440,42 @@ static void run_team(simulation *s) {
 
 /* --- static runs ------------------------------------------------------------------------------ */
 
+static bool is_pushed(const simulation *s) {
+  bool some = false;
+  for (int b = 0; b < s->body_count; b++)
+    some = some || mesh_rest_is_pushed(s->bodies[b].rest);
+  return some;
+}
+
+/* Points push where they have a stress without strain: as they were, and as they are given to be at
+   the end of the increment. */
+static void begin_increment(simulation *s, bool pushed) {
+  const load_clock clock = relaxation_clock(s->relaxation, s->clock.at.step);
+  if (pushed && s->observed_step != s->clock.at.step) observe_all(s);
+  for (int b = 0; b < s->body_count; b++) {
+    mesh_rest_begin(s->bodies[b].rest, clock);
+    s->bodies[b].body->reached = s->bodies[b].body->time;
+    run_body_turn(&s->bodies[b]);
+  }
+  s->clock.at.step++;
+  if (pushed) observe_all(s);
+  for (int b = 0; b < s->body_count; b++)
+    mesh_rest_see_given(s->bodies[b].rest, false);
+}
+
 /* An increment: places, what is seen there, a sample. */
 static void stand(simulation *s) {
-  const load_clock clock = relaxation_clock(s->relaxation, s->clock.at.step);
   double unbalance = 0;
+  begin_increment(s, is_pushed(s));
   for (int b = 0; b < s->body_count; b++)
-    unbalance = pl_fmax(unbalance, mesh_rest_solve(s->bodies[b].rest, clock));
+    unbalance = pl_fmax(unbalance, mesh_rest_solve(s->bodies[b].rest));
   relaxation_solved(s->relaxation, unbalance);
-  s->clock.at.step++;
   observe_all(s);
   look_at_loads(s);
   s->observed_step = s->clock.at.step;
   for (int b = 0; b < s->body_count; b++) {
     mesh_rest_work(s->bodies[b].rest);
+    mesh_rest_see_given(s->bodies[b].rest, true);
     cells_look_at_tips(s->bodies[b].state);
   }
   monitors_look(s->monitors, parts_done(s), (long)run_clock_position(&s->clock));

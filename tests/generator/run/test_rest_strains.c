@@ -20,16 +20,17 @@ static const double HOT = 100;      /* K above what the body is without strain *
 
 /* A bar of 20 x 4 cells or finer that nothing holds. */
 static int finer = 1; /* times as many cells along either axis */
+static const char *comes_to_rest = "&relaxation increments = 1 tolerance = 1e-10 /\n";
 
 static void open_bar(deck_case *c, const char *mesh, const char *temperature, const char *more) {
   char text[4096];
   snprintf(text, sizeof text,
            "&simulation end_time = 1 /\n"
-           "&relaxation increments = 1 tolerance = 1e-10 /\n"
+           "%s"
            "&mesh name = 'bar' corner = 0, 0 " BAR " nodes = %d, %d %s /\n"
            "&material mesh = 'bar' model = 'thermal_elastic' /\n"
            "&field mesh = 'bar' name = 'T' value = '%s' /\n%s",
-           20 * finer + 1, 4 * finer + 1, mesh, temperature, more);
+           comes_to_rest, 20 * finer + 1, 4 * finer + 1, mesh, temperature, more);
   deck_case_open(c, text);
 }
 
@@ -166,12 +167,84 @@ static void a_held_bar_is_pressed(void **state) {
   }
 }
 
+/* --- solved ----------------------------------------------------------------------------------- */
+
+#define FEET                                                                                       \
+  "&region name = 'foot' shape = 'point' at = 0, 0 /\n"                                            \
+  "&region name = 'toe' shape = 'point' at = '200 mm', 0 /\n"                                      \
+  "&support region = 'foot' fix = 'xy' /\n&support region = 'toe' fix = 'y' /\n"
+
+static void solve(int increments) {
+  static char text[100];
+  snprintf(text, sizeof text, "&static increments = %d /\n", increments);
+  comes_to_rest = text;
+}
+
+/* K u = F with what the points push by: a mesh that only stands grows, one that is held is pressed,
+   both to rounding, whether the heat comes at once or in parts. What is given to the held one as it
+   warms up is what it stores; what was there from the start is let go. */
+static void equations_are_solved_exactly(void **state) {
+  (void)state;
+  const double load = 30e9 * ALPHA * HOT * 0.04 * 0.01, held = load * ALPHA * HOT * 0.2 / 2,
+               first = 2 * held / (1 - 0.2); /* nothing has moved */
+  for (int parts = 1; parts < 5; parts += 3)
+    for (int k = 0; k < 4; k++) { /* warm, warming up; standing, held */
+      const bool warms = k % 2, is_held = k / 2;
+      deck_case c;
+      solve(parts);
+      open_bar(&c, ELEMENTS, warms ? "293 [K] + 100 [K]*t/1 [s]" : "393 K",
+               is_held ? FEET ENDS : FEET);
+      assert_int_equal(deck_case_go(&c), STEP_END);
+      const double stored = deck_case_last(&c, "energy/stored"),
+                   rest = deck_case_last(&c, "energy/rest"),
+                   taken = deck_case_last(&c, "energy/dissipated_damping");
+      assert_true(deck_case_last(&c, "energy/imbalance") == 0);
+      assert_true(fabs(rest - (warms && is_held ? held : 0)) < 1e-12 * held);
+      assert_true(fabs(stored - (is_held ? held : 0)) < 1e-12 * held);
+      assert_true(fabs(taken - (warms ? 0 : first - stored)) < 1e-12 * held);
+      if (is_held)
+        assert_true(fabs(fabs(deck_case_last(&c, "load")) / load - 1) < 1e-12);
+      else
+        assert_true(off_growth(&c, ALPHA * HOT) < 1e-12);
+      deck_case_close(&c);
+    }
+}
+
+/* Beside a body that was brought to rest: the same curvature; loads and heat add up. */
+static void solved_and_relaxed_agree(void **state) {
+  (void)state;
+  static const char pulled[] = FEET "&region name = 'right' shape = 'rectangle' corner = '199 mm', "
+                                    "'-1 mm' size = '2 mm', '42 mm' /\n"
+                                    "&force region = 'right' component = 'x' total = '-2 kN' /\n";
+  static const char *const meshes_of[] = {ELEMENTS, ELEMENTS " gauss = 1 hourglass = 0.05",
+                                          ELEMENTS " setting = 'plane_strain'"};
+  for (int k = 0; k < 3; k++) {
+    double moved[2][2];
+    for (int solved = 0; solved < 2; solved++) {
+      deck_case c;
+      comes_to_rest = "&relaxation increments = 1 tolerance = 1e-11 /\n";
+      if (solved) solve(2);
+      open_bar(&c, meshes_of[k], "293 [K] + 1000 [K]*y/1 [m]*(1 + x/100 [mm])", pulled);
+      assert_int_equal(deck_case_go(&c), STEP_END);
+      moved[solved][0] = bent(&c, 0.1);
+      moved[solved][1] = moved_at(&c, 0, 0.2, 0.04);
+      deck_case_close(&c);
+    }
+    print_message("bent by %.9g and %.9g um, drawn out by %.9g and %.9g um\n", 1e6 * moved[0][0],
+                  1e6 * moved[1][0], 1e6 * moved[0][1], 1e6 * moved[1][1]);
+    for (int n = 0; n < 2; n++)
+      assert_true(fabs(moved[1][n] / moved[0][n] - 1) < 1e-6);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_free_mesh_grows_without_stress),
       cmocka_unit_test(a_gradient_across_bends_a_bar),
       cmocka_unit_test(two_layers_bend_as_timoshenko_says),
       cmocka_unit_test(a_held_bar_is_pressed),
+      cmocka_unit_test(equations_are_solved_exactly),
+      cmocka_unit_test(solved_and_relaxed_agree),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
