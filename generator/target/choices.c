@@ -52,8 +52,10 @@ int choice_operands(const emitter *e, ir_node n, unsigned relies, ir_node operan
     operand[0] = ir_operand(e->graph, n, 2);
     return 1;
   }
-  /* the condition has no line of its own then; in strips it is counted as part of the choice */
-  const int first = !e->scope->strip && count == 3 && expression_is_extreme(e, n);
+  /* The smaller or the larger of two does not read the condition. In strips one without a line of
+     its own is counted as part of the choice. */
+  const bool extreme = count == 3 && expression_is_extreme(e, n);
+  const int first = extreme && (!e->scope->strip || e->name[ir_operand(e->graph, n, 0)]);
   for (int k = first; k < count; k++)
     operand[k - first] = ir_operand(e->graph, n, k);
   return count - first;
