@@ -131,9 +131,8 @@ static void check_angle(sense_bench *b, const expr *call) {
   const symbol *again = turned_again(b, angle, value);
   if (again)
     say_turned_again(b, call, again);
-  else if (is_bounded_in_degrees(b, alone) ||
-           (fabs(value) > FULL_TURN && is_round(value) &&
-            !(alone && has_unit(alone->declared->value))))
+  else if (is_bounded_in_degrees(b, alone) || (fabs(value) > FULL_TURN && is_round(value) &&
+                                               !(alone && has_unit(alone->declared->value))))
     say_degrees(b, call, value);
 }
 
@@ -201,7 +200,7 @@ static void check_sum(sense_bench *b, const expr *call) {
             seen.own->name, call->name);
 }
 
-/* --- flows and rates whose new value the force does not know ----------------------------------- */
+/* --- flows and rates whose new value the force does not know ---------------------------------- */
 
 typedef struct reading {
   bool old, new;
@@ -228,8 +227,8 @@ static void find_readings(const expr *e, const symbol *state, reading *found, in
   }
 }
 
-/* Of laws of families, whose forces may read damages of the last step, but not what a flow or a rate
-   has just changed. */
+/* Of laws of families, whose forces may read damages of the last step, but not what a flow or a
+   rate has just changed. */
 static void check_force_state(sense_bench *b) {
   const stmt *force = law_force_state(b->law);
   if (b->law->options.count > 0) return; /* which may choose just that */

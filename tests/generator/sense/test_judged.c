@@ -68,7 +68,7 @@ static void is_said_once(const char *text, const char *code, const char *words) 
   judged_free(j);
 }
 
-#define BOND                                                                                      \
+#define BOND                                                                                       \
   "model m\n  law central bond\n  parameter k = 10 [MN] in (0, inf)\n"                             \
   "  parameter rho = 2323 [kg/m^3] in (0, inf)\n"
 #define END "end model\n"
@@ -123,9 +123,10 @@ static void states_may_act_by_rates(void **state) {
 
 static void angles_with_their_unit_are_none_in_degrees(void **state) {
   (void)state;
-  nothing_is_said_of(BOND "  parameter phi = 30 [deg] in (0, 400 [deg])\n"
-                          "  parameter m_0 = 7 in (0, 10)\n"
-                          "  force N = k*(1 + 0.1*sin(phi)**2)*(1 + 0.1*sin(m_0*1.5)**2)*stretch\n" END);
+  nothing_is_said_of(BOND
+                     "  parameter phi = 30 [deg] in (0, 400 [deg])\n"
+                     "  parameter m_0 = 7 in (0, 10)\n"
+                     "  force N = k*(1 + 0.1*sin(phi)**2)*(1 + 0.1*sin(m_0*1.5)**2)*stretch\n" END);
   is_said_once(BOND "  parameter phi = 30 [deg] in (0, 90 [deg])\n"
                     "  force N = k*cos(phi*pi/180)*stretch\n" END,
                "degrees", "`phi` is in radians already");
@@ -187,8 +188,8 @@ static const char *note_of(const judged *j, const char *code) {
 static void a_time_of_zero_is_told(void **state) {
   (void)state;
   static const char text[] = BOND "  parameter tau = 0 [s] in [0, inf)\n  state v on bond = 0\n"
-                                 "  rate v = (stretch - v)/tau\n"
-                                 "  force N = k*stretch + k*(stretch - v)\n" END;
+                                  "  rate v = (stretch - v)/tau\n"
+                                  "  force N = k*stretch + k*(stretch - v)\n" END;
   is_said_once(text, "division-by-zero", "divides by zero");
   judged *j = judge(text);
   assert_non_null(strstr(note_of(j, "division-by-zero"), "tau = 0 s"));
