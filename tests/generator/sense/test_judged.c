@@ -97,6 +97,14 @@ static void stiffness_by_the_step_is_told(void **state) {
                "step-dependent", "reads `dt`");
 }
 
+static void stiffness_of_a_family_by_the_step_is_told(void **state) {
+  (void)state;
+  is_said_once("model m\n  law state\n  for plane_strain\n  parameter a = 3 [MN/m] in (0, inf)\n"
+               "  parameter tau = 1 [s] in (0, inf)\n  parameter rho = 2300 [kg/m^3] in (0, inf)\n"
+               "  force state F[j] = a*s*stretch[j]*(1 + dt/tau)\n" END,
+               "step-dependent", "reads `dt`");
+}
+
 /* Implicit Euler of a chain, its force written of the old state: that of the new one. */
 static void a_step_may_be_written_out(void **state) {
   (void)state;
@@ -138,6 +146,18 @@ static void the_text_is_read_beside_errors(void **state) {
   static const char text[] = BOND "  force N = k*stretch*sin(30)\n" END;
   is_said_once(text, "stiffness", "negative");
   is_said_once(text, "degrees", "`30`");
+}
+
+/* Written out the angle has 2^40 terms. */
+static void long_chains_of_names_are_given_up(void **state) {
+  (void)state;
+  char text[4096];
+  size_t n = (size_t)snprintf(text, sizeof text, BOND "  constant c0 = 1\n");
+  for (int k = 1; k <= 40; k++)
+    n += (size_t)snprintf(text + n, sizeof text - n, "  constant c%d = (c%d + c%d)/2\n", k, k - 1,
+                          k - 1);
+  snprintf(text + n, sizeof text - n, "  force N = k*stretch*cos(c40)\n" END);
+  nothing_is_said_of(text);
 }
 
 /* --- materials -------------------------------------------------------------------------------- */
@@ -209,10 +229,12 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(states_may_act_by_the_rest_alone),
       cmocka_unit_test(stiffness_by_the_step_is_told),
+      cmocka_unit_test(stiffness_of_a_family_by_the_step_is_told),
       cmocka_unit_test(a_step_may_be_written_out),
       cmocka_unit_test(states_may_act_by_rates),
       cmocka_unit_test(angles_with_their_unit_are_none_in_degrees),
       cmocka_unit_test(the_text_is_read_beside_errors),
+      cmocka_unit_test(long_chains_of_names_are_given_up),
       cmocka_unit_test(a_cable_is_no_solid),
       cmocka_unit_test(what_is_soft_may_be_strong),
       cmocka_unit_test(what_solves_a_rate_divides_by_no_zero),
