@@ -183,8 +183,8 @@ static void warn_of_name(increments *w, const expr *e) {
 }
 
 /* Whether a name has an increment of 0 where it is read now, unlike in the yield function or the
-   rate. A yield function itself may be asked for as it was before the flow, and so may a guard ask; an output
-   asks for it after. */
+   rate. A yield function itself may be asked for as it was before the flow, and so may a guard ask;
+   an output asks for it after. */
 static bool is_stale(const increments *w, int definition) {
   return w->reads[definition] == READS_INCREMENT && w->moves[definition] && !w->in_guard &&
          !w->in_output && w->ck->statements[definition]->kind != STMT_YIELD;

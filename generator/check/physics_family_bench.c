@@ -343,7 +343,8 @@ double family_bench_value(const family_bench *b, watched w, int where) {
 
 /* --- saying what was found -------------------------------------------------------------------- */
 
-static char *found_at(const family_bench *b, double size) {
+/* A way tells its times itself. */
+static char *found_at(const family_bench *b, double size, bool on_a_way) {
   char *text;
   size_t length;
   bool others = false;
@@ -351,7 +352,7 @@ static char *found_at(const family_bench *b, double size) {
   fprintf(out, "%ld particles of a %s lattice, s = %.6g m", b->whole->inside_count, b->lattice_name,
           b->lattice->spacing);
   if (size > 0) fprintf(out, ", strained by %.3g", size);
-  if (law_reads(b->law, QUANTITY_DT)) fprintf(out, ", dt = %.4g s", b->whole->advance);
+  if (!on_a_way && law_reads(b->law, QUANTITY_DT)) fprintf(out, ", dt = %.4g s", b->whole->advance);
   for (int k = 0; k < b->law->parameters.count; k++) {
     const symbol *s = b->law->parameters.items[k];
     char si[64];
@@ -373,7 +374,7 @@ void family_bench_say(family_bench *b, diag_code code, span where, double size, 
   const bool first = diag_report_once(b->said, b->failed, code, where, format, values);
   va_end(values);
   if (!first) return;
-  char *state = found_at(b, size);
+  char *state = found_at(b, size, code == DIAG_DISSIPATION);
   diag_note(b->said, (span){0, 0, UINT16_MAX}, "found with %s", state);
   free(state);
 }

@@ -203,7 +203,7 @@ static char *state_text(const point_bench *b, const double *strain) {
     fprintf(out, "%sstrain[%c,%c] = %.4g", k ? ", " : "", component_name(b, k)[0],
             component_name(b, k)[1], strain[k]);
   fprintf(out, strain ? ", %s" : "rest, %s", setting_words(b));
-  if (law_reads(b->law, QUANTITY_DT)) fprintf(out, ", dt = %.4g s", b->advance);
+  if (b->advance > 0 || law_reads(b->law, QUANTITY_DT)) fprintf(out, ", dt = %.4g s", b->advance);
   for (int k = 0; b->others && k < b->law->parameters.count; k++) {
     const symbol *s = b->law->parameters.items[k];
     if (s == b->law->rho) continue;

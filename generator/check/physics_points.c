@@ -564,7 +564,6 @@ static void go_around(point_bench *b, round_trip *t, int steps) {
       between(b, corner[k], corner[k + 1], (double)step / steps, next);
       go(b, t, next);
     }
-  b->advance = 0;
 }
 
 /* Whether what a step loses is known: a state may lock energy in, which only the law's own W tells
@@ -619,6 +618,7 @@ static void check_paths(point_bench *b) {
   round_trip t = {.gone = must_calloc((size_t)b->law->fields.count + 1, sizeof(bool))};
   go_around(b, &t, STEPS);
   if (isfinite(t.total)) judge_path(b, &t, STEPS); /* what is not is said elsewhere */
+  b->advance = 0;
   free(t.gone);
 }
 

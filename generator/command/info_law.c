@@ -187,8 +187,7 @@ static bool asks_for_lattice(const info_law_options *o) {
 static bool obeys(law_facts *f, const info_law_options *o) {
   diagnostics found;
   diag_begin(&found, &f->model.sources);
-  const bool of_deck =
-      !f->missing && (f->model.values.assignment_count > 0 || asks_for_lattice(o));
+  const bool of_deck = !f->missing && (f->model.values.assignment_count > 0 || asks_for_lattice(o));
   const bool good = of_deck ? run_law_obeys(&f->model, &f->lattice, f->values,
                                             f->material.item.where, &found, &f->said)
                             : law_obeys(f->model.law, NULL, &found, NULL);

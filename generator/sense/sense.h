@@ -6,8 +6,9 @@
 
 #include "generator/check/physics.h"
 
-/* physics_check, what is likely a mistake in the text, and where there is no error in the rest. Everything found goes to
-   `d`. Returns false when there were errors among them. `report` may be NULL. */
+/* physics_check, what is likely a mistake in the text, and where there is no error in the rest.
+   Everything found goes to `d`. Returns false when there were errors among them. `report` may be
+   NULL. */
 bool law_is_sound(const law *l, const physics_options *o, diagnostics *d, physics_report *report);
 
 #endif

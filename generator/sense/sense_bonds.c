@@ -255,7 +255,8 @@ static written written_of(const memory_bench *m, int k) {
   w.on_rest = f->rest != IR_NONE && rewrite_depends(b->graph, &f->rest, 1, &old, 1);
   w.counts = w.on_rest || rewrite_depends(b->graph, forces, FORCE_COUNT, &old, 1);
   for (int q = 0; q < b->field_count; q++)
-    if (!is_own(b->law, q, k) && rewrite_depends(b->graph, &b->law_step.fields[q], 1, &old, 1)) w.counts = true;
+    if (!is_own(b->law, q, k) && rewrite_depends(b->graph, &b->law_step.fields[q], 1, &old, 1))
+      w.counts = true;
   return w;
 }
 
@@ -473,7 +474,8 @@ static bool knows_time(const law *l) {
     const dimension d = l->parameters.items[k]->dim;
     if (d.twelfths[2] != 0 && d.twelfths[2] != -24) return true;
   }
-  return law_reads_time(l) || law_reads(l, QUANTITY_STRETCH_RATE) || law_reads(l, QUANTITY_SLIP_RATE);
+  return law_reads_time(l) || law_reads(l, QUANTITY_STRETCH_RATE) ||
+         law_reads(l, QUANTITY_SLIP_RATE);
 }
 
 /* Overstress of flow f before and after, with all new fields, at the same motion. */
@@ -617,10 +619,10 @@ static void check_locked_energy(memory_bench *m) {
   if (!gains) return;
   draw_out_and_back(m, &finer, 4 * STEPS);
   for (int lane = 0; lane < BENCH_LANES && !said; lane++)
-    said = sense_say_losses(m->of, &d.lost[lane], &finer.lost[lane], "drawn out",
-                            b->reads_time
-                                ? "add the springs beside the dashpots, as `E_1/2*v**2`"
-                                : "add what the states lock in, as `H/2*x**2` of a linear hardening");
+    said = sense_say_losses(
+        m->of, &d.lost[lane], &finer.lost[lane], "drawn out",
+        b->reads_time ? "add the springs beside the dashpots, as `E_1/2*v**2`"
+                      : "add what the states lock in, as `H/2*x**2` of a linear hardening");
 }
 
 void sense_check_bonds(sense_bench *b) {

@@ -88,6 +88,15 @@ sense_reads sense_forces_read(ir *g, const law *l, const ir_node *forces, int co
   return found;
 }
 
+void sense_say_reads_dt(sense_bench *b) {
+  sense_say(b, DIAG_STEP_DEPENDENT, sense_force(b->law),
+            "let a state keep what goes on in time, by its `rate` or as in "
+            "`age = previous(age) + dt`",
+            "the %s reads `dt`: with the same states and at the same motion it is another one "
+            "after a longer step",
+            force_of(b));
+}
+
 void sense_hold(sense_held *h, bool moved, bool another) {
   h->settled++;
   h->changed += another;
@@ -98,13 +107,7 @@ void sense_hold(sense_held *h, bool moved, bool another) {
 /* A force that reads dt and old states may be that of a rate, as in `(v - previous(v))/dt`. */
 void sense_say_held(sense_bench *b, const sense_held *h, sense_reads forces) {
   enum { FEW = 8 };
-  if (forces.dt && !forces.old && h->changed >= FEW)
-    sense_say(b, DIAG_STEP_DEPENDENT, sense_force(b->law),
-              "let a state keep what goes on in time, by its `rate` or as in "
-              "`age = previous(age) + dt`",
-              "the %s reads `dt`: with the same states and at the same motion it is another one "
-              "after a longer step",
-              force_of(b));
+  if (forces.dt && !forces.old && h->changed >= FEW) sense_say_reads_dt(b);
   if (forces.dt || h->late < FEW || h->late * 4 < h->moved) return;
   sense_say(b, DIAG_ONE_STEP_LATE, sense_force(b->law),
             "write it below the rules of what it reads, without `previous` and without names from "

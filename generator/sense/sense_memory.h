@@ -25,6 +25,9 @@ typedef struct sense_held {
   int moved, late;      /* the same of steps in which states moved */
 } sense_held;
 
+/* A force that is another one after a longer step. */
+void sense_say_reads_dt(sense_bench *b);
+
 void sense_hold(sense_held *h, bool moved, bool another);
 void sense_say_held(sense_bench *b, const sense_held *h, sense_reads forces);
 

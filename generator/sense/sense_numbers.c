@@ -16,8 +16,8 @@ static const double SLOWEST = 10, FASTEST = 20e3; /* m/s */
 /* The strongest fibres have 0.05, a soft clay 1e-3, thin ice 1e-4, wet sand 1e-6. What is soft, as
    rubber and gels, is stretched to several times its length. */
 static const double STRONGEST = 0.06, WEAKEST = 1e-7; /* of Young's modulus */
-static const double STIFF = 1e9; /* Pa: polyethylene; below it STRONGEST says nothing */
-static const double LONGEST = 50;                         /* m: E G/f**2; concrete has up to 1 */
+static const double STIFF = 1e9;  /* Pa: polyethylene; below it STRONGEST says nothing */
+static const double LONGEST = 50; /* m: E G/f**2; concrete has up to 1 */
 static const double LEAST_TOUGH = 1e3, MOST_TOUGH = 1e10; /* Pa m^(1/2): snow, the toughest steel */
 static const double LIGHT = 100, HEAVY = 3e4;             /* kg/m^3: cork, beyond osmium */
 static const double WITHOUT_UNITS = 1e3; /* Pa: a law with a smaller modulus has no units at all */
@@ -125,7 +125,8 @@ static void check_length(sense_bench *b, const symbol *G, const bool *is_strengt
               "finer lattice",
               "`%s` = %.4g N/m gives a length of fracture E G/f^2 of %.4g m, below the %s of "
               "%.4g m: what breaks holds more energy than tears it",
-              G->name, sense_value(b, G), longest, b->lattice ? "spacing" : "least that there is", cell);
+              G->name, sense_value(b, G), longest, b->lattice ? "spacing" : "least that there is",
+              cell);
 }
 
 /* --- what names say --------------------------------------------------------------------------- */
@@ -266,7 +267,8 @@ static void check_toughness(sense_bench *b) {
     if (sense_value(b, s) >= LEAST_TOUGH && sense_value(b, s) <= MOST_TOUGH) continue;
     sense_say(b, DIAG_ABSURD_VALUE, s->where,
               "glass has 0.8 [MPa*m^(1/2)], steel 100: look at the prefixes",
-              "`%s` = %.4g Pa m^(1/2) is a toughness that no material has", s->name, sense_value(b, s));
+              "`%s` = %.4g Pa m^(1/2) is a toughness that no material has", s->name,
+              sense_value(b, s));
   }
 }
 

@@ -264,17 +264,18 @@ static void check_locked_energy(sense_bench *b, point_bench *p) {
   bool said = false;
   for (int size = 0; size < SIZES && !said; size++) {
     const double amplitude = pl_pow(10, -4 + 3.7 * size / (SIZES - 1));
-    const double time = p->reads_time ? pl_pow(10, -6 + 15.0 * (size * 5 % SIZES) / (SIZES - 1)) : 0;
+    const double time =
+        p->reads_time ? pl_pow(10, -6 + 15.0 * (size * 5 % SIZES) / (SIZES - 1)) : 0;
     const sense_losses losses = sheared(p, amplitude, time, STEPS);
     if (!sense_gains(&losses)) continue;
     const sense_losses finer = sheared(p, amplitude, time, 4 * STEPS);
     char way[64];
     snprintf(way, sizeof way, "sheared by %.3g", amplitude);
-    said = sense_say_losses(
-        b, &losses, &finer, way,
-        p->reads_time
-            ? "add the springs beside the dashpots, as `mu_1*(e_v:e_v)`"
-            : "add what the states lock in, as `H/3*(eps_p:eps_p)` of a linear kinematic hardening");
+    said =
+        sense_say_losses(b, &losses, &finer, way,
+                         p->reads_time ? "add the springs beside the dashpots, as `mu_1*(e_v:e_v)`"
+                                       : "add what the states lock in, as `H/3*(eps_p:eps_p)` of a "
+                                         "linear kinematic hardening");
   }
 }
 

@@ -6,10 +6,11 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "generator/sense/sense_memory.h"
 
 /* --- numbers of the text ---------------------------------------------------------------------- */
 
-static double value_of(const sense_bench *b, const expr *e, int depth);
+static double value_in(const sense_bench *b, const expr *e, int *left);
 
 static double value_of_number(const expr *e) {
   unit in;
@@ -20,11 +21,11 @@ static double value_of_number(const expr *e) {
                                                                             : NAN;
 }
 
-static double value_of_name(const sense_bench *b, const expr *e, int depth) {
+static double value_of_name(const sense_bench *b, const expr *e, int *left) {
   const symbol *s = e->symbol;
   if (s && s->kind == SYMBOL_PARAMETER) return sense_value(b, s);
   if (s && s->kind == SYMBOL_QUANTITY && s->index == QUANTITY_PI) return M_PI;
-  if (s && s->kind == SYMBOL_CONSTANT && s->rule) return value_of(b, s->rule->value, depth + 1);
+  if (s && s->kind == SYMBOL_CONSTANT && s->rule) return value_in(b, s->rule->value, left);
   return NAN;
 }
 
@@ -45,25 +46,31 @@ static double value_of_binary(double x, binary_op op, double y) {
   }
 }
 
-/* Of an expression of numbers, parameters and constants; else NaN. */
-static double value_of(const sense_bench *b, const expr *e, int depth) {
-  enum { DEEPEST = 32 };
-  if (!e || depth > DEEPEST) return NAN;
+/* With so many looks left: names in names unfold to any size. */
+static double value_in(const sense_bench *b, const expr *e, int *left) {
+  if (!e || --*left < 0) return NAN;
   switch (e->kind) {
   case EXPR_NUMBER:
     return value_of_number(e);
   case EXPR_NAME:
-    return value_of_name(b, e, depth);
-  case EXPR_UNARY:
-    return e->unary == OP_NEG    ? -value_of(b, e->left, depth + 1)
-           : e->unary == OP_PLUS ? value_of(b, e->left, depth + 1)
-                                 : NAN;
-  case EXPR_BINARY:
-    return value_of_binary(value_of(b, e->left, depth + 1), e->binary,
-                           value_of(b, e->right, depth + 1));
+    return value_of_name(b, e, left);
+  case EXPR_UNARY: {
+    const double x = value_in(b, e->left, left);
+    return e->unary == OP_NEG ? -x : e->unary == OP_PLUS ? x : NAN;
+  }
+  case EXPR_BINARY: {
+    const double x = value_in(b, e->left, left), y = value_in(b, e->right, left);
+    return value_of_binary(x, e->binary, y);
+  }
   default:
     return NAN;
   }
+}
+
+/* Of an expression of numbers, parameters and constants; else NaN. */
+static double value_of(const sense_bench *b, const expr *e) {
+  int left = 2000;
+  return value_in(b, e, &left);
 }
 
 /* --- degrees ---------------------------------------------------------------------------------- */
@@ -82,7 +89,7 @@ static const symbol *parameter_of(const expr *e) {
 /* The parameter that is the argument of a sine, where its bounds end beyond a full turn. */
 static bool is_bounded_in_degrees(const sense_bench *b, const symbol *angle) {
   if (!angle || !angle->declared->in.given || has_unit(angle->declared->in.upper)) return false;
-  const double most = value_of(b, angle->declared->in.upper, 0);
+  const double most = value_of(b, angle->declared->in.upper);
   return most > FULL_TURN && most <= 400;
 }
 
@@ -127,13 +134,12 @@ static void say_turned_again(sense_bench *b, const expr *call, const symbol *s) 
 static void check_angle(sense_bench *b, const expr *call) {
   const expr *angle = call->arguments[0].value;
   const symbol *alone = parameter_of(angle);
-  const double value = value_of(b, angle, 0);
+  const double value = value_of(b, angle);
   const symbol *again = turned_again(b, angle, value);
   if (again)
     say_turned_again(b, call, again);
-  else if (is_bounded_in_degrees(b, alone) ||
-           (fabs(value) > FULL_TURN && is_round(value) &&
-            !(alone && has_unit(alone->declared->value))))
+  else if (is_bounded_in_degrees(b, alone) || (fabs(value) > FULL_TURN && is_round(value) &&
+                                               !(alone && has_unit(alone->declared->value))))
     say_degrees(b, call, value);
 }
 
@@ -201,21 +207,26 @@ static void check_sum(sense_bench *b, const expr *call) {
             seen.own->name, call->name);
 }
 
-/* --- flows and rates whose new value the force does not know ----------------------------------- */
+/* --- flows and rates whose new value the force does not know ---------------------------------- */
 
 typedef struct reading {
-  bool old, new;
+  bool old, new, dt;
+  int looks; /* names in names unfold to any size */
 } reading;
 
-/* `previous(x)` alone is an old value that is meant; a name above its rule may be. */
+/* `previous(x)` alone is an old value that is meant; a name above its rule may be. Of any state
+   where that is NULL. */
 static void find_readings(const expr *e, const symbol *state, reading *found, int depth) {
-  enum { DEEPEST = 64 };
-  if (!e || depth > DEEPEST) return;
+  enum { DEEPEST = 64, MOST_LOOKS = 100000 };
+  if (!e || depth > DEEPEST || ++found->looks > MOST_LOOKS) return;
   if (e->kind == EXPR_CALL && !e->symbol && e->builtin == FUNCTION_PREVIOUS) {
-    found->old = found->old || e->arguments[0].value->symbol == state;
+    found->old = found->old || !state || e->arguments[0].value->symbol == state;
     return;
   }
   if (e->kind == EXPR_NAME && e->symbol == state) found->new = true;
+  if (e->kind == EXPR_NAME && e->symbol && e->symbol->kind == SYMBOL_QUANTITY &&
+      e->symbol->index == QUANTITY_DT)
+    found->dt = true;
   if (e->kind == EXPR_NAME && e->symbol && e->symbol->kind == SYMBOL_DEFINED && e->symbol->rule)
     find_readings(e->symbol->rule->value, state, found, depth + 1);
   find_readings(e->left, state, found, depth + 1);
@@ -228,14 +239,17 @@ static void find_readings(const expr *e, const symbol *state, reading *found, in
   }
 }
 
-/* Of laws of families, whose forces may read damages of the last step, but not what a flow or a rate
-   has just changed. */
+/* Of laws of families, whose forces may read damages of the last step, but not what a flow or a
+   rate has just changed. */
 static void check_force_state(sense_bench *b) {
   const stmt *force = law_force_state(b->law);
-  if (b->law->options.count > 0) return; /* which may choose just that */
-  for (int k = 0; force && k < b->law->fields.count; k++) {
+  if (!force || b->law->options.count > 0) return; /* which may choose just that */
+  reading any = {.old = false};
+  find_readings(force->value, NULL, &any, 0);
+  if (any.dt && !any.old) sense_say_reads_dt(b);
+  for (int k = 0; k < b->law->fields.count; k++) {
     const symbol *s = b->law->fields.items[k];
-    reading found = {false, false};
+    reading found = {.old = false};
     if (!s->rule || (s->rule->kind != STMT_FLOW && s->rule->kind != STMT_RATE)) continue;
     find_readings(force->value, s, &found, 0);
     if (found.old && !found.new)

@@ -68,7 +68,7 @@ static void is_said_once(const char *text, const char *code, const char *words) 
   judged_free(j);
 }
 
-#define BOND                                                                                      \
+#define BOND                                                                                       \
   "model m\n  law central bond\n  parameter k = 10 [MN] in (0, inf)\n"                             \
   "  parameter rho = 2323 [kg/m^3] in (0, inf)\n"
 #define END "end model\n"
@@ -94,6 +94,14 @@ static void stiffness_by_the_step_is_told(void **state) {
                "  parameter nu = 0.2 in [0, 0.5)\n  parameter tau = 2 [s] in (0, inf)\n"
                "  parameter rho = 2323 [kg/m^3] in (0, inf)\n"
                "  stress sigma = hooke(strain, E, nu)*(1 + dt/tau)\n" END,
+               "step-dependent", "reads `dt`");
+}
+
+static void stiffness_of_a_family_by_the_step_is_told(void **state) {
+  (void)state;
+  is_said_once("model m\n  law state\n  for plane_strain\n  parameter a = 3 [MN/m] in (0, inf)\n"
+               "  parameter tau = 1 [s] in (0, inf)\n  parameter rho = 2300 [kg/m^3] in (0, inf)\n"
+               "  force state F[j] = a*s*stretch[j]*(1 + dt/tau)\n" END,
                "step-dependent", "reads `dt`");
 }
 
@@ -123,9 +131,10 @@ static void states_may_act_by_rates(void **state) {
 
 static void angles_with_their_unit_are_none_in_degrees(void **state) {
   (void)state;
-  nothing_is_said_of(BOND "  parameter phi = 30 [deg] in (0, 400 [deg])\n"
-                          "  parameter m_0 = 7 in (0, 10)\n"
-                          "  force N = k*(1 + 0.1*sin(phi)**2)*(1 + 0.1*sin(m_0*1.5)**2)*stretch\n" END);
+  nothing_is_said_of(BOND
+                     "  parameter phi = 30 [deg] in (0, 400 [deg])\n"
+                     "  parameter m_0 = 7 in (0, 10)\n"
+                     "  force N = k*(1 + 0.1*sin(phi)**2)*(1 + 0.1*sin(m_0*1.5)**2)*stretch\n" END);
   is_said_once(BOND "  parameter phi = 30 [deg] in (0, 90 [deg])\n"
                     "  force N = k*cos(phi*pi/180)*stretch\n" END,
                "degrees", "`phi` is in radians already");
@@ -137,6 +146,18 @@ static void the_text_is_read_beside_errors(void **state) {
   static const char text[] = BOND "  force N = k*stretch*sin(30)\n" END;
   is_said_once(text, "stiffness", "negative");
   is_said_once(text, "degrees", "`30`");
+}
+
+/* Written out the angle has 2^40 terms. */
+static void long_chains_of_names_are_given_up(void **state) {
+  (void)state;
+  char text[4096];
+  size_t n = (size_t)snprintf(text, sizeof text, BOND "  constant c0 = 1\n");
+  for (int k = 1; k <= 40; k++)
+    n += (size_t)snprintf(text + n, sizeof text - n, "  constant c%d = (c%d + c%d)/2\n", k, k - 1,
+                          k - 1);
+  snprintf(text + n, sizeof text - n, "  force N = k*stretch*cos(c40)\n" END);
+  nothing_is_said_of(text);
 }
 
 /* --- materials -------------------------------------------------------------------------------- */
@@ -187,8 +208,8 @@ static const char *note_of(const judged *j, const char *code) {
 static void a_time_of_zero_is_told(void **state) {
   (void)state;
   static const char text[] = BOND "  parameter tau = 0 [s] in [0, inf)\n  state v on bond = 0\n"
-                                 "  rate v = (stretch - v)/tau\n"
-                                 "  force N = k*stretch + k*(stretch - v)\n" END;
+                                  "  rate v = (stretch - v)/tau\n"
+                                  "  force N = k*stretch + k*(stretch - v)\n" END;
   is_said_once(text, "division-by-zero", "divides by zero");
   judged *j = judge(text);
   assert_non_null(strstr(note_of(j, "division-by-zero"), "tau = 0 s"));
@@ -208,10 +229,12 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(states_may_act_by_the_rest_alone),
       cmocka_unit_test(stiffness_by_the_step_is_told),
+      cmocka_unit_test(stiffness_of_a_family_by_the_step_is_told),
       cmocka_unit_test(a_step_may_be_written_out),
       cmocka_unit_test(states_may_act_by_rates),
       cmocka_unit_test(angles_with_their_unit_are_none_in_degrees),
       cmocka_unit_test(the_text_is_read_beside_errors),
+      cmocka_unit_test(long_chains_of_names_are_given_up),
       cmocka_unit_test(a_cable_is_no_solid),
       cmocka_unit_test(what_is_soft_may_be_strong),
       cmocka_unit_test(what_solves_a_rate_divides_by_no_zero),
