@@ -57,8 +57,10 @@ static const struct {
     {"hr hrs hour hours", "write `h`"},
     {"sec secs second seconds", "write `s`"},
     {"minute minutes", "write `min`"},
-    {"C degC \xC2\xB0" "C celsius Celsius",
-     "temperatures are in `K`: 20 degrees Celsius are 293.15 K, and a difference of 1 degree is 1 K"},
+    {"C degC \xC2\xB0"
+     "C celsius Celsius",
+     "temperatures are in `K`: 20 degrees Celsius are 293.15 K, and a difference of 1 degree is 1 "
+     "K"},
     {"kelvin Kelvin degK", "write `K`"},
 };
 

@@ -205,10 +205,12 @@ static bool blame_rate(checker *ck, const expr *e, dimension has, dimension need
 /* exp(-t/tau), where t is meant as the time. */
 static bool hint_thickness(checker *ck, const expr *e, dimension has, dimension needs) {
   const dimension speed = dimension_of("m/s");
-  if (!dim_equal(dim_div(has, needs), speed) && !dim_equal(dim_div(needs, has), speed)) return false;
+  if (!dim_equal(dim_div(has, needs), speed) && !dim_equal(dim_div(needs, has), speed))
+    return false;
   if (!first_of(e, is_thickness, &(int){0})) return false;
-  diag_hint(ck->d, "`t` is the thickness; the time that a step takes is `dt`, and a state may add it "
-                   "up: `age = previous(age) + dt`");
+  diag_hint(ck->d,
+            "`t` is the thickness; the time that a step takes is `dt`, and a state may add it "
+            "up: `age = previous(age) + dt`");
   return true;
 }
 

@@ -56,8 +56,7 @@ static value pure(checker *ck, expr *e) {
     return v.broken ? v : with_shape(v, DIMENSIONLESS, SHAPE_SCALAR);
   }
   if (!expect(ck, operand(e, 0), v, DIMENSIONLESS, SHAPE_SCALAR, function_name(ck, e))) {
-    if (!diag_hinted(ck->d))
-      diag_hint(ck->d, "divide by a reference value: `%s(x/x_0)`", e->name);
+    if (!diag_hinted(ck->d)) diag_hint(ck->d, "divide by a reference value: `%s(x/x_0)`", e->name);
     return BROKEN;
   }
   return with_shape(v, DIMENSIONLESS, SHAPE_SCALAR);

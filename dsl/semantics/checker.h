@@ -31,8 +31,8 @@ typedef struct entry {
   bool in_use;   /* FUNCTION: its body is being checked */
   bool in_cycle; /* a cycle through it was reported */
   bool refused;  /* a result that this kind of law does not have */
-  /* QUANTITY: the law declares its name; PARAMETER: it lacks its unit; STATE: its rate lacks a time.
-     Said once: of what reads it nothing more is said. */
+  /* QUANTITY: the law declares its name; PARAMETER: it lacks its unit; STATE: its rate lacks a
+     time. Said once: of what reads it nothing more is said. */
   bool blamed;
   struct entry *arguments; /* FUNCTION: [declared->word_count] */
   struct entry *next;      /* of the same hash */

@@ -676,8 +676,7 @@ static void declare_one(checker *ck, stmt *s) {
 static void refuse_names_of_components(checker *ck) {
   for (int k = 0; k < ck->law->parameters.count; k++) {
     const symbol *part = ck->law->parameters.items[k];
-    const entry *other =
-        part->component_of ? names_find(ck, SPACE_QUANTITIES, part->name) : NULL;
+    const entry *other = part->component_of ? names_find(ck, SPACE_QUANTITIES, part->name) : NULL;
     if (!other || other->symbol.kind == SYMBOL_DEFINED || other->symbol.kind == SYMBOL_PARAMETER)
       continue; /* another parameter of that name has been refused */
     complain(ck, DIAG_DUPLICATE_NAME, other->symbol.where,

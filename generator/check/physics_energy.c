@@ -375,11 +375,12 @@ void physics_check_energy_and_force(physics *p) {
                     "`%s` is %.6g %s, but the derivative of the law's energy is %.6g %s",
                     physics_force_names[k], force, physics_force_units[k], implied,
                     physics_force_units[k]);
-        diag_hint(p->said, fabs(implied) > 0
-                               ? "give the energy alone; the forces follow from it"
-                               : "at states that stay this energy does not change with the "
-                                 "deformation: a force that is a state of its own has none; leave "
-                                 "`energy` out, or let the state be a deformation, `k*(stretch - v)`");
+        diag_hint(p->said,
+                  fabs(implied) > 0
+                      ? "give the energy alone; the forces follow from it"
+                      : "at states that stay this energy does not change with the "
+                        "deformation: a force that is a state of its own has none; leave "
+                        "`energy` out, or let the state be a deformation, `k*(stretch - v)`");
       }
   }
   probe_free(&both);

@@ -67,8 +67,9 @@
   X(command, "--set", "group.key=value",                                                           \
     "set a value of the deck, `group.key=` its default; may be given several times")
 #define COMMAND_OPTIONS(X)                                                                         \
-  X(new, "--kind", "central|micropolar|state|continuum|crack",                                           \
-    "bonds whose ends can turn (micropolar) or not (central, the default), a solid, or cracks")    \
+  X(new, "--kind", "central|micropolar|state|continuum|crack",                                     \
+    "bonds whose ends can turn (micropolar) or not (central, the default), families of bonds "     \
+    "(state), a solid, or cracks")                                                                 \
   X(check, "--dump", "tree|ir|passes|c",                                                           \
     "show what becomes of a law, or of a deck's on its lattice, at this stage")                    \
   X(check, "--diagnostics", "text|json",                                                           \

@@ -377,8 +377,8 @@ bool drive_bond_class(const drive_input *in, double rho, pl_bond_class *out) {
   return true;
 }
 
-bool drive_run(const drive_input *in, const law *l, const pl_law *kernel,
-               const double *parameters, const double *initial, drive_table *out, diagnostics *d) {
+bool drive_run(const drive_input *in, const law *l, const pl_law *kernel, const double *parameters,
+               const double *initial, drive_table *out, diagnostics *d) {
   long count;
   pl_bond_class bonds;
   if (!drive_bond_class(in, material_density(kernel, parameters), &bonds)) {

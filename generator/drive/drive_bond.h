@@ -10,10 +10,10 @@
 
 /* A table without rows: the columns that a drive of `kernel` will have. To be freed. */
 void drive_columns(const law *l, const pl_law *kernel, drive_table *out);
-/* Drives the law's `kernel`. `initial` [fields] is where state and damage begin. The table must be freed.
-   False, with a message, when the path leaves what a bond can do (a stretch of -1). */
-bool drive_run(const drive_input *in, const law *l, const pl_law *kernel,
-               const double *parameters, const double *initial, drive_table *out, diagnostics *d);
+/* Drives the law's `kernel`. `initial` [fields] is where state and damage begin. The table must be
+   freed. False, with a message, when the path leaves what a bond can do (a stretch of -1). */
+bool drive_run(const drive_input *in, const law *l, const pl_law *kernel, const double *parameters,
+               const double *initial, drive_table *out, diagnostics *d);
 /* What the law is told about the bond: it is one of a hexagonal lattice, but for the masses that
    the path gives. rho may be 0. False where there is no lattice of such a spacing. */
 bool drive_bond_class(const drive_input *in, double rho, pl_bond_class *out);

@@ -45,9 +45,8 @@ static int first_driven(const drive_input *in, int dimensions) {
 static void table_open(drive_table *t, const drive_input *in, const pl_law *kernel, long room) {
   const int dimensions = kernel->dimensions, strains = PL_STRAINS(dimensions),
             stresses = PL_STRESSES(dimensions), driven = first_driven(in, dimensions);
-  const int count =
-      2 + 2 * strains + stresses + kernel->field_count + kernel->output_count +
-      driven_fields_count(kernel) + DRIVE_ENERGY_COUNT;
+  const int count = 2 + 2 * strains + stresses + kernel->field_count + kernel->output_count +
+                    driven_fields_count(kernel) + DRIVE_ENERGY_COUNT;
   *t = (drive_table){.memory = arena_new(), .of = DRIVE_OF_POINTS, .bad_row = -1};
   t->columns = arena_alloc(t->memory, (size_t)count * sizeof *t->columns);
   drive_add_column(t, "time", "s", room);

@@ -1,5 +1,5 @@
-/* Fields that a law declares, as a path gives them in time: what its parameters are then, and what a
-   table shows of them. */
+/* Fields that a law declares, as a path gives them in time: what its parameters are then, and what
+   a table shows of them. */
 #ifndef PERILAT_GENERATOR_DRIVEN_FIELDS_H
 #define PERILAT_GENERATOR_DRIVEN_FIELDS_H
 

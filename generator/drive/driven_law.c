@@ -189,8 +189,7 @@ static void take_first_values(driven_law *r) {
   deck_material *m = &r->model.values;
   const size_t count = (size_t)(m->assignment_count + r->in->given_count);
   deck_assignment *all = arena_alloc(r->memory, (count + 1) * sizeof *all);
-  if (m->assignment_count)
-    memcpy(all, m->assignments, (size_t)m->assignment_count * sizeof *all);
+  if (m->assignment_count) memcpy(all, m->assignments, (size_t)m->assignment_count * sizeof *all);
   m->assignments = all;
   for (int k = 0; k < r->in->given_count; k++) {
     const drive_given *g = &r->in->given[k];

@@ -178,10 +178,11 @@ static bool is_good(lowering *c, const stmt *rule, ir_node f, const components *
   if (couples(c, f, old, component)) {
     const bool vector = rule->symbol->shape == SHAPE_VECTOR;
     lower_fail(c, rule->where,
-               vector ? "the rate of one component of this vector depends on others: that cannot be "
-                        "solved yet; a factor may read `previous(...)` of it"
-                      : "the rate of one component of this tensor depends on others: that cannot be "
-                        "solved yet; a factor may read `previous(...)` of it");
+               vector
+                   ? "the rate of one component of this vector depends on others: that cannot be "
+                     "solved yet; a factor may read `previous(...)` of it"
+                   : "the rate of one component of this tensor depends on others: that cannot be "
+                     "solved yet; a factor may read `previous(...)` of it");
     return false;
   }
   if (old->of[component] != IR_NONE && lower_moves_a_sum(c->graph, f, old->of[component]) &&

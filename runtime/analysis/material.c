@@ -84,7 +84,10 @@ static bool unknown(const deck_assignment *a, const pl_law *law, diagnostics *d)
   const char **names = arena_alloc(memory, ((size_t)law->parameter_count + 1) * sizeof *names);
   const int count = known_names(memory, law, a, names);
   diag_report(d, DIAG_UNKNOWN_KEY, a->name_where, "the law `%s` has no %s `%s`", law->name,
-              a->of_field ? "field" : a->vector ? "vector" : "parameter", name);
+              a->of_field ? "field"
+              : a->vector ? "vector"
+                          : "parameter",
+              name);
   if (!a->of_field)
     diag_suggest(d, name, names, count);
   else if (count)

@@ -385,8 +385,10 @@ static bool read_formula(arena *memory, const namelist_value *v, const char *key
   if (!f) {
     const diagnostic *said = &d->items[d->count - 1];
     if (said->code == DIAG_UNKNOWN_NAME && strstr(said->message, "`t`"))
-      diag_hint(d, "what changes in time is a field: declare `field %s ...` in the law, and give it "
-                   "by `&field name = '%s' value = ... /`", key, key);
+      diag_hint(d,
+                "what changes in time is a field: declare `field %s ...` in the law, and give it "
+                "by `&field name = '%s' value = ... /`",
+                key, key);
     return false;
   }
   a->has_unit = !formula_is_zero(f);

@@ -140,7 +140,7 @@ static void steps_are_marked(void **state) {
 static void rates_are_equations_in_time(void **state) {
   (void)state;
 #define CHAIN                                                                                      \
-  "state v = 0\nstate w = 0\nz = stretch - v\nrate v = (z - w)/2 [s]\nrate w = (v - w)/2 [s]\n"     \
+  "state v = 0\nstate w = 0\nz = stretch - v\nrate v = (z - w)/2 [s]\nrate w = (v - w)/2 [s]\n"    \
   "y = v + w"
   assert_reads(CHAIN, "$$z = \\mathit{stretch} - v$$");
   assert_reads(CHAIN, "\\mathrm{d}t}\\,v = \\frac{z - w^{(n-1)}}{2\\,\\mathrm{s}}$$");

@@ -96,10 +96,12 @@ static void forces_follow_the_field(void **state) {
 /* The table has the fields, driven or not, between outputs and energies. */
 static void the_table_has_the_fields(void **state) {
   static const char *const laws[][3] = {
-      {"bond", "stretch", "&bond area = '400 mm^2' /\n&expect quantity = 'T' at_time = 0.5 value = "
-                          "'543 K' /\n&output picture = 'T.svg' x = 'T' /\n"},
-      {"point", "strain_xx", "&expect quantity = 'stress_xx at peak T' formula = "
-                             "'E/0.9*1e-4' /\n"},
+      {"bond", "stretch",
+       "&bond area = '400 mm^2' /\n&expect quantity = 'T' at_time = 0.5 value = "
+       "'543 K' /\n&output picture = 'T.svg' x = 'T' /\n"},
+      {"point", "strain_xx",
+       "&expect quantity = 'stress_xx at peak T' formula = "
+       "'E/0.9*1e-4' /\n"},
       {"family", "strain_xx", "&expect quantity = 'final T' formula = 'seen' /\n"}};
   workplace *w = *state;
   write_laws(w);
@@ -107,16 +109,18 @@ static void the_table_has_the_fields(void **state) {
     write_path(w, laws[k][0], laws[k][1], 10, k ? laws[k][2] : "");
     if (k == 0) {
       char text[1000];
-      snprintf(text, sizeof text, "&simulation steps = 10 /\n&material model = 'bond.plm' /\n" BOTH "%s",
-               "stretch", laws[k][2]);
+      snprintf(text, sizeof text,
+               "&simulation steps = 10 /\n&material model = 'bond.plm' /\n" BOTH "%s", "stretch",
+               laws[k][2]);
       write_text(w, "path.nml", text);
     }
     expect(w, "drive path.nml", 0, "1 of 1 expectations hold");
   }
   assert_true(exists(w, "T.svg"));
-  write_text(w, "path.nml", "&bond area = '400 mm^2' /\n&material model = 'bond.plm' /\n"
-                            "&path quantity = 'stretch' times = 0, 1 values = 0, 1e-4 /\n"
-                            "&expect quantity = 'T' value = '293 K' /\n");
+  write_text(w, "path.nml",
+             "&bond area = '400 mm^2' /\n&material model = 'bond.plm' /\n"
+             "&path quantity = 'stretch' times = 0, 1 values = 0, 1e-4 /\n"
+             "&expect quantity = 'T' value = '293 K' /\n");
   expect(w, "drive path.nml", 0, "1 of 1 expectations hold");
 }
 
@@ -151,11 +155,13 @@ static void what_goes_wrong_is_found(void **state) {
              "  rate v = sign(stretch - v)*sqrt(abs(stretch - v))/2 [s]\n  low = sqrt(h - 0.5)\n"
              "  force N = 1 [MN]*(stretch - v)*low\nend model\n");
 #define STRETCHED "&material model = 'root.plm' /\n&path quantity = 'stretch' "
-  write_text(w, "path.nml", STRETCHED "times = 0, 1, 401 values = 0, 1e-3, 1e-3 /\n"
-                                      "&simulation steps = 4 /\n");
+  write_text(w, "path.nml",
+             STRETCHED "times = 0, 1, 401 values = 0, 1e-3, 1e-3 /\n"
+                       "&simulation steps = 4 /\n");
   expect(w, "drive path.nml", 2, "root.plm:6: the law's `v` stops being finite there");
-  write_text(w, "path.nml", STRETCHED "times = 0, 1e-6 values = 0, 1e-3 /\n"
-                                      "&path field = 'h' times = 0, 1e-6 values = 1, 0 /\n");
+  write_text(w, "path.nml",
+             STRETCHED "times = 0, 1e-6 values = 0, 1e-3 /\n"
+                       "&path field = 'h' times = 0, 1e-6 values = 1, 0 /\n");
   expect(w, "drive path.nml", 2, "root.plm:7: the law's `low` stops being finite there");
 }
 
@@ -212,8 +218,7 @@ static void what_cannot_be_is_told(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, set_up_workplace, tear_down_workplace)
-      TEST(forces_follow_the_field),  TEST(the_table_has_the_fields),
-      TEST(stretch_has_one_meaning), TEST(what_goes_wrong_is_found),
-      TEST(the_balance_holds),       TEST(what_cannot_be_is_told)};
+      TEST(forces_follow_the_field),  TEST(the_table_has_the_fields), TEST(stretch_has_one_meaning),
+      TEST(what_goes_wrong_is_found), TEST(the_balance_holds),        TEST(what_cannot_be_is_told)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -133,7 +133,8 @@ static void samples_at_other_times(void **state) {
   expect(w, "compare a.h5 b.h5 --tolerance 0.5", 0, "");
   shorter.displacement = -0.22;
   make_result(w, "b.h5", shorter);
-  expect(w, "compare a.h5 b.h5 --field displacement", 2, "frame 1, t = 500 ms and 250 ms, particle 1");
+  expect(w, "compare a.h5 b.h5 --field displacement", 2,
+         "frame 1, t = 500 ms and 250 ms, particle 1");
 }
 
 static void not_a_number_is_a_difference(void **state) {

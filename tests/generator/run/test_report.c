@@ -275,7 +275,7 @@ static void maps_know_their_increment(void **state) {
   assert_int_equal(frame.increment, -1);
   assert_string_equal(frame.extents, "");
   plot_frame_free(&frame);
-  expect(w, "plot beam.h5 quiet.h5 --x time", 1, "holds `time` in another unit (1)");
+  expect(w, "plot beam.h5 quiet.h5 --x time --x-unit s", 0, "written beam_load.png");
   expect(w, "plot beam.h5 quiet.h5 --x energy/external", 0, "written beam_load.png");
 }
 
