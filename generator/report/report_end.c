@@ -56,6 +56,11 @@ static void conclude_increments(const run *r) {
     printf("             in %ld of them hardly anything acted on the body: compared with 1e-5 of "
            "the forces between its particles\n",
            within);
+  const double step = simulation_step_now(r->simulation),
+               planned = simulation_step_limit(r->simulation)->step;
+  if (step < planned)
+    printf("  shrinks    to %.4g us: the body became %.3g times as stiff as at rest\n", 1e6 * step,
+           simulation_stiffened(r->simulation));
   if (unbalanced > 0)
     printf("             %ld of them without balance after %ld steps\n", unbalanced,
            (long)r->deck->relaxation.most_steps);

@@ -196,7 +196,29 @@ static void warn_of_damaged_ties(const run *r) {
   }
 }
 
+/* Within an increment steps stay as they are. */
+static void tell_stiffening(const run *r) {
+  long unbalanced;
+  const double stiffer = simulation_stiffened(r->simulation);
+  const step_limit *limit = simulation_step_limit(r->simulation);
+  const double part = limit->step / limit->limit;
+  if (r->deck->relaxation.increments == 0 || r->deck->relaxation.solved) return;
+  const long done = simulation_increments(r->simulation, &unbalanced);
+  if (stiffer > 1.01)
+    fprintf(stderr, "  after increment %ld the body was %.3g times as stiff as at rest;", done,
+            stiffer);
+  else if (done == 0)
+    fputs("  the law may have stiffened in the first increment, by its age or by strain;", stderr);
+  else
+    return;
+  fprintf(stderr,
+          " within one increment steps of %.3g of the\n  longest stable one bear %.3g times the "
+          "stiffness: take more `increments`, or a smaller `step_safety`\n",
+          part, 1 / (part * part));
+}
+
 void tell_of_steps(const run *r, bool failed) {
+  if (failed) tell_stiffening(r);
   tell_stiffness(r, failed);
   tell_growth(r, failed);
 }

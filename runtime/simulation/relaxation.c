@@ -63,6 +63,8 @@ relaxation *relaxation_new(const deck *k, const run_body *bodies, int count, dou
   r->bodies = bodies;
   r->body_count = count;
   r->interval = k->simulation.end_time / k->relaxation.increments;
+  r->state.next_look = 1;
+  r->state.part = 1;
   r->ramp = r->deck->solved ? 1 : longest_ramp(bodies, count, part);
   r->looked_at = must_calloc((size_t)count, sizeof *r->looked_at);
   for (int b = 0; b < count; b++) {
@@ -133,6 +135,19 @@ void relaxation_solved(relaxation *r, double unbalance) {
 
 bool relaxation_due(const relaxation *r, int64_t step) {
   return (step - first_step(r)) % LOOK_EVERY == 0;
+}
+
+bool relaxation_stiffness_due(const relaxation *r) {
+  return !r->deck->solved && r->state.done > 0 && r->state.done >= r->state.next_look &&
+         r->state.done < r->deck->increments;
+}
+
+double relaxation_stiffness(relaxation *r, double part) {
+  const double growing = 0.995, before = r->state.part;
+  const bool grows = part < growing * before;
+  r->state.next_look = grows ? r->state.done + 1 : 2 * r->state.done;
+  r->state.part = part;
+  return grows ? part * part / before : part;
 }
 
 /* --- a look ----------------------------------------------------------------------------------- */

@@ -22,6 +22,10 @@
    what the unbalance is compared with: the slenderest bodies that are loaded bear more. A body is
    at rest, too, when rounding alone is left, a strain of 1e-15.
 
+   Between increments the body may have become stiffer, by its age, say: after increments 1, 2, 4, 8,
+   ... its present stiffness is looked at, and after each one as long as it grows. Then the step is
+   chosen anew, for what another such increment makes of it. It never grows again.
+
    Static runs (mesh_rest.h) have increments, too, of one step each, which solves K u = F. */
 #ifndef PERILAT_RUNTIME_RELAXATION_H
 #define PERILAT_RUNTIME_RELAXATION_H
@@ -34,6 +38,9 @@ typedef struct relaxation_state { /* what a later step depends on */
   int64_t within;                 /* of these: compared with forces between particles */
   int64_t steps;                  /* of the last that was done */
   double unbalance;               /* as it was looked at last, of the body with the largest */
+  int64_t next_look;              /* at the stiffness: after so many increments */
+  double part;                    /* longest stable step at the last look, over that at rest */
+  double step;                    /* s: the step since it was changed; 0: as planned */
 } relaxation_state;
 
 typedef struct relaxed_state { /* of a body, likewise */
@@ -77,6 +84,10 @@ bool relaxation_due(const relaxation *r, int64_t step);
 bool relaxation_look(relaxation *r, int64_t step);
 /* The next increment begins. */
 void relaxation_next(relaxation *r, int64_t step);
+/* The stiffness should be looked at; what was found, the part of the longest stable step at rest
+   that is left. Returns the part that the next increment may leave. */
+bool relaxation_stiffness_due(const relaxation *r);
+double relaxation_stiffness(relaxation *r, double part);
 /* Clock of the loads in the increment that began after `first` steps. */
 load_clock relaxation_clock(const relaxation *r, int64_t first);
 

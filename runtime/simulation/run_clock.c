@@ -16,6 +16,7 @@ double run_clock_time(const run_clock *c) {
 }
 
 double run_clock_step(const run_clock *c) {
+  if (c->relaxation && c->relaxation->state.step > 0) return c->relaxation->state.step;
   return c->time_step / (double)(INT64_C(1) << c->at.halvings);
 }
 

@@ -65,7 +65,7 @@ typedef struct run_clock {
 int64_t run_clock_position(const run_clock *c);
 int64_t run_clock_end(const run_clock *c);
 double run_clock_time(const run_clock *c); /* s */
-/* Of dynamic runs: the present step, s, and how many of these it would have taken up to here. */
+/* The present step, s; of dynamic runs, how many of these it would have taken up to here. */
 double run_clock_step(const run_clock *c);
 int64_t run_clock_parts(const run_clock *c);
 /* A part more is done; false: the step is not whole yet. */

@@ -446,6 +446,10 @@ uint64_t simulation_started_from(const simulation *s) {
 double simulation_progress(const simulation *s) {
   return (double)run_clock_position(&s->clock) / (double)run_clock_end(&s->clock);
 }
+double simulation_stiffened(const simulation *s) {
+  return s->relaxation ? 1 / (s->relaxation->state.part * s->relaxation->state.part) : 1;
+}
+
 long simulation_increments_within(const simulation *s) {
   return s->relaxation ? (long)s->relaxation->state.within : 0;
 }

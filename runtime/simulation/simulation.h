@@ -102,6 +102,8 @@ uint64_t simulation_started_from(const simulation *s);
 double simulation_progress(const simulation *s); /* part of the run that is done, 0 to 1 */
 /* Increments done of a quasi-static run, and how many of them ended without balance; 0 else. */
 long simulation_increments(const simulation *s, long *unbalanced);
+/* Times that the body was as stiff as at rest when a quasi-static run looked last; 1 else. */
+double simulation_stiffened(const simulation *s);
 /* How many of them ended with hardly any loads or reactions on any body (relaxation.h). */
 long simulation_increments_within(const simulation *s);
 double simulation_time(const simulation *s);   /* s, as the deck's loads count it */

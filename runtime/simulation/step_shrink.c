@@ -11,6 +11,7 @@
 
 bool step_shrink_due(const simulation *s) {
   const run_progress *at = &s->clock.at;
+  if (s->relaxation) return at->status == STEP_OK && relaxation_stiffness_due(s->relaxation);
   const int every = s->deck->simulation.shrink_every;
   if (every == 0 || at->part > 0 || at->status != STEP_OK) return false;
   const bool due =
@@ -187,7 +188,25 @@ static void fit_step(simulation *s) {
   }
 }
 
+/* The body is at rest, and its next increment has not begun. The step may be half way from the part
+   of the stable one that the run began with to the stable one. */
+static void fit_increment(simulation *s) {
+  const double part = s->limit.step / s->limit.limit;
+  double stiffer;
+  look_at_bodies(s, &stiffer);
+  relaxation_state *state = &s->relaxation->state;
+  const double limit = relaxation_stiffness(s->relaxation, stiffer) * s->limit.limit;
+  if (!(limit > 0) || run_clock_step(&s->clock) <= 0.5 * (1 + part) * limit) return;
+  state->step = part * limit;
+  take_step(s);
+  relaxation_next(s->relaxation, s->clock.at.step);
+}
+
 void step_shrink_look(simulation *s) {
+  if (s->relaxation) {
+    fit_increment(s);
+    return;
+  }
   fit_step(s);
   s->clock.at.looked = s->clock.at.step;
   if (s->clock.at.doubted && s->clock.at.status == STEP_OK) settle_doubt(s, false);

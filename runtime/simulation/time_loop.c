@@ -238,7 +238,8 @@ static void end_increment(simulation *s) {
     s->clock.at.status = s->clock.at.status == STEP_OK ? STEP_END : s->clock.at.status;
   else
     relaxation_next(s->relaxation, s->clock.at.step);
-  if (s->clock.at.status != STEP_OK || frame_times_due(&s->frame_times)) s->go_on = false;
+  if (s->clock.at.status != STEP_OK || frame_times_due(&s->frame_times) || step_shrink_due(s))
+    s->go_on = false;
 }
 
 static void look_at_loads(simulation *s) {
@@ -494,10 +495,12 @@ static void stand_on(simulation *s) {
   }
 }
 
-/* The team has stopped for a look at the step, and not for a frame that has come. */
-static bool is_held_up(const simulation *s, int64_t event) {
-  return step_shrink_due(s) && s->clock.at.step < s->until && s->clock.at.event == event &&
-         !(s->interrupted && *s->interrupted);
+/* The team has stopped for a look at the step, and not for a frame that has come: since `event`, or
+   in a quasi-static run since the beginning, when none was due. */
+static bool is_held_up(const simulation *s, int64_t event, bool due) {
+  const bool frame = s->relaxation && !due && frame_times_due(&s->frame_times);
+  return step_shrink_due(s) && !frame && s->clock.at.step < s->until &&
+         s->clock.at.event == event && !(s->interrupted && *s->interrupted);
 }
 
 static bool has_ended(const simulation *s) {
@@ -514,9 +517,10 @@ step_status time_loop_run(simulation *s, long steps, const volatile sig_atomic_t
   s->observe = s->clock.at.samples == 0;
   const bool solved = s->relaxation && s->relaxation->deck->solved;
   const int64_t event = s->clock.at.event;
+  const bool due = frame_times_due(&s->frame_times);
   if (solved) s->go_on = false;
   run_team(s);
-  while (is_held_up(s, event)) {
+  while (is_held_up(s, event, due)) {
     step_shrink_look(s);
     s->go_on = s->clock.at.status == STEP_OK; /* a look is followed by a step */
     run_team(s);
