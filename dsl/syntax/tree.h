@@ -105,7 +105,7 @@ enum { TENSOR_COMPONENT_COUNT = 6 };
 #define TURNED_COMPONENTS(X) X(YX, 'y', 'x') X(ZY, 'z', 'y') X(ZX, 'z', 'x')
 enum { GENERAL_COMPONENT_COUNT = 9 };
 /* The component of a symmetric tensor that a general one has in its place. */
-static inline int tensor_component(int component) {
+static inline int symmetric_component(int component) {
   return component < TENSOR_COMPONENT_COUNT ? component : component - 3;
 }
 /* The component that follows from the others where the trace is 0: zz = -(xx + yy). */

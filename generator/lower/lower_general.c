@@ -10,7 +10,7 @@ int general_place(int row, int column) {
 /* Of a tensor of six or nine components. */
 static ir_node entry(const components *a, int row, int column) {
   const int at = general_place(row, column);
-  return a->of[a->count == GENERAL_COUNT ? at : tensor_component(at)];
+  return a->of[a->count == GENERAL_COUNT ? at : symmetric_component(at)];
 }
 
 components general_of(ir *g, components a) {

@@ -189,7 +189,7 @@ static components lower_binary(lowering *c, const expr *e) {
 static components lower_unary(lowering *c, const expr *e) {
   components a = lower_value(c, e->left);
   if (e->unary == OP_COMPONENT && a.count == TENSOR_COUNT)
-    return scalar(a.of[tensor_component(e->component)]);
+    return scalar(a.of[symmetric_component(e->component)]);
   if (e->unary >= OP_COMPONENT) return scalar(a.of[a.count == 1 ? 0 : e->component]);
   if (e->unary == OP_NOT) return scalar(ir_unary(c->graph, IR_NOT, a.of[0]));
   for (int k = 0; k < a.count && e->unary == OP_NEG; k++)
