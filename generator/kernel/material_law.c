@@ -163,15 +163,16 @@ static bool suits_edges(const deck_lattice *l, const model *m, diagnostics *said
                 "the law `%s` is meant for whole families of a lattice: its line `for` does not "
                 "name `irregular`",
                 name);
-  else if (!law_calls(m->law, FUNCTION_UNIFORM_FORCE))
+  else if (!law_calls(m->law, FUNCTION_UNIFORM_FORCE) &&
+           !law_calls(m->law, FUNCTION_CORRESPONDENCE))
     diag_report(said, DIAG_CONFLICT, where,
                 "the law `%s` is not exact at edges: it does not make its force state by "
-                "`uniform_force`",
+                "`uniform_force` or `correspondence`",
                 name);
   else
     return true;
-  diag_hint(said, "edges = 'lattice' runs with every law; `splm_elastic` and `splm_concrete` have "
-                  "exact edges");
+  diag_hint(said, "edges = 'lattice' runs with every law; `splm_elastic`, `splm_concrete` and "
+                  "`correspondence` have exact edges");
   return false;
 }
 

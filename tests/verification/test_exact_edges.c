@@ -225,12 +225,14 @@ static void a_body_has_the_moduli(void **state) {
   assert_exact("splm_elastic", TURNED, ODD_BODY);
   assert_exact("splm_elastic", TURNED " setting = 'plane_strain'", ODD_BODY);
   assert_exact("splm_concrete", TURNED, ODD_BODY);
+  assert_exact("correspondence", TURNED, ODD_BODY);
   assert_exact("splm_elastic",
                "kind = 'square' shells = 2 spacing = '5 mm' thickness = '100 mm' rotation = 17",
                ODD_BODY);
   assert_exact("splm_elastic", "kind = 'fcc' shells = 2" IN_SPACE, BOX);
   assert_exact("splm_concrete", "kind = 'fcc' shells = 2" IN_SPACE, BOX);
   assert_exact("splm_elastic", "kind = 'cubic' shells = 2" IN_SPACE, BOX);
+  assert_exact("correspondence", "kind = 'fcc' shells = 2" IN_SPACE, BOX);
 }
 
 /* --- other motion ----------------------------------------------------------------------------- */

@@ -29,6 +29,7 @@ static const elastic_case cases[] = {
     {PLANE("'hexagonal' rotation = 17") OF("elastic_central"), 1.0 / 3},
     {PLANE("'hexagonal' rotation = 17") OF("elastic_micropolar"), 0.2},
     {PLANE("'hexagonal' rotation = 5") OF("splm_elastic"), 0.2},
+    {PLANE("'hexagonal' horizon = 2") OF("correspondence"), NAN}, /* not linear */
     {PLANE("'hexagonal'") OF("mplm_bilinear"), 0.2},
     {PLANE("'hexagonal'") OF("pmb"), NAN},
     {PLANE("'square' horizon = 3.015") OF("pmb"), NAN},
@@ -37,6 +38,7 @@ static const elastic_case cases[] = {
     {SPACE("'fcc' rotation = 30 axis = 1, 2, 0") OF("pmb"), NAN},
     {SPACE("'fcc' shells = 2") OF("splm_elastic"), NAN},
     {SPACE("'fcc' shells = 2") OF("eps"), NAN},
+    {SPACE("'fcc' shells = 2") OF("correspondence"), NAN},
     {SPACE("'fcc' shells = 2 rotation = 30 axis = 1, 2, 0") OF("mplm_space"), NAN},
 };
 

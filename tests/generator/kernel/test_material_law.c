@@ -127,7 +127,7 @@ static void exact_edges_need_a_law_that_has_them(void **state) {
       {"mplm_concrete",
        "`mplm_concrete` is a law of bonds, and a bond does not know which others its ends lack"},
       {"lps", "the law `lps` is not exact at edges: it does not make its force state by "
-              "`uniform_force`"},
+              "`uniform_force` or `correspondence`"},
       {SOURCE_DIR "/tests/generator/kernel/whole_families.plm",
        "the law `whole_families` is meant for whole families of a lattice: its line `for` does not "
        "name `irregular`"},
