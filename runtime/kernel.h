@@ -542,6 +542,11 @@ typedef struct pl_law {
      `varying` stand in arrays, like all of these. */
   int given_count;
   const int32_t *given; /* [given_count] their places in `parameters` */
+
+  /* Defaults that follow from other parameters' values: from `parameters`, SI, to `values`, of which
+     nothing else is written. Each reads only parameters above its own. NULL: all defaults are
+     numbers. pl_parameter.initial is what follows from the other defaults. */
+  void (*defaults)(const struct pl_law *law, const double *parameters, double *values);
 } pl_law;
 
 /* The one symbol that a compiled kernel exports. */
