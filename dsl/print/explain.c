@@ -162,7 +162,8 @@ static void put_bounds(const page *p, const bounds *b) {
   fputs(b->upper_open ? ")$" : "]$", p->out);
 }
 
-static void put_default(const page *p, const stmt *s) {
+static void put_default(const page *p, const symbol *of) {
+  const stmt *s = of->declared;
   if (!s->value) {
     fputs("required", p->out);
     return;
@@ -170,6 +171,7 @@ static void put_default(const page *p, const stmt *s) {
   fputc('$', p->out);
   put_math(p, s->value);
   fputc('$', p->out);
+  if (of->follows) fprintf(p->out, " (%.6g in SI units)", of->initial);
 }
 
 /* Parameters, or the fields that a deck gives in place and time. */
@@ -189,7 +191,7 @@ static void put_parameters(const page *p, const char *title, bool fields) {
     if (s->component_of) s = s->component_of;
     put_name_cells(p, s->name);
     put_dimension_cell(p, s->dim);
-    put_default(p, s->declared);
+    put_default(p, s);
     next_cell(p);
     put_bounds(p, &s->declared->in);
     next_cell(p);

@@ -45,6 +45,7 @@ typedef enum context {
   IN_RULE,
   IN_CONSTANT, /* nothing that moves */
   IN_DEFAULT,  /* numbers only */
+  IN_FORMULA,  /* numbers and the parameters above: the default of a parameter */
   IN_BOUNDS    /* numbers and parameters */
 } context;
 

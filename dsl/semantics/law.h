@@ -40,6 +40,7 @@ typedef struct symbol {
   const char *doc;                   /* description or NULL */
   double initial;                    /* PARAMETER: default, STATE: initial value; SI */
   bool has_default;                  /* PARAMETER */
+  bool follows; /* PARAMETER: its default reads parameters above it; `initial` has theirs */
   struct symbol *option;             /* CHOICE: its option (NULL for settings) */
   /* STATE: the tensor, PARAMETER: the vector that it is a component of, or NULL */
   const struct symbol *component_of;

@@ -8,24 +8,43 @@
 #include "dsl/base/powers.h"
 #include "dsl/semantics/decided.h"
 
+enum { MOST_OWN_ARGUMENTS = 16 };
+
 /* The function that a call has a value of numbers for, or NULL. */
 static const builtin_function_info *plain_function(const expr *e) {
   const builtin_function_info *f = e->builtin < 0 ? NULL : &builtin_functions[e->builtin];
   return f && (f->of_one || f->of_many) ? f : NULL;
 }
 
-static double call_value(const expr *e, const double *values) {
+/* What names stand for: values of parameters, or NULL; of a function's arguments, or NULL. */
+typedef struct known_values {
+  const double *parameters, *arguments;
+} known_values;
+
+static double value_of(const expr *e, known_values v);
+
+/* The body of the law's own function with its arguments. */
+static double own_value(const expr *e, known_values v) {
+  double arguments[MOST_OWN_ARGUMENTS];
+  if (!e->symbol || e->argument_count > MOST_OWN_ARGUMENTS) return NAN;
+  for (int i = 0; i < e->argument_count; i++)
+    arguments[i] = value_of(e->arguments[i].value, v);
+  return value_of(e->symbol->declared->value, (known_values){v.parameters, arguments});
+}
+
+static double call_value(const expr *e, known_values v) {
   const builtin_function_info *f = plain_function(e);
+  if (e->builtin < 0) return own_value(e, v);
   if (!f) return NAN;
-  double x = law_constant_value(e->arguments[0].value, values);
+  double x = value_of(e->arguments[0].value, v);
   if (f->of_one) return f->of_one(x);
   for (int i = 1; i < e->argument_count; i++)
-    x = f->of_many(x, law_constant_value(e->arguments[i].value, values));
+    x = f->of_many(x, value_of(e->arguments[i].value, v));
   return x;
 }
 
-static double binary_value(const expr *e, const double *values) {
-  double a = law_constant_value(e->left, values), b = law_constant_value(e->right, values);
+static double binary_value(const expr *e, known_values v) {
+  double a = value_of(e->left, v), b = value_of(e->right, v);
   switch (e->binary) {
   case OP_ADD:
     return a + b;
@@ -51,39 +70,57 @@ static double number_value(const expr *e) {
   return e->number * u.factor;
 }
 
-static double name_value(const expr *e, const double *values) {
+static double name_value(const expr *e, known_values v) {
   const symbol *s = e->symbol;
   if (s && s->kind == SYMBOL_QUANTITY && s->index == QUANTITY_PI) return M_PI;
-  return values && s && s->kind == SYMBOL_PARAMETER ? values[s->index] : NAN;
+  if (s && s->kind == SYMBOL_ARGUMENT) return v.arguments ? v.arguments[s->index] : NAN;
+  return v.parameters && s && s->kind == SYMBOL_PARAMETER ? v.parameters[s->index] : NAN;
 }
 
 /* Of a parameter that is a vector. */
-static double axis_value(const expr *e, const double *values) {
+static double axis_value(const expr *e, known_values v) {
   const symbol *s = e->left->kind == EXPR_NAME ? e->left->symbol : NULL;
-  if (!values || !s || s->kind != SYMBOL_PARAMETER) return NAN;
-  return values[s->index + e->component];
+  if (!v.parameters || !s || s->kind != SYMBOL_PARAMETER) return NAN;
+  return v.parameters[s->index + e->component];
 }
 
-double law_constant_value(const expr *e, const double *values) {
+static double value_of(const expr *e, known_values v) {
   switch (e->kind) {
   case EXPR_NUMBER:
     return number_value(e);
   case EXPR_NAME:
-    return name_value(e, values);
+    return name_value(e, v);
   case EXPR_UNARY: {
-    double a = law_constant_value(e->left, values);
-    if (e->unary == OP_AXIS) return axis_value(e, values);
+    double a = value_of(e->left, v);
+    if (e->unary == OP_AXIS) return axis_value(e, v);
     return e->unary == OP_NEG ? -a : a;
   }
   case EXPR_BINARY:
-    return binary_value(e, values);
+    return binary_value(e, v);
   case EXPR_CALL:
-    return call_value(e, values);
+    return call_value(e, v);
   case EXPR_CASES:
   case EXPR_HOLE:
     return NAN;
   }
   return NAN;
+}
+
+double law_constant_value(const expr *e, const double *values) {
+  return value_of(e, (known_values){values, NULL});
+}
+
+bool law_reads_parameter(const expr *e, const symbol *parameter) {
+  if (!e) return false;
+  if (e->kind == EXPR_NAME)
+    return e->symbol && e->symbol->kind == SYMBOL_PARAMETER &&
+           (!parameter || e->symbol == parameter);
+  bool reads = law_reads_parameter(e->left, parameter) || law_reads_parameter(e->right, parameter);
+  if (e->kind == EXPR_CALL && e->builtin < 0 && e->symbol)
+    reads = reads || law_reads_parameter(e->symbol->declared->value, parameter);
+  for (int i = 0; i < e->argument_count && !reads; i++)
+    reads = law_reads_parameter(e->arguments[i].value, parameter);
+  return reads;
 }
 
 bool law_is_plain(const expr *e) {
@@ -97,7 +134,9 @@ bool law_is_plain(const expr *e) {
     return e->binary > OP_GE && e->binary != OP_CONTRACT && law_is_plain(e->left) &&
            law_is_plain(e->right);
   case EXPR_CALL:
-    if (!plain_function(e)) return false;
+    if (e->builtin < 0 ? !e->symbol || !law_is_plain(e->symbol->declared->value)
+                       : !plain_function(e))
+      return false;
     for (int i = 0; i < e->argument_count; i++)
       if (!law_is_plain(e->arguments[i].value)) return false;
     return true;

@@ -10,8 +10,11 @@ C_LINKAGE_BEGIN
 /* NAN where `values` is NULL and it reads a parameter, and where it is not plain. */
 double law_constant_value(const expr *e, const double *values);
 
-/* Is it made of numbers, names, + - * / ** and functions with a value of numbers? */
+/* Is it made of numbers, names, + - * / ** and functions with a value of numbers, the law's own
+   among them? */
 bool law_is_plain(const expr *e);
+/* Does it read that parameter; NULL: any? */
+bool law_reads_parameter(const expr *e, const symbol *parameter);
 /* Is it plain, or cases of such values that options and the lattice decide? */
 bool law_is_bound(const expr *e);
 

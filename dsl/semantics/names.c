@@ -256,6 +256,14 @@ static bool context_allows(checker *ck, const expr *e, const symbol *s) {
              "a default or initial value is made of numbers only");
     diag_hint(ck->d, "for a value that follows from others write `constant x = ...`");
     return false;
+  case IN_FORMULA:
+    if (s->kind == SYMBOL_PARAMETER && !symbol_is_field(s) && !s->component_of &&
+        !expr_is_vector(s->declared->value))
+      return true;
+    complain(ck, DIAG_PLACEMENT, e->name_where,
+             "a default is made of numbers and of parameters above it");
+    diag_hint(ck->d, "for a value that follows from others write `constant x = ...`");
+    return false;
   case IN_BOUNDS:
     if ((s->kind == SYMBOL_PARAMETER && !symbol_is_field(s)) || s->kind == SYMBOL_CHOICE ||
         s->kind == SYMBOL_OPTION)

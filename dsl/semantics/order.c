@@ -64,7 +64,8 @@ static void reach_names(search *s, const expr *e) {
 static bool search_run(search *s, const entry *goal) {
   while (s->count > 0) {
     entry *e = s->stack[--s->count];
-    const stmt *rule = e->symbol.rule;
+    const bool parameter = e->symbol.kind == SYMBOL_PARAMETER; /* whose default may be a formula */
+    const stmt *rule = parameter ? e->symbol.declared : e->symbol.rule;
     if (e == goal) return true;
     if (!rule) continue;
     s->reader = e;
@@ -101,7 +102,10 @@ static void report_self(checker *ck, const expr *e, const entry *self) {
     return;
   }
   complain(ck, DIAG_CYCLE, e->name_where, "`%s` is defined by itself", e->name);
-  diag_hint(ck->d, "to read its value of the last step declare `state %s on %s = 0` above", e->name,
+  if (self->symbol.kind == SYMBOL_PARAMETER)
+    diag_hint(ck->d, "its default may read the parameters above it, or is a number");
+  else
+    diag_hint(ck->d, "to read its value of the last step declare `state %s on %s = 0` above", e->name,
             placement_name(natural_place(ck)));
 }
 
@@ -123,7 +127,9 @@ void report_undefined(checker *ck, const expr *e, entry *target) {
       for (const entry *x = self; x; x = x->reached_from)
         entry_of(&x->symbol)->in_cycle = true;
       diag_note(ck->d, target->symbol.where, "`%s` is defined here", e->name);
-      if (self->symbol.kind != SYMBOL_FUNCTION)
+      if (self->symbol.kind == SYMBOL_PARAMETER)
+        diag_hint(ck->d, "one of them must have a number as its default");
+      else if (self->symbol.kind != SYMBOL_FUNCTION)
         diag_hint(ck->d, "one of them must be a state, whose value of the last step can be read");
       return;
     }

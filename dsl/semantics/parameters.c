@@ -25,9 +25,40 @@ static value check_plain(checker *ck, expr *e, context where) {
   return BROKEN;
 }
 
+/* Of the parameters above, which are known by now; NAN of those without. */
+static double *defaults_so_far(checker *ck) {
+  const symbol_list *list = &ck->law->parameters;
+  double *defaults = arena_alloc(ck->memory, ((size_t)list->count + 1) * sizeof(double));
+  for (int i = 0; i < list->count; i++)
+    defaults[i] = list->items[i]->has_default ? list->items[i]->initial : NAN;
+  return defaults;
+}
+
+/* The first parameter that a default reads and that has none itself, or NULL. */
+static const symbol *without_default(const expr *e) {
+  const symbol *found = NULL;
+  if (!e) return NULL;
+  if (e->kind == EXPR_NAME && e->symbol && e->symbol->kind == SYMBOL_PARAMETER &&
+      !e->symbol->has_default)
+    return e->symbol;
+  if (!found) found = without_default(e->left);
+  if (!found) found = without_default(e->right);
+  for (int i = 0; i < e->argument_count && !found; i++)
+    found = without_default(e->arguments[i].value);
+  return found;
+}
+
 static bool read_finite(checker *ck, const expr *e, double *number) {
-  *number = law_constant_value(e, NULL);
+  *number = law_constant_value(e, defaults_so_far(ck));
   if (isfinite(*number)) return true;
+  const symbol *missing = without_default(e);
+  if (missing) {
+    complain(ck, DIAG_BAD_NUMBER, e->where, "this default reads `%s`, which has none",
+             missing->name);
+    diag_note(ck->d, missing->where, "`%s` is declared here", missing->name);
+    diag_hint(ck->d, "give `%s` a default, too: the deck may set either", missing->name);
+    return false;
+  }
   complain(ck, DIAG_BAD_NUMBER, e->where, "this is not a finite number");
   return false;
 }
@@ -89,8 +120,9 @@ void check_parameter(checker *ck, stmt *s) {
   value v = scalar_of(DIMENSIONLESS, ON_BODY);
   unit u;
   if (s->value) {
-    v = check_plain(ck, s->value, IN_DEFAULT);
+    v = check_plain(ck, s->value, s->kind == STMT_FIELD ? IN_DEFAULT : IN_FORMULA);
     if (!v.broken && v.shape != SHAPE_SCALAR) v = BROKEN;
+    e->symbol.follows = !v.broken && !v.unknown && law_reads_parameter(s->value, NULL);
     if (!v.broken && !v.unknown && !read_finite(ck, s->value, &e->symbol.initial)) v = BROKEN;
     e->symbol.has_default = !v.broken && !v.unknown;
   } else if (s->unit_text) {
@@ -236,9 +268,7 @@ static void check_sizes(checker *ck) {
 
 void check_bounds(checker *ck) {
   const symbol_list *parameters = &ck->law->parameters;
-  double *defaults = arena_alloc(ck->memory, (size_t)parameters->count * sizeof(double));
-  for (int i = 0; i < parameters->count; i++)
-    defaults[i] = parameters->items[i]->has_default ? parameters->items[i]->initial : NAN;
+  const double *defaults = defaults_so_far(ck);
   for (int i = 0; i < parameters->count; i++) {
     const symbol *p = parameters->items[i];
     const bounds *in = &p->declared->in;

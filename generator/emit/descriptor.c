@@ -128,6 +128,7 @@ static void write_law(c_text *out, const kernel_plan *p) {
   c_text_number(out, p->divisions_per_bond);
   c_text_add(out, ",\n    .prepare = prepare,\n    .bounds = bounds,\n    .failed_field = %d,\n",
              p->law->failed ? p->law->failed->index : -1);
+  if (p->programs[PROGRAM_DEFAULTS].pass_count) c_text_add(out, "    .defaults = defaults,\n");
 }
 
 static void write_program(c_text *out, const kernel_plan *of, const kernel_program *p) {

@@ -135,8 +135,21 @@ static void write_size_bounds(emitter *e) {
   expression_close(e);
 }
 
+static void write_defaults(emitter *e) {
+  if (!e->plan->programs[PROGRAM_DEFAULTS].pass_count) return;
+  expression_open_segment(e, &of_parameters, plan_segment(e->plan, PROGRAM_DEFAULTS));
+  say(e, SAY_DEFAULTS);
+  expression_lines(e);
+  for (int k = 0; k < e->root_count; k++)
+    say(e, SAY_STORE, "  ", spell(e, SAY_DEFAULT, numeral(e, e->roots[k].index)),
+        expression_whole(e, e->roots[k].node));
+  say(e, SAY_LAST_END);
+  expression_close(e);
+}
+
 void law_functions_of_parameters(emitter *e) {
   write_prepare(e);
+  write_defaults(e);
   write_bounds(e);
   write_size_bounds(e);
 }

@@ -37,12 +37,22 @@ static void put_bounds(json *j, const law_facts *f, int p) {
   json_object_end(j);
 }
 
+/* The formula that the default follows by; null where it is a number or there is none. */
+static void put_default(json *j, const law *l, const symbol *s) {
+  char text[400];
+  const span w = s->follows ? s->declared->value->where : (span){0, 0, 0};
+  snprintf(text, sizeof text, "%.*s", (int)(w.end - w.begin),
+           s->follows ? l->sources->items[w.file].text + w.begin : "");
+  json_put_text(j, "default", s->follows ? text : NULL);
+}
+
 static void put_parameters(json *j, const law_facts *f) {
   const symbol_list *list = &f->model.law->parameters;
   json_put_array(j, "parameters");
   for (int p = 0; p < list->count; p++) {
     open_symbol(j, list->items[p]);
     json_put_number(j, "value", f->given[p] ? f->values[p] : NAN);
+    put_default(j, f->model.law, list->items[p]);
     put_bounds(j, f, p);
     json_put_bool(j, "field", symbol_is_field(list->items[p]));
     json_object_end(j);

@@ -7,6 +7,13 @@
 #include "dsl/semantics/law_limits.h"
 #include "generator/facts/point_facts.h"
 
+/* The formula as it is written. */
+static void print_default(const law *l, const symbol *s) {
+  const span w = s->declared->value->where;
+  printf("%sby default %.*s", s->doc ? "; " : "", (int)(w.end - w.begin),
+         l->sources->items[w.file].text + w.begin);
+}
+
 static void print_parameter(const law_facts *f, int p) {
   const law *l = f->model.law;
   const symbol *s = l->parameters.items[p];
@@ -14,8 +21,9 @@ static void print_parameter(const law_facts *f, int p) {
   dim_unit(s->dim, unit_text, sizeof unit_text);
   if (s->declared->in.given) law_parameter_bounds(l, p, f->values, interval, sizeof interval);
   if (f->given[p]) snprintf(value, sizeof value, "%.6g", f->values[p]);
-  printf("  %-12s %-12s %-10s %-18s %s\n", s->name, value, unit_text, interval,
-         s->doc ? s->doc : "");
+  printf("  %-12s %-12s %-10s %-18s %s", s->name, value, unit_text, interval, s->doc ? s->doc : "");
+  if (s->follows) print_default(l, s);
+  printf("\n");
 }
 
 /* Parameters, or the fields that a deck gives in place and time. */

@@ -107,6 +107,12 @@ static void run_bounds(const pl_law *kernel, const double *parameters, double *l
   give_back(w);
 }
 
+static void run_defaults(const pl_law *kernel, const double *parameters, double *values) {
+  worker *w = borrow(kernel);
+  interpreted_defaults(w->run, parameters, values);
+  give_back(w);
+}
+
 static void run_size_bounds(const pl_law *kernel, const double *parameters, double *lower,
                             double *upper, unsigned char *low_open, unsigned char *high_open) {
   const interpreted *p = kernel->context;
@@ -299,6 +305,7 @@ static void describe(interpreted *p) {
       .divisions_per_bond = plan->divisions_per_bond,
       .prepare = run_prepare,
       .bounds = run_bounds,
+      .defaults = plan->programs[PROGRAM_DEFAULTS].pass_count ? run_defaults : NULL,
       .context = p,
   };
   describe_given(p);

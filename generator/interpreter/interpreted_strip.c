@@ -218,3 +218,11 @@ void interpreted_bounds(runner *r, program_task task, const double *parameters, 
                                     : upper)[task == PROGRAM_BOUNDS ? a->roots[k].index : 0] =
         r->result[k][0];
 }
+
+void interpreted_defaults(runner *r, const double *parameters, double *values) {
+  const segment *a = plan_segment(r->plan, PROGRAM_DEFAULTS);
+  runner_take_parameters(r, parameters);
+  evaluate(r, PROGRAM_DEFAULTS, 1);
+  for (int k = 0; k < a->root_count; k++)
+    values[a->roots[k].index] = r->result[k][0];
+}

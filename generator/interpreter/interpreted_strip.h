@@ -15,5 +15,7 @@ void interpreted_prepare(runner *r, const double *parameters, const pl_bond_clas
 /* `task`: PROGRAM_BOUNDS or PROGRAM_SIZE_BOUNDS. */
 void interpreted_bounds(runner *r, program_task task, const double *parameters, double *lower,
                         double *upper);
+/* Of parameters whose defaults read others; the law has such. */
+void interpreted_defaults(runner *r, const double *parameters, double *values);
 
 #endif

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/semantics/law_limits.h"
 #include "dsl/semantics/law_reads.h"
 #include "dsl/semantics/law_variant.h"
 #include "dsl/syntax/parse.h"
@@ -292,18 +293,34 @@ static int find_varying(const deck_material *m, int field, const law *l, diagnos
   return found;
 }
 
-/* Value of a parameter in a material, SI; what is wrong with it, others say. */
-static double value_in(const deck_material *m, const symbol *parameter) {
+static const deck_assignment *assignment_of(const deck_material *m, const symbol *parameter) {
   for (int k = 0; k < m->assignment_count; k++)
-    if (strcasecmp(m->assignments[k].name, parameter->name) == 0) return m->assignments[k].value;
-  return parameter->has_default ? parameter->initial : 0;
+    if (strcasecmp(m->assignments[k].name, parameter->name) == 0) return &m->assignments[k];
+  return NULL;
 }
 
-/* Some region has another value than the lattice. */
-static bool differs_by_region(const deck_material *m, const symbol *parameter) {
-  for (int k = 0; k < m->regional_count; k++)
-    if (value_in(m->regional[k], parameter) != value_in(m, parameter)) return true;
-  return false;
+/* Values of parameters in a material, SI [parameters]; what is wrong with them, others say. */
+static void values_in(const deck_material *m, const law *l, double *values) {
+  for (int p = 0; p < l->parameters.count; p++) {
+    const symbol *s = l->parameters.items[p];
+    const deck_assignment *a = assignment_of(m, s);
+    values[p] = a            ? a->value
+                : s->follows ? law_constant_value(s->declared->value, values)
+                             : (s->has_default ? s->initial : 0);
+  }
+}
+
+/* Marks [parameters] those of which some region has another value than the lattice. */
+static void mark_regional(const deck_material *m, const law *l, bool *marks) {
+  const size_t n = (size_t)l->parameters.count + 1;
+  double *values = must_calloc(2 * n, sizeof *values);
+  values_in(m, l, values);
+  for (int k = 0; k < m->regional_count; k++) {
+    values_in(m->regional[k], l, values + n);
+    for (int p = 0; p < l->parameters.count; p++)
+      marks[p] = marks[p] || values[n + (size_t)p] != values[p];
+  }
+  free(values);
 }
 
 /* A &field names it. */
@@ -336,6 +353,25 @@ static bool changes_in_time(const deck_material *m, const symbol *parameter) {
   return false;
 }
 
+/* A default that follows from what differs from place to place would have to differ, too. */
+static bool default_is_uniform(const deck_material *m, const law *l, int p, diagnostics *said) {
+  const symbol *s = l->parameters.items[p];
+  if (!s->follows || assignment_of(m, s) || has_field(m, s)) return true;
+  for (int k = 0; k < p; k++) {
+    const symbol *from = l->parameters.items[k];
+    if (!(has_field(m, from) || is_placed(m, from)) ||
+        !law_reads_parameter(s->declared->value, from))
+      continue;
+    diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),
+                "`%s` follows by default from `%s`, which differs from place to place here",
+                s->name, from->name);
+    diag_hint(said, "give `%s` in the deck: a number, or a formula of the place of its own",
+              s->name);
+    return false;
+  }
+  return true;
+}
+
 /* The parameters that random fields, regions or formulas make differ, as the law orders them; then
    once more those that change in time. */
 static bool find_variation(const deck_material *m, const deck_lattice *l, model *out,
@@ -346,13 +382,17 @@ static bool find_variation(const deck_material *m, const deck_lattice *l, model 
   *v = (law_variation){.varying = varying};
   for (int k = 0; k < m->varying_count; k++)
     good = find_varying(m, k, out->law, said) >= 0 && good;
-  for (int p = 0; p < all->count && good; p++)
-    if (has_field(m, all->items[p]) || differs_by_region(m, all->items[p]) ||
-        is_placed(m, all->items[p]))
+  bool *regional = must_calloc((size_t)all->count + 1, sizeof *regional);
+  mark_regional(m, out->law, regional);
+  for (int p = 0; p < all->count && good; p++) {
+    good = default_is_uniform(m, out->law, p, said);
+    if (has_field(m, all->items[p]) || regional[p] || is_placed(m, all->items[p]))
       varying[v->varying_count++] = p;
+  }
   for (int p = 0; p < all->count && good; p++)
     if (changes_in_time(m, all->items[p])) varying[v->varying_count + v->before_count++] = p;
   v->varying_count += v->before_count;
+  free(regional);
   v->shares = m->beside && out->law->tree->law == LAW_STATE;
   v->masses = m->beside;
   v->sizes = l && l->graded;

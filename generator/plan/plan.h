@@ -40,6 +40,7 @@ typedef enum program_task {
   PROGRAM_TANGENT,     /* its derivatives; of points the tangent */
   PROGRAM_BOUNDS,      /* of parameters */
   PROGRAM_SIZE_BOUNDS, /* of the size of cells */
+  PROGRAM_DEFAULTS,    /* of parameters, those that read others */
   PROGRAM_COUNT
 } program_task;
 

@@ -297,11 +297,25 @@ static bool want_bounds(kernel_plan *p, segment *a, const bounds *in, int k, dia
   return true;
 }
 
+static bool want_defaults(kernel_plan *p, diagnostics *d) {
+  const symbol_list *list = &p->law->parameters;
+  segment *a = NULL;
+  for (int k = 0; k < list->count; k++) {
+    if (!list->items[k]->follows) continue;
+    if (!a) a = plan_single(p, PROGRAM_DEFAULTS, "defaults", OVER_BODY);
+    const ir_node n = lower_bound(p->graph, p->law, list->items[k]->declared->value, NAN, d);
+    if (n == IR_NONE) return false;
+    want(p, a, n, TO_OUT, k);
+  }
+  return true;
+}
+
 bool plan_bounds(kernel_plan *p, diagnostics *d) {
   const law *l = p->law;
   segment *a = plan_single(p, PROGRAM_BOUNDS, "bounds", OVER_BODY);
   for (int k = 0; k < l->parameters.count; k++)
     if (!want_bounds(p, a, &l->parameters.items[k]->declared->in, k, d)) return false;
+  if (!want_defaults(p, d)) return false;
   if (!l->sized) return true;
   a = plan_single(p, PROGRAM_SIZE_BOUNDS, "size_bounds", OVER_BODY);
   return want_bounds(p, a, &l->sized->in, l->parameters.count, d);

@@ -65,6 +65,9 @@
     "double *lower,\n"                                                                             \
     "    double *upper, unsigned char *low_open, unsigned char *high_open) {\n"                    \
     "  (void)law, (void)parameters, (void)lower, (void)upper, (void)low_open, (void)high_open;\n") \
+  X(DEFAULTS, "PL_RARE static void defaults(const pl_law *law, const double *parameters, "         \
+    "double *values) {\n  (void)law, (void)parameters;\n")                                         \
+  X(DEFAULT, "values[$1]")                                                                         \
   X(PARAMETER, "parameters[$1]")                                                                   \
   X(CLASS_CHORD, "bonds->chord[$1]")                                                               \
   X(LOWER_BOUND, "  lower[$1] = $2, low_open[$1] = $3;\n")                                         \

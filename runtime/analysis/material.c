@@ -156,20 +156,32 @@ static bool assign(const deck_assignment *a, const pl_law *law, double *values, 
   return check_unit(a, &law->parameters[p], d);
 }
 
+/* That of parameter p, which may follow from those above it; `defaults` [parameter_count] is there to
+   be written to. */
+static double default_of(const pl_law *law, int p, const double *values, double *defaults) {
+  defaults[p] = law->parameters[p].initial;
+  if (PL_HAS(law, defaults) && law->defaults) law->defaults(law, values, defaults);
+  return defaults[p];
+}
+
 /* Values the deck does not give: defaults. All that are missing are reported. */
 static bool fill_defaults(const deck_material *m, const pl_law *law, double *values,
                           const bool *given, diagnostics *d) {
   bool good = true;
+  double *defaults = must_calloc((size_t)law->parameter_count + 1, sizeof *defaults);
+  for (int p = 0; p < law->parameter_count; p++) /* what is not filled yet is read as well */
+    if (!given[p]) values[p] = law->parameters[p].initial;
   for (int p = 0; p < law->parameter_count; p++) {
     const pl_parameter *parameter = &law->parameters[p];
     if (given[p]) continue;
-    values[p] = parameter->initial;
+    values[p] = default_of(law, p, values, defaults);
     if (parameter->has_default) continue;
     good = false;
     diag_report(d, DIAG_MISSING_KEY, m->item.where, "the law `%s` needs a value for `%s`%s%s%s",
                 law->name, parameter->name, parameter->doc && *parameter->doc ? " (" : "",
                 parameter->doc ? parameter->doc : "", parameter->doc && *parameter->doc ? ")" : "");
   }
+  free(defaults);
   return good;
 }
 
