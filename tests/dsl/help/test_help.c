@@ -219,7 +219,7 @@ static void all_topics_are_served(void **state) {
     size_t length;
     FILE *out = open_memstream(&text, &length);
     assert_true(help_show(names[i], out) > 0);
-  assert_true(help_show("rest_stretch", out) == 1 && help_show("total_stretch", out) == 1);
+    assert_true(help_show("rest_stretch", out) == 1 && help_show("total_stretch", out) == 1);
     fclose(out);
     assert_true(length > 40);
     assert_null(strstr(text, "```"));
