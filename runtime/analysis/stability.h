@@ -31,10 +31,10 @@ void stability_limit_joint(const struct interaction_law *laws, int count, const 
    rigid motions is larger. */
 #define STABILITY_LEAST (-1e-6)
 
-/* The same, of a body whose bonds carry forces at rest (`rest stretch`): these resist or help a bond
-   that turns, by N/L to its EA/L, and a rigid rotation, too, until the body has come to its rest
-   lengths. A free triangle of springs with rest stretch p has least = -p and a prestrain of 0.58 p,
-   a long chain -p and 0.25 p. */
+/* The same, of a body whose bonds carry forces at rest (`rest stretch`): these resist or help a
+   bond that turns, by N/L to its EA/L, and a rigid rotation, too, until the body has come to its
+   rest lengths. A free triangle of springs with rest stretch p has least = -p and a prestrain of
+   0.58 p, a long chain -p and 0.25 p. */
 bool stability_at_rest(const step_limit *limit);
 
 /* Largest number of nine significant digits that is not above x by more than a part in 1e12. The

@@ -18,13 +18,13 @@
    force. Moments count over a spacing.
 
    A body that shrinks or swells by itself (`rest stretch`) needs no forces. Where loads and
-   reactions are less than 1e-5 of the largest forces between particles so far, that part of these is
-   what the unbalance is compared with: the slenderest bodies that are loaded bear more. A body is
-   at rest, too, when rounding alone is left, a strain of 1e-15.
+   reactions are less than 1e-5 of the largest forces between particles so far, that part of these
+   is what the unbalance is compared with: the slenderest bodies that are loaded bear more. A body
+   is at rest, too, when rounding alone is left, a strain of 1e-15.
 
-   Between increments the body may have become stiffer, by its age, say: after increments 1, 2, 4, 8,
-   ... its present stiffness is looked at, and after each one as long as it grows. Then the step is
-   chosen anew, for what another such increment makes of it. It never grows again.
+   Between increments the body may have become stiffer, by its age, say: after increments 1, 2, 4,
+   8, ... its present stiffness is looked at, and after each one as long as it grows. Then the step
+   is chosen anew, for what another such increment makes of it. It never grows again.
 
    Static runs (mesh_rest.h) have increments, too, of one step each, which solves K u = F. */
 #ifndef PERILAT_RUNTIME_RELAXATION_H

@@ -1,6 +1,6 @@
-/* Bodies that harden while they are brought to rest: the time step, which the virgin body has given,
-   becomes too long. Theory: what comes under a load F at the age t stretches by F/k(t), and what
-   solidifies later carries nothing of it. */
+/* Bodies that harden while they are brought to rest: the time step, which the virgin body has
+   given, becomes too long. Theory: what comes under a load F at the age t stretches by F/k(t), and
+   what solidifies later carries nothing of it. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

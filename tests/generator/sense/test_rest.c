@@ -12,8 +12,8 @@
 
 #include "dsl/semantics/law_check.h"
 #include "dsl/syntax/parse.h"
-#include "generator/sense/sense.h"
 #include "generator/kernel/model.h"
+#include "generator/sense/sense.h"
 
 static bool is_late(const char *lines) {
   char text[1000];
