@@ -187,6 +187,16 @@ static const symbol *first_of(const expr *e, is_meant *meant, int *looks) {
   return found;
 }
 
+void hint_rate(checker *ck, const expr *rate) {
+  const expr *by = rate->kind == EXPR_BINARY && rate->binary == OP_DIV ? rate->right : NULL;
+  const symbol *s = by && by->kind == EXPR_NAME ? by->symbol : NULL;
+  if (s && s->kind == SYMBOL_PARAMETER)
+    diag_hint(ck->d, "a rate is per second: divide by a time; `%s` is %s and lacks one", s->name,
+              describe(ck, by->dim));
+  else
+    diag_hint(ck->d, "a rate is per second: divide by a time");
+}
+
 /* Where `e` has a time too much, and a state of that kind in it, its rate is named, once. */
 static bool blame_rate(checker *ck, const expr *e, dimension has, dimension needs) {
   const dimension second = dimension_of("s");
@@ -197,7 +207,7 @@ static bool blame_rate(checker *ck, const expr *e, dimension has, dimension need
   entry_of(s)->blamed = true;
   complain(ck, DIAG_UNITS, s->rule->value->where, "by its rate `%s` is %s, but it is used as %s",
            s->name, describe(ck, told), describe(ck, dim_div(told, second)));
-  diag_hint(ck->d, "a rate is per second: divide by a time");
+  hint_rate(ck, s->rule->value);
   diag_note(ck->d, e->where, "it is used here");
   return true;
 }

@@ -19,6 +19,9 @@ value agree(checker *ck, span where, expr *a, value va, expr *b, value vb, const
 bool expect(checker *ck, expr *e, value v, dimension dim, shape s, const char *what);
 bool expect_scalar(checker *ck, expr *e, value v, const char *what);
 
+/* To a rate that has the unit of its state: that it lacks a time, and perhaps which parameter. */
+void hint_rate(checker *ck, const expr *rate);
+
 const char *describe(checker *ck, dimension dim); /* "a stress (Pa)" */
 const char *shape_words(shape s);                 /* "a tensor" */
 /* The written text of an expression in quotes when it is short, otherwise `otherwise`. */

@@ -336,7 +336,7 @@ static void check_rate(checker *ck, stmt *s) {
   const dimension wanted = dim_div(field->type.dim, second);
   if (!expect(ck, s->value, v, wanted, field->type.shape, what) && !v.zero &&
       v.shape == field->type.shape && dim_equal(v.dim, field->type.dim))
-    diag_hint(ck->d, "a rate is per second: divide by a time");
+    hint_rate(ck, s->value);
 }
 
 static void check_output(checker *ck, stmt *s) {
