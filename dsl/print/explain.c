@@ -276,6 +276,14 @@ static void put_fields(const page *p) {
 
 /* --- quantities that the law reads ------------------------------------------------------------ */
 
+/* From what it is measured. */
+static void put_rest(const page *p, const char *quantity) {
+  const symbol *rest = p->law->rest;
+  if (!rest || strcmp(quantity, law_resting(p->law->tree->law)) != 0) return;
+  put_text(p, "; less ");
+  put_code(p, rest->name);
+}
+
 static void put_quantities(const page *p) {
   static const char *const titles[] = {"symbol", "name", "unit", "meaning"};
   bool read[QUANTITY_COUNT] = {false}, any = false;
@@ -297,7 +305,7 @@ static void put_quantities(const page *p) {
     put_name_cells(p, builtin_quantities[q].name);
     put_unit_cell(p, builtin_quantities[q].unit);
     put_text(p, builtin_quantities[q].meaning);
-    if (q == QUANTITY_STRETCH && p->law->rest) put_text(p, ", less the rest stretch");
+    put_rest(p, builtin_quantities[q].name);
     end_row(p);
   }
   end_table(p);

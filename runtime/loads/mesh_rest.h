@@ -5,9 +5,9 @@
    Where laws have a stress without strain (pl_law.affine), the points push, too: with f the forces
    of the points where the last increment has left them, and what laws are given now,
    K du = F + f, which is exact as K is the same at all strains. Between two increments the rest
-   state goes on evenly; so what it gives is the mean of what stored energy would change by at either
-   place. What was out of balance at the start is let go at the first increment: it does half of the
-   work of a spring's force, which is taken as by damping. */
+   state goes on evenly; so what it gives is the mean of what stored energy would change by at
+   either place. What was out of balance at the start is let go at the first increment: it does half
+   of its work on the way, which is taken as by damping. */
 #ifndef PERILAT_RUNTIME_MESH_REST_H
 #define PERILAT_RUNTIME_MESH_REST_H
 
