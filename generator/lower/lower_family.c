@@ -237,9 +237,14 @@ static ir_node uniform_force(ir *g, const law *l, components sigma) {
 
 /* --- calls ------------------------------------------------------------------------------------ */
 
-static components norm(lowering *c, components a) {
+/* Of a family's vectors as a whole the value is the particle's, and what stands in it is not. */
+static components norm(lowering *c, const expr *e, components a) {
   ir *g = c->graph;
-  if (a.count > 1) return scalar(ir_unary(g, IR_SQRT, tensor_contract(g, a, a)));
+  if (a.count > 1) {
+    ir_node square = tensor_contract(g, a, a);
+    if (e->place == ON_PARTICLE && !ir_is_of_particle(g, square)) square = family_sum(g, square);
+    return scalar(ir_unary(g, IR_SQRT, square));
+  }
   if (!lower_is_state_law(c)) return scalar(ir_unary(g, IR_ABS, a.of[0])); /* bending in a plane */
   return scalar(ir_unary(g, IR_SQRT, family_sum(g, ir_mul(g, a.of[0], a.of[0]))));
 }
@@ -265,7 +270,7 @@ components lower_family_call(lowering *c, const expr *e, const components *a) {
   case FUNCTION_MAX:
     return scalar(family_extreme(g, a->of[0], IR_FAMILY_MAX));
   case FUNCTION_NORM:
-    return norm(c, a[0]);
+    return norm(c, e, a[0]);
   case FUNCTION_SUM:
     return sum_of(g, a[0]);
   case FUNCTION_MEAN:

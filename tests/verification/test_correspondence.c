@@ -228,10 +228,10 @@ static void an_energy_alone_gives_the_same(void **state) {
     for (int a = 0; a < 4; a++)
       assert_true(fabs(P[a / 2][a % 2] + more[a / 2][a % 2] / volume - found[a / 2][a % 2]) <
                   1e-12 * P[0][0]);
-    static const double expected[] = {50, -20, 0, 1}, size[] = {50, 50, 50 / 0.01, 1};
+    static const double expected[] = {50, -20, 0, 1, 0}, size[] = {50, 50, 50 / 0.01, 1, 1};
     double *values = calloc((size_t)c.g->size, sizeof *values);
     sweep_observe(c.w);
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 5; k++) {
       sweep_output(c.w, k, values);
       for (long q = 0; q < c.g->size; q++)
         if (c.g->present[q]) assert_true(fabs(values[q] - expected[k]) < 1e-10 * size[k]);
