@@ -52,9 +52,9 @@ static void put_parameters(json *j, const law_facts *f) {
   for (int p = 0; p < list->count; p++) {
     open_symbol(j, list->items[p]);
     json_put_number(j, "value", f->given[p] ? f->values[p] : NAN);
-    put_default(j, f->model.law, list->items[p]);
     put_bounds(j, f, p);
     json_put_bool(j, "field", symbol_is_field(list->items[p]));
+    put_default(j, f->model.law, list->items[p]);
     json_object_end(j);
   }
   json_array_end(j);

@@ -11,9 +11,7 @@
 #include <cmocka.h>
 
 #include "tests/generator/command_tools.h"
-#include "tests/runtime/hand_over.h"
-#include "tests/runtime/same_runs.h"
-#include "tests/verification/case.h"
+#include "tests/verification/same_bits.h"
 
 #define REMEMBERING SOURCE_DIR "/tests/generator/families/remembering.plm"
 #define TURNED                                                                                     \
@@ -45,23 +43,8 @@ static void open_turned(deck_case *c, size_t k, int threads) {
 
 static void threads_and_a_resume_give_the_same_bits(void **state) {
   (void)state;
-  for (size_t k = 0; k < RUNS; k++) {
-    deck_case one, more, first, second;
-    open_turned(&one, k, 1);
-    assert_int_equal(deck_case_go(&one), STEP_END);
-    open_turned(&more, k, 3);
-    assert_int_equal(deck_case_go(&more), STEP_END);
-    same_runs(one.simulation, more.simulation);
-    open_turned(&first, k, 1);
-    open_turned(&second, k, 2);
-    hand_over(first.simulation, simulation_step_count(one.simulation) / 2, second.simulation);
-    assert_int_equal(deck_case_go(&second), STEP_END);
-    same_runs(one.simulation, second.simulation);
-    deck_case_close(&one);
-    deck_case_close(&more);
-    deck_case_close(&first);
-    deck_case_close(&second);
-  }
+  for (size_t k = 0; k < RUNS; k++)
+    assert_same_bits_of(open_turned, k);
 }
 
 /* An output that reads a component has that field's values; in the plane nothing leaves it. */
