@@ -543,8 +543,8 @@ typedef struct pl_law {
   int given_count;
   const int32_t *given; /* [given_count] their places in `parameters` */
 
-  /* Defaults that follow from other parameters' values: from `parameters`, SI, to `values`, of which
-     nothing else is written. Each reads only parameters above its own. NULL: all defaults are
+  /* Defaults that follow from other parameters' values: from `parameters`, SI, to `values`, of
+     which nothing else is written. Each reads only parameters above its own. NULL: all defaults are
      numbers. pl_parameter.initial is what follows from the other defaults. */
   void (*defaults)(const struct pl_law *law, const double *parameters, double *values);
 } pl_law;

@@ -1,5 +1,5 @@
-/* For tests: a deck's run has the same bits whatever the threads, and when it is interrupted and gone
-   on with by other threads. */
+/* For tests: a deck's run has the same bits whatever the threads, and when it is interrupted and
+   gone on with by other threads. */
 #ifndef PERILAT_TESTS_SAME_BITS_H
 #define PERILAT_TESTS_SAME_BITS_H
 
