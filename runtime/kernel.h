@@ -554,8 +554,8 @@ typedef struct pl_law {
   int works_at_rest;
   /* Of laws of a continuum: linear but for a stress without strain, as of a rest strain. */
   int affine;
-  /* Defaults that follow from other parameters' values: from `parameters`, SI, to `values`, of which
-     nothing else is written. Each reads only parameters above its own. NULL: all defaults are
+  /* Defaults that follow from other parameters' values: from `parameters`, SI, to `values`, of
+     which nothing else is written. Each reads only parameters above its own. NULL: all defaults are
      numbers. pl_parameter.initial is what follows from the other defaults. */
   void (*defaults)(const struct pl_law *law, const double *parameters, double *values);
 } pl_law;

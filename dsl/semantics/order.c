@@ -105,8 +105,8 @@ static void report_self(checker *ck, const expr *e, const entry *self) {
   if (self->symbol.kind == SYMBOL_PARAMETER)
     diag_hint(ck->d, "its default may read the parameters above it, or is a number");
   else
-    diag_hint(ck->d, "to read its value of the last step declare `state %s on %s = 0` above", e->name,
-            placement_name(natural_place(ck)));
+    diag_hint(ck->d, "to read its value of the last step declare `state %s on %s = 0` above",
+              e->name, placement_name(natural_place(ck)));
 }
 
 void report_undefined(checker *ck, const expr *e, entry *target) {

@@ -520,8 +520,8 @@
   X(FAMILY_OPTIONS, "\"no-thread-jumps\", \"no-tree-sink\", \"no-tree-pre\", "                     \
     "\"no-tree-slp-vectorize\", \"no-predictive-commoning\", \"no-tree-loop-distribution\", "      \
     "\"no-split-loops\"")                                                                          \
-  /* Loops of ten thousands of operations: passes that take more than linear time are left out. */   \
-  X(LARGE_OPTIONS, "\"O1\", \"tree-vectorize\", $1")                                                 \
+  /* Loops of ten thousands of operations: passes that take more than linear time are left out. */ \
+  X(LARGE_OPTIONS, "\"O1\", \"tree-vectorize\", $1")                                               \
   X(PRELUDE, "/* Written by perilat. */\n#if !defined(__clang__)\n"                                \
     "#pragma GCC optimize($1)\n#endif\n"                                                           \
     "#pragma GCC diagnostic push\n#pragma GCC diagnostic ignored \"-Wunused-function\"\n")         \

@@ -156,8 +156,8 @@ static bool assign(const deck_assignment *a, const pl_law *law, double *values, 
   return check_unit(a, &law->parameters[p], d);
 }
 
-/* That of parameter p, which may follow from those above it; `defaults` [parameter_count] is there to
-   be written to. */
+/* That of parameter p, which may follow from those above it; `defaults` [parameter_count] is there
+   to be written to. */
 static double default_of(const pl_law *law, int p, const double *values, double *defaults) {
   defaults[p] = law->parameters[p].initial;
   if (PL_HAS(law, defaults) && law->defaults) law->defaults(law, values, defaults);

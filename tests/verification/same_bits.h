@@ -1,5 +1,5 @@
-/* For tests: a deck's run has the same bits whatever the threads, and when it is interrupted and gone
-   on with by other threads. */
+/* For tests: a deck's run has the same bits whatever the threads, and when it is interrupted and
+   gone on with by other threads. */
 #ifndef PERILAT_TESTS_SAME_BITS_H
 #define PERILAT_TESTS_SAME_BITS_H
 
@@ -23,7 +23,7 @@ static inline void assert_same_bits_of(case_opener open_case, size_t k) {
   same_runs(one.simulation, more.simulation);
   open_case(&first, k, 1);
   open_case(&second, k, 2);
-  hand_over(first.simulation, simulation_step_count(one.simulation) / 2, second.simulation);
+  hand_over(first.simulation, simulation_step_done(one.simulation) / 2, second.simulation);
   assert_int_equal(deck_case_go(&second), STEP_END);
   same_runs(one.simulation, second.simulation);
   deck_case_close(&one);

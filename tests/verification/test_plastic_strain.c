@@ -1,5 +1,5 @@
-/* splm_concrete whose plastic strain flows instead of its stretches (Nikravesh 2017, eqs 3.47 to 3.49):
-   what this changes in a prism is what the gallery says. */
+/* splm_concrete whose plastic strain flows instead of its stretches (Nikravesh 2017, eqs 3.47 to
+   3.49): what this changes in a prism is what the gallery says. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
-/* Defaults that follow from parameters above them: the correlations of the codes (Nikravesh 2017, eqs
-   5.1 to 5.4), what a deck gives put in their place and in what follows from it, compiled and
+/* Defaults that follow from parameters above them: the correlations of the codes (Nikravesh 2017,
+   eqs 5.1 to 5.4), what a deck gives put in their place and in what follows from it, compiled and
    interpreted alike, region by region. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -72,7 +72,7 @@ static void codes_give_what_the_source_does(void **state) {
   model_close(&m);
 }
 
-/* The dog-bones' f_c, density and 8 mm: eq 5.1 gives 3.52 MPa, not the 2.415 of the source's table. */
+/* The dog-bones' f_c, density and 8 mm: eq 5.1 gives 3.52 MPa, the source's table has 2.415. */
 static void what_is_given_is_followed(void **state) {
   (void)state;
   model m;
