@@ -83,7 +83,8 @@ static ir_node gained_at(ir *g, const implicit_step *s, ir_node v) {
 /* Whether x is less than y, in the direction that the state goes in. */
 static ir_node falls_short(ir *g, const implicit_step *s, ir_node x, ir_node y) {
   const ir_node up = ir_binary(g, IR_LT, ir_constant(g, 0), s->gained);
-  return ir_select(g, up, ir_binary(g, IR_LT, x, y), ir_binary(g, IR_LT, y, x));
+  const ir_node below = ir_binary(g, IR_LT, x, y);
+  return ir_select(g, up, below, ir_binary(g, IR_LT, y, x));
 }
 
 static root_search begin(ir *g, implicit_step *s) {
@@ -95,8 +96,8 @@ static root_search begin(ir *g, implicit_step *s) {
 }
 
 static ir_node is_between(ir *g, ir_node v, ir_node a, ir_node b) {
-  return ir_binary(g, IR_AND, ir_binary(g, IR_LE, ir_binary(g, IR_MIN, a, b), v),
-                   ir_binary(g, IR_LE, v, ir_binary(g, IR_MAX, a, b)));
+  const ir_node above = ir_binary(g, IR_LE, ir_binary(g, IR_MIN, a, b), v);
+  return ir_binary(g, IR_AND, above, ir_binary(g, IR_LE, v, ir_binary(g, IR_MAX, a, b)));
 }
 
 /* A step of Newton's method; or, where that leaves the interval or the last one got on badly, to
@@ -107,19 +108,20 @@ static root_search next(ir *g, root_search r, const implicit_step *s) {
   const ir_node slope = ir_sub(g, one, ir_mul(g, s->dt, at(g, s->slope, s->old, r.v)));
   const ir_node rises = ir_binary(g, IR_LT, zero, slope);
   const ir_node correction = ir_div(g, r.left, ir_select(g, rises, slope, one));
-  const ir_node most = ir_scaled(
-      g, SETTLED, ir_add(g, ir_unary(g, IR_ABS, s->old), ir_unary(g, IR_ABS, r.v)));
+  const ir_node size = ir_unary(g, IR_ABS, s->old);
+  const ir_node most = ir_scaled(g, SETTLED, ir_add(g, size, ir_unary(g, IR_ABS, r.v)));
   const ir_node small = ir_binary(g, IR_LE, ir_unary(g, IR_ABS, correction), most);
   const ir_node newton = ir_sub(g, r.v, correction);
-  const ir_node well = ir_binary(g, IR_AND, is_between(g, newton, r.near, r.far),
-                                 ir_unary(g, IR_NOT, r.slow));
-  const ir_node taken = ir_binary(g, IR_OR, ir_unary(g, IR_NOT, s->encloses),
-                                  ir_binary(g, IR_OR, small, well));
+  const ir_node between = is_between(g, newton, r.near, r.far);
+  const ir_node well = ir_binary(g, IR_AND, between, ir_unary(g, IR_NOT, r.slow));
+  const ir_node free = ir_unary(g, IR_NOT, s->encloses);
+  const ir_node taken = ir_binary(g, IR_OR, free, ir_binary(g, IR_OR, small, well));
   const ir_node middle = ir_scaled(g, 0.5, ir_add(g, r.near, r.far));
-  const ir_node before = ir_unary(g, IR_ABS, r.left);
+  const ir_node most_left = ir_scaled(g, 0.5, ir_unary(g, IR_ABS, r.left));
   r.v = ir_select(g, taken, newton, middle);
-  r.left = ir_sub(g, ir_sub(g, r.v, s->old), gained_at(g, s, r.v));
-  r.slow = ir_binary(g, IR_LT, ir_scaled(g, 0.5, before), ir_unary(g, IR_ABS, r.left));
+  const ir_node gone = ir_sub(g, r.v, s->old);
+  r.left = ir_sub(g, gone, gained_at(g, s, r.v));
+  r.slow = ir_binary(g, IR_LT, most_left, ir_unary(g, IR_ABS, r.left));
   r.settled = ir_binary(g, IR_AND, small, rises);
   const ir_node is_near = falls_short(g, s, r.left, zero);
   r.near = ir_select(g, is_near, r.v, r.near);
@@ -143,7 +145,8 @@ static ir_node implicit(lowering *c, const stmt *rule, ir_node old, ir_node dt, 
                         "with its steps written out this rate is too large to compile");
   }
   const ir_node good = ir_binary(g, IR_OR, r.settled, s.encloses);
-  return ir_add(g, ir_select(g, r.settled, r.v, r.near), lower_zero_if(g, good));
+  const ir_node end = ir_select(g, r.settled, r.v, r.near);
+  return ir_add(g, end, lower_zero_if(g, good));
 }
 
 /* --- one component ---------------------------------------------------------------------------- */

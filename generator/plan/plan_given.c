@@ -61,7 +61,8 @@ static ir_node between(const kernel_plan *plan, ir_node stored, ir_node stored_b
 static ir_node given_by_fields(const kernel_plan *plan, const rest_energy *of) {
   const ir_node stored = with_rest(plan, of, of->rest, of->stored),
                 power = with_rest(plan, of, of->rest, of->power);
-  return between(plan, stored, a_step_ago(plan, stored), power, a_step_ago(plan, power), -0.5);
+  const ir_node stored_before = a_step_ago(plan, stored);
+  return between(plan, stored, stored_before, power, a_step_ago(plan, power), -0.5);
 }
 
 static ir_node given_by_states(const kernel_plan *plan, const rest_energy *of) {
@@ -72,12 +73,14 @@ static ir_node given_by_states(const kernel_plan *plan, const rest_energy *of) {
   with_new_fields(plan, of, of->rest, of->rests, rest);
   with_new_fields(plan, of, &of->stored, 1, &stored);
   if (power != IR_NONE) with_new_fields(plan, of, &power, 1, &power);
-  const ir_node given =
-      of->rests == 0
-          ? ir_constant(g, 0)
-          : between(plan, with_rest(plan, of, rest, stored), with_rest(plan, of, of->rest, stored),
-                    with_rest(plan, of, rest, power), with_rest(plan, of, of->rest, power),
+  ir_node given = ir_constant(g, 0);
+  if (of->rests > 0) {
+    const ir_node there = with_rest(plan, of, rest, stored),
+                  here = with_rest(plan, of, of->rest, stored),
+                  power_there = with_rest(plan, of, rest, power);
+    given = between(plan, there, here, power_there, with_rest(plan, of, of->rest, power),
                     parts[of->forces]);
+  }
   free(rest);
   return given;
 }
@@ -85,7 +88,8 @@ static ir_node given_by_states(const kernel_plan *plan, const rest_energy *of) {
 ir_node plan_given_by_rest(const kernel_plan *plan, const rest_energy *of) {
   ir *g = plan->graph;
   if (of->stored == IR_NONE) return ir_constant(g, 0);
-  return ir_add(g, given_by_fields(plan, of), given_by_states(plan, of));
+  const ir_node by_fields = given_by_fields(plan, of);
+  return ir_add(g, by_fields, given_by_states(plan, of));
 }
 
 bool plan_rest_changes(const kernel_plan *plan, const ir_node *rest, int rests) {

@@ -154,7 +154,7 @@ static void rates_are_equations_in_time(void **state) {
 static void stretch_is_measured_from_the_rest(void **state) {
   (void)state;
   assert_reads("state v = 0\nrest stretch = v\nrate v = stretch/2 [s]",
-               "change of bond length over reference length, less the rest stretch |");
+               "change of bond length over reference length; less `rest_stretch` |");
   assert_reads("state v = 0\nrest stretch = v\nrate v = stretch/2 [s]",
                "\\mathit{rest}_{\\mathrm{stretch}} = v^{(n-1)}$$\n\n$$\\frac{");
   assert_reads("output y = stretch", "change of bond length over reference length |");

@@ -106,7 +106,7 @@ static void what_is_wrong_is_said_where_it_stands(void **state) {
        "give the number its unit: `3 [m]`"},
       {"x*(1 + x/200)", "  ^^^^^^^^^^^", "units",
        "`1` is a pure number but `x/200` is a length (m), so they cannot be added",
-       "give the number its unit: `1 [m]`, or divide `x/200` by `1 [m]`"},
+       "give `200` its unit, such as `200 [mm]`"},
       {"x*ph", "  ^^", "unknown-name", "there is no quantity `ph`",
        "a formula knows x, y (m), t (s)"},
       {"x*sum(y)", "  ^^^", "unknown-function", "`sum` is for laws, a formula does not have it",

@@ -60,6 +60,13 @@ static void nothing_is_said_of(const char *text) {
   judged_free(j);
 }
 
+static void is_not_said(const char *text, const char *code) {
+  judged *j = judge(text);
+  if (count_of(j, code)) diag_print(&j->said, stderr);
+  assert_int_equal(count_of(j, code), 0);
+  judged_free(j);
+}
+
 static void is_said_once(const char *text, const char *code, const char *words) {
   judged *j = judge(text);
   if (count_of(j, code) != 1 || !holds_words(j, code, words)) diag_print(&j->said, stderr);
@@ -79,8 +86,9 @@ static void states_may_act_by_the_rest_alone(void **state) {
   (void)state;
   nothing_is_said_of(BOND "  state v on bond = 0\n  rest stretch = previous(v)\n"
                           "  v = max(previous(v), stretch)\n  force N = k*stretch\n" END);
-  nothing_is_said_of(BOND "  damage d on bond\n  rest stretch = 1e-4*d\n"
-                          "  d = min(max(stretch*100, 0), 1)\n  force N = k*stretch\n" END);
+  is_not_said(BOND "  damage d on bond\n  rest stretch = 1e-4*d\n"
+                   "  d = min(max(stretch*100, 0), 1)\n  force N = k*stretch\n" END,
+              "elastic");
 }
 
 /* --- time ------------------------------------------------------------------------------------- */
@@ -117,10 +125,9 @@ static void a_step_may_be_written_out(void **state) {
 static void states_may_act_by_rates(void **state) {
   (void)state;
   nothing_is_said_of(BOND "  parameter T_0 = 24 [h] in (0, inf)\n"
-                          "  state age on bond = 0 [s]\n  state pull on bond = 0 [N]\n"
+                          "  state age on bond = 0 [s]\n"
                           "  age = previous(age) + dt\n"
-                          "  rate pull = k*sqrt((T_0 + age)/(96 [h] + T_0 + age))*stretch_rate\n"
-                          "  force N = pull\n" END);
+                          "  force N = k*(stretch + age/(T_0 + age)*1 [s]*stretch_rate)\n" END);
   nothing_is_said_of(BOND "  parameter tau = 2 [s] in (0, inf)\n"
                           "  state v on bond = vector 0\n"
                           "  rate v = (stretch*direction - v)/tau\n"
