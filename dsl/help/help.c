@@ -26,7 +26,10 @@ static void print_page(const help_page *p, FILE *out) {
 /* What a word of the language declares stands on its page. */
 static const struct {
   const char *name, *page;
-} declared[] = {{"rest_stretch", "rest"}, {"total_stretch", "rest"}};
+} declared[] = {{"rest_stretch", "rest"},
+                {"total_stretch", "rest"},
+                {"rest_strain", "rest"},
+                {"total_strain", "rest"}};
 enum { DECLARED = sizeof declared / sizeof *declared };
 
 static int show_pages(const char *topic, FILE *out) {

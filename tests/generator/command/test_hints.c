@@ -24,7 +24,7 @@ static void laws_are_told_what_to_write(void **state) {
       {"  state v on bond = vector 0\n  rate v = cross((0, 0, 1), v)/tau + stretch*direction/tau\n"
        "  force N = k*(stretch - dot(v, direction))\n",
        "one component of this vector depends on others"},
-      {"  state p on bond = 0 [Pa]\n  rate p = 1 [GPa]*stretch_rate - p/tau\n"
+      {"  state p on bond = 0 [Pa]\n  p = (p + 1 [GPa]*stretch)/2\n"
        "  force N = 1 [m^2]*p\n  energy W = 1 [m^3]*p**2/1 [GPa]\n",
        "a force that is a state of its own has none"},
       {"  energy W = k*s*stretch**2/2\n  force N = 2*k*stretch\n",

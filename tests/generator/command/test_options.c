@@ -117,7 +117,7 @@ static void help_on_nothing_lists_the_topics(void **state) {
   workplace *w = *state;
   static const char *const listed[] = {
       "did you mean `drive`?",  "commands: new check", "groups of decks: simulation",
-      "words of the language:", " otherwise",          "units: pi stretch",
+      "words of the language:", " otherwise",          "units: rest_stretch total_stretch",
       " unknown-name"};
   for (size_t k = 0; k < sizeof listed / sizeof *listed; k++)
     expect(w, "help drivee", 1, listed[k]);
