@@ -287,7 +287,9 @@ static double unbalance_of(const relaxation *r, int number) {
   const double outer = pl_fmax(needed, forgotten * state->largest), within = slight * state->inner,
                left = sqrt(sum.free);
   state->within = within > outer;
-  return left <= rounding_force(of, stiffness) ? 0 : left / pl_fmax(outer, within);
+  /* nothing loads the body but what rounding leaves, and no more is left */
+  if (pl_fmax(left, outer) <= rounding_force(of, stiffness)) return 0;
+  return left == 0 ? 0 : left / pl_fmax(outer, within);
 }
 
 /* NaN is no balance. The forces of a link are looked at where they act. */
