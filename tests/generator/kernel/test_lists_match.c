@@ -1,5 +1,5 @@
-/* Every law of families planned for lists of neighbours of particles that stand on no lattice,
-   whether its line `for` names these or not. */
+/* Laws of families of the tests, and laws whose particles have sizes of their own, on lists:
+   compiled kernels against the interpreter. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -7,29 +7,11 @@
 
 #include <cmocka.h>
 
-#include "tests/generator/kernel/compiled_family.h"
-
-static bool suits_lists(const char *path, const law_choice *choice) {
-  model m;
-  assert_true(model_open(&m, path, choice, 1));
-  const bool suits = model_suits_irregular(&m);
-  model_close(&m);
-  return suits;
-}
-
-static int on_lists(const char *path, const law_choice *choice, law_setting setting) {
-  if (choice && !suits_lists(path, choice)) return 0;
-  check_family_law_in(path, choice, setting, true, 0, states_asked() / 3);
-  return 1;
-}
-
-static int in_all_settings(const char *path, const law_choice *choice) {
-  return check_settings(path, choice, on_lists);
-}
+#include "tests/generator/kernel/lists_kernel.h"
 
 static void kernels_on_lists_match(void **state) {
   (void)state;
-  check_laws_of_families(in_all_settings);
+  check_folder(SOURCE_DIR "/tests/generator/families/*.plm", on_lists_in_all_settings);
 }
 
 /* Laws that read `horizon` or `spacing`, where particles have their own. */
