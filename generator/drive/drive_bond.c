@@ -322,8 +322,8 @@ static double given_by_fields(marching *m, const motion *at, double time, double
 
 /* Trapezoids throughout: work and rate losses between the step's ends, and what damage costs as the
    mean of what it costs at the deformation before and after, which is exact to second order and for
-   sudden changes between the two. What fields give is the mean of what they do at either end; what a
-   rest state gives that follows states, and what these cost, is as the law books it. */
+   sudden changes between the two. What fields give is the mean of what they do at either end; what
+   a rest state gives that follows states, and what these cost, is as the law books it. */
 static void next_row(marching *m, const motion *from, const motion *to, double time, double step) {
   double *e = m->energy;
   driven_bond *r = &m->driven_bond;

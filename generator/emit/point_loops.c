@@ -164,8 +164,8 @@ static void searches_free(searches *s) {
 }
 
 static bool is_leaf(const emitter *e, ir_node n) {
-  return expression_is_uniform(e, n) || expression_is_of_time(e, n) || ir_arity(ir_operation(e->graph, n)) == 0 ||
-         ir_operation(e->graph, n) == IR_SEARCH;
+  return expression_is_uniform(e, n) || expression_is_of_time(e, n) ||
+         ir_arity(ir_operation(e->graph, n)) == 0 || ir_operation(e->graph, n) == IR_SEARCH;
 }
 
 /* Adds to the mask what its nodes need, down to searches and to what is kept. */

@@ -72,8 +72,8 @@ typedef struct root_search {
 
 typedef struct implicit_step {
   ir_node old, dt, f, slope;
-  ir_node gained;    /* dt f(old) */
-  ir_node encloses;  /* the root is between near and far */
+  ir_node gained;   /* dt f(old) */
+  ir_node encloses; /* the root is between near and far */
 } implicit_step;
 
 static ir_node gained_at(ir *g, const implicit_step *s, ir_node v) {
@@ -168,8 +168,8 @@ static bool reads_speed(ir *g, ir_node f) {
 }
 
 /* The stretch that comes of a rate of stretch would not be the stretch: runs know speeds between
-   two steps, where the body comes to rest they are none of the deck's time, and paths have corners.
- */
+   two steps, paths have corners, and where a body comes to rest its speeds are none of the deck's
+   time. */
 static bool is_good(lowering *c, const stmt *rule, ir_node f, const components *old,
                     int component) {
   if (reads_speed(c->graph, f)) {
@@ -198,7 +198,7 @@ static bool is_good(lowering *c, const stmt *rule, ir_node f, const components *
   return true;
 }
 
-/* Whether f takes one course or another by the state, even where its slope is the same on either. */
+/* Whether f takes one course or another by the state, even with the same slope on either. */
 static bool switches(const ir *g, ir_node f, ir_node old) {
   unsigned char *marks = must_calloc((size_t)ir_count(g) + 1, 1);
   bool found = false;
@@ -213,7 +213,8 @@ static bool switches(const ir *g, ir_node f, ir_node old) {
 static ir_node step_of(lowering *c, const stmt *rule, ir_node old, ir_node f, ir_node before) {
   ir *g = c->graph;
   const ir_node dt = lower_advance(g, c->law), slope = ir_derivative(g, f, old);
-  if (rewrite_depends(g, &slope, 1, &old, 1) || switches(g, f, old)) return implicit(c, rule, old, dt, f, slope);
+  if (rewrite_depends(g, &slope, 1, &old, 1) || switches(g, f, old))
+    return implicit(c, rule, old, dt, f, slope);
   return gone_on(g, old, dt, slope, before, f);
 }
 

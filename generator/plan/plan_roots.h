@@ -20,7 +20,8 @@ void plan_hoist(kernel_plan *p);
 /* Marks what follows from the step in time, or `dt`, with uniforms and numbers alone: one number of
    a whole record, known before its loop. mask: [nodes], zeroed here. */
 void plan_mark_of_time(const kernel_plan *p, unsigned char *mask);
-/* What the roots of a segment cost each time, but for what is of time: operations placed `at_least` so locally. */
+/* What the roots of a segment cost each time, but for what is of time: operations placed `at_least`
+   so locally. */
 ir_cost plan_cost(const kernel_plan *p, const segment *a, placement at_least);
 /* What a step costs for each bond: of a strip, or of either side of it. */
 void plan_count_cost(kernel_plan *p);
