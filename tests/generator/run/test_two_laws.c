@@ -16,9 +16,8 @@
 #include "runtime/result/result_file.h"
 #include "runtime/result/result_read.h"
 #include "tests/generator/command_tools.h"
-#include "tests/runtime/hand_over.h"
-#include "tests/runtime/same_runs.h"
 #include "tests/verification/case.h"
+#include "tests/verification/same_bits.h"
 
 #define START "&simulation end_time = '0.05 ms' /\n&output frames = 0 energy = .false. /\n"
 #define ROW                                                                                        \
@@ -259,36 +258,21 @@ static void the_step_is_that_of_both(void **state) {
   "&monitor name = 'load' kind = 'reaction' region = 'top' component = 'y' /\n"                    \
   "&output frames = 0 sample = '0.02 ms' /\n%s"
 
-static void open_torn(deck_case *c, const char *kind, const char *materials, int threads) {
-  char text[4096];
-  snprintf(text, sizeof text, TORN, threads, kind, materials);
-  deck_case_open(c, text);
-}
-
-static void threads_and_a_resume_give_the_same_bits(void **state) {
-  (void)state;
+static void open_torn(deck_case *c, size_t k, int threads) {
   static const struct {
     const char *kind, *materials;
   } runs[] = {{"hexagonal", WHOLE("mplm_bilinear") RIGHT("mplm_concrete")},
               {"square", WHOLE("splm_concrete") RIGHT("lps")},
               {"blue_noise", WHOLE("pmb") RIGHT("splm_concrete")}};
-  for (size_t k = 0; k < sizeof runs / sizeof *runs; k++) {
-    deck_case one, more, first, second;
-    open_torn(&one, runs[k].kind, runs[k].materials, 1);
-    assert_int_equal(deck_case_go(&one), STEP_END);
-    open_torn(&more, runs[k].kind, runs[k].materials, 3);
-    assert_int_equal(deck_case_go(&more), STEP_END);
-    same_runs(one.simulation, more.simulation);
-    open_torn(&first, runs[k].kind, runs[k].materials, 1);
-    open_torn(&second, runs[k].kind, runs[k].materials, 2);
-    hand_over(first.simulation, simulation_step_count(one.simulation) / 2, second.simulation);
-    assert_int_equal(deck_case_go(&second), STEP_END);
-    same_runs(one.simulation, second.simulation);
-    deck_case_close(&one);
-    deck_case_close(&more);
-    deck_case_close(&first);
-    deck_case_close(&second);
-  }
+  char text[4096];
+  snprintf(text, sizeof text, TORN, threads, runs[k].kind, runs[k].materials);
+  deck_case_open(c, text);
+}
+
+static void threads_and_a_resume_give_the_same_bits(void **state) {
+  (void)state;
+  for (size_t k = 0; k < 3; k++)
+    assert_same_bits_of(open_torn, k);
 }
 
 /* --- the file --------------------------------------------------------------------------------- */
